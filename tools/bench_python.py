@@ -41,10 +41,10 @@ def play(envs, actions):
 
 def main(repetitions):
     """Measures every interface."""
-    chance = np.random.default_rng(1)
-    single = chance.integers(0, 10, (STEPS, 1024))
-    batch = core.FarmBatch(aquafarm_gym.find_scenario("paper"), 1024, ["rewards", "reasons", "started",
-                                                                       "index"])
+    rng = np.random.default_rng(1)
+    single = rng.integers(0, 10, (STEPS, 1024))
+    batch = core.FarmBatch(aquafarm_gym.find_scenario("paper"), 1024,
+                           ["rewards", "end_reasons", "is_first", "index"])
     batch.reset(1)
     rows = single.astype(np.uint8)[:, :, None]
     measure("python_batch_index", "steps/s", single.size, repetitions,
@@ -53,7 +53,7 @@ def main(repetitions):
         envs = aquafarm_gym.FarmVectorEnv(1024, "paper", observation, copy=False)
         measure(f"python_vector_{observation}", "steps/s", single.size, repetitions,
                 play(envs, single))
-    joint = chance.integers(0, 10, (STEPS, 1024, 2))
+    joint = rng.integers(0, 10, (STEPS, 1024, 2))
     for observation in ("features", "planes"):
         envs = aquafarm_gym.TeamVectorEnv(1024, "two_squads", observation, copy=False)
         measure(f"python_teams_{observation}", "joint_steps/s", STEPS * 1024, repetitions,

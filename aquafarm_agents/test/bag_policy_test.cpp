@@ -178,7 +178,7 @@ TEST_F(BagPolicy, AMemoryIsCarriedFromTheEpisodesStartOn) {
       std::make_shared<const aquafarm::Scenario>(aquafarm::LoadScenario(scenario_file));
   aquafarm::FarmBatch farms(scenario, 1);
   farms.Reset(5, 0, {});
-  aquafarm::agents::LocalEnvironment environment(scenario, {1, saved.encodings, false, 1});
+  aquafarm::agents::LocalEnvironment environment(scenario, {1, saved.observation_types, false, 1});
   const auto remembers = aquafarm::agents::MakePolicy(saved, environment.spec());
   const auto forgets = aquafarm::agents::MakePolicy(saved, environment.spec());
   remembers->Begin(5, 1);

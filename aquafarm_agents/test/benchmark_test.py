@@ -163,9 +163,9 @@ class BenchmarkTest(unittest.TestCase):
         self.assertAlmostEqual(sum(played) / 2.0, bar.get_height(), places=9)
 
     def test_the_square_error_shows_median_middle_half_and_each_run(self):
-        chance = np.random.default_rng(1)
+        rng = np.random.default_rng(1)
         shown = [one for one in protocol.CONTESTANTS if one.name in ("q_learning", "sarsa")]
-        errors = {"q_learning": 10.0 * np.exp(chance.normal(0.0, 0.5, (3, 400))),
+        errors = {"q_learning": 10.0 * np.exp(rng.normal(0.0, 0.5, (3, 400))),
                   "sarsa": np.full((1, 400), 40.0)}
         errors["q_learning"][:, :7] = math.nan  # nothing was learnt yet
         runs = {name: [{"curve": {"loss": row}} for row in rows] for name, rows in errors.items()}

@@ -21,11 +21,11 @@ def by_name(name):
 
 def make_run(seed, episodes):
     """Returns a run in the format of results.read_run with random returns, steps and losses."""
-    chance = np.random.Generator(np.random.PCG64(seed))
-    return {"curve": {"return": chance.normal(10.0 * seed, 5.0, episodes),
-                      "steps": chance.integers(1, 100, episodes).astype(float),
+    rng = np.random.Generator(np.random.PCG64(seed))
+    return {"curve": {"return": rng.normal(10.0 * seed, 5.0, episodes),
+                      "steps": rng.integers(1, 100, episodes).astype(float),
                       "success": np.ones(episodes),
-                      "loss": np.abs(chance.normal(2.0, 1.0, episodes))}}
+                      "loss": np.abs(rng.normal(2.0, 1.0, episodes))}}
 
 
 class FiguresTest(unittest.TestCase):

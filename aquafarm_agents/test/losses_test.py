@@ -30,27 +30,27 @@ def columns_of(lost, starts=None):
 class LossesTest(unittest.TestCase):
 
     def setUp(self):
-        self.chance = np.random.Generator(np.random.PCG64(3))
+        self.rng = np.random.Generator(np.random.PCG64(3))
         _, self.axes = figures.plt.subplots()
         self.addCleanup(figures.plt.close, "all")
 
     def test_the_tail_follows_its_definition(self):
         for _ in range(100):
-            sample = self.chance.integers(0, self.chance.integers(2, 500),
-                                          self.chance.integers(1, 90)).astype(float)
+            sample = self.rng.integers(0, self.rng.integers(2, 500),
+                                          self.rng.integers(1, 90)).astype(float)
             var, cvar = losses.tail(sample)
             self.assertEqual(min(x for x in sample if (sample > x).mean() <= 0.05 + 1e-12), var)
             least = min(c + np.maximum(sample - c, 0.0).mean() / 0.05 for c in sample)
             self.assertAlmostEqual(least, cvar, places=9)
 
     def test_weights_count_as_repetitions(self):
-        sample = self.chance.normal(100.0, 20.0, 60)
-        weights = self.chance.integers(0, 4, 60)
+        sample = self.rng.normal(100.0, 20.0, 60)
+        weights = self.rng.integers(0, 4, 60)
         expected = losses.tail(np.repeat(sample, weights))
         np.testing.assert_allclose(expected, losses.tail(sample, weights))
 
     def test_without_repetitions_the_standard_error_is_the_ordinary_one(self):
-        sample = self.chance.normal(100.0, 20.0, 60)
+        sample = self.rng.normal(100.0, 20.0, 60)
         ordinary = sample.std(ddof=1) / math.sqrt(60)
         self.assertAlmostEqual(ordinary, losses.standard_error(sample, np.arange(60)))
         often = losses.standard_error(np.tile(sample, 9), np.tile(np.arange(60), 9))
@@ -71,7 +71,7 @@ class LossesTest(unittest.TestCase):
 
     def rows(self):
         """Returns the references as contestants, their losses, and rows with them."""
-        samples = [np.round(self.chance.exponential(500.0, 80), 2) for _ in REFERENCES]
+        samples = [np.round(self.rng.exponential(500.0, 80), 2) for _ in REFERENCES]
         samples[1][:7] = 0.0
         rows = [{"name": one.name, "label": one.label,
                  "money": losses.summarise(columns_of(sample), "CNY")}

@@ -42,9 +42,9 @@ class MeasuresTest(unittest.TestCase):
         self.assertIsNone(measures.convergence(np.linspace(0.0, 100.0, 400), np.ones(400)))
 
     def test_a_settled_mean_may_wander_as_chance_has_it(self):
-        chance = np.random.Generator(np.random.PCG64(2))
+        rng = np.random.Generator(np.random.PCG64(2))
         success = np.ones(2000)
-        noisy = 250.0 + chance.normal(scale=50.0, size=2000)
+        noisy = 250.0 + rng.normal(scale=50.0, size=2000)
         noisy[:100] -= 1000.0
         self.assertIsNone(measures.convergence(noisy, success))
         self.assertLess(measures.convergence(noisy, success, measures.NOISE), 160)
@@ -66,10 +66,10 @@ class MeasuresTest(unittest.TestCase):
         self.assertEqual(7.0, measures.interquartile_mean([7.0]))
 
     def test_a_bootstrap_interval_covers_as_often_as_it_says(self):
-        chance = np.random.Generator(np.random.PCG64(5))
+        rng = np.random.Generator(np.random.PCG64(5))
         hits = 0
         for trial in range(200):
-            low, high = measures.bootstrap_interval(chance.normal(size=30), np.mean, draws=300,
+            low, high = measures.bootstrap_interval(rng.normal(size=30), np.mean, draws=300,
                                                     seed=trial)
             hits += low <= 0.0 <= high
         self.assertGreater(hits, 175)  # of 200; 95 % less what a bootstrap of 30 misses

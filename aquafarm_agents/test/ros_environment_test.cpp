@@ -24,19 +24,20 @@ using namespace aquafarm::agents::test;  // NOLINT
 
 constexpr std::uint8_t kEverything = kIndexBit | kFeaturesBit | kPlanesBit;
 
-RosEnvironment Connect(const std::string& ranch, std::int32_t farms, std::uint8_t encodings) {
+RosEnvironment Connect(const std::string& ranch, std::int32_t farms,
+                       std::uint8_t observation_types) {
   RosEnvironmentOptions options;
   options.farms = farms;
-  options.encodings = encodings;
+  options.observation_types = observation_types;
   options.hashes = true;
   return {ros::NodeHandle(ranch), options};
 }
 
 /// The same scenario as the sim node's, in this process.
-LocalEnvironment InProcess(const EnvironmentSpec& spec, std::uint8_t encodings) {
+LocalEnvironment InProcess(const EnvironmentSpec& spec, std::uint8_t observation_types) {
   return {std::make_shared<const aquafarm::Scenario>(
               aquafarm::ParseScenario(spec.scenario_yaml, spec.scenario_name)),
-          {spec.farms, encodings, true, 1}};
+          {spec.farms, observation_types, true, 1}};
 }
 
 void ExpectSameFinished(const StepResults& a, const StepResults& b) {
@@ -57,7 +58,7 @@ void ExpectSameFinished(const StepResults& a, const StepResults& b) {
 std::size_t ExpectSameSteps(Environment& ros, Environment& local, RandomActions random, int steps) {
   std::size_t ended = 0;
   for (int step = 0; step < steps && !::testing::Test::HasFailure(); ++step) {
-    const auto actions = random.Next(Entries(local.spec()));
+    const auto actions = random.Next(SlotCount(local.spec()));
     const StepResults& got = ros.Step(actions);
     const StepResults& expected = local.Step(actions);
     ExpectSame(got, expected);
@@ -81,7 +82,7 @@ TEST(RosEnvironment, TenThousandStepsAreThoseOfThisProcess) {
   EXPECT_GE(ExpectSameTransitions(ros, local, 10000), 1U);
 }
 
-TEST(RosEnvironment, ManyFarmsAndAllEncodingsAreThoseOfThisProcess) {
+TEST(RosEnvironment, ManyFarmsAndAllObservationTypesAreThoseOfThisProcess) {
   RosEnvironment ros = Connect("procedural", 16, kFeaturesBit | kPlanesBit);
   LocalEnvironment local = InProcess(ros.spec(), kFeaturesBit | kPlanesBit);
   ExpectSameTransitions(ros, local, 500);
@@ -150,7 +151,7 @@ TEST(ShipServices, ThousandCommandsAreThoseOfThisProcess) {
     ASSERT_EQ(result.hash, expected.hashes[0]) << "step " << step;
     ASSERT_EQ(result.reward, expected.rewards[0]);
     ASSERT_EQ(result.legal_actions, expected.legal[0]);
-    ASSERT_EQ(result.reason, expected.reasons[0]);
+    ASSERT_EQ(result.reason, expected.end_reasons[0]);
     if (result.reason != 0) break;
   }
 }
@@ -159,7 +160,7 @@ TEST(RosEnvironment, WaitsWhileTheFarmIsPaused) {
   ros::NodeHandle node("pair");
   RosEnvironmentOptions options;
   options.farms = 1;
-  options.encodings = 0;
+  options.observation_types = 0;
   options.pause_limit_s = 1.0;
   std::vector<std::string> notices;
   options.on_notice = [&notices](const std::string& text) { notices.push_back(text); };
@@ -190,7 +191,7 @@ TEST(RosEnvironment, StartsAfreshWhenAnotherHasMovedOrResetTheFarms) {
   RosEnvironment environment(node, options);
   environment.Reset(1, 10);
   const std::vector<std::uint8_t> actions(3, 0);
-  const auto step = [&] { return environment.Step(actions).started[0] != 0; };
+  const auto step = [&] { return environment.Step(actions).is_first[0] != 0; };
   EXPECT_FALSE(step());
   const auto foreign_reset = [&] {
     aquafarm_msgs::Reset reset;
@@ -219,7 +220,7 @@ TEST(RosEnvironment, StartsAfreshWhenAnotherHasMovedOrResetTheFarms) {
 TEST(RosEnvironment, AShareOfTheFarmsIsThatOfThisProcess) {
   RosEnvironmentOptions options;
   options.farms = 2;
-  options.encodings = kFeaturesBit;
+  options.observation_types = kFeaturesBit;
   options.hashes = true;
   options.share = {4, 8};
   RosEnvironment ros(ros::NodeHandle("pair"), options);
@@ -238,13 +239,13 @@ TEST(RosEnvironment, AShareKeepsToItsEpisodesAfterALossOfTheFarms) {
   ros::NodeHandle node("pair");
   RosEnvironmentOptions options;
   options.farms = 2;
-  options.encodings = 0;
+  options.observation_types = 0;
   options.share = {4, 8};
   std::vector<std::string> notices;
   options.on_notice = [&notices](const std::string& text) { notices.push_back(text); };
   RosEnvironment environment(node, options);
   environment.Reset(1, 3);
-  const std::vector<std::uint8_t> actions(Entries(environment.spec()), 0);
+  const std::vector<std::uint8_t> actions(SlotCount(environment.spec()), 0);
   std::size_t ended = 0;
   while (ended == 0) ended = environment.Step(actions).finished.size();
   aquafarm_msgs::Reset reset;

@@ -27,10 +27,10 @@ class Farms:
 
     def __init__(self, scenario, count):
         self.batch = core.FarmBatch(aquafarm_gym.find_scenario(scenario), count,
-                                    ["features", "rewards", "reasons", "legal", "started"])
+                                    ["features", "rewards", "end_reasons", "legal", "is_first"])
         self.features = torch.from_numpy(self.batch.buffers["features"][:, 0])
         self.rewards = self.batch.buffers["rewards"][:, 0]
-        self.reasons = self.batch.buffers["reasons"]
+        self.end_reasons = self.batch.buffers["end_reasons"]
         self.legal = self.batch.buffers["legal"][:, 0]
         self.finished = []
 
@@ -43,8 +43,8 @@ class Farms:
         terminated [N])."""
         self.batch.step(actions.numpy().astype(np.uint8)[:, None])
         rewards, after = torch.from_numpy(self.rewards.copy()), self.features.clone()
-        last = self.reasons != 0
-        terminated = torch.from_numpy(last & (self.reasons != core.STEP_LIMIT))
+        last = self.end_reasons != 0
+        terminated = torch.from_numpy(last & (self.end_reasons != core.STEP_LIMIT))
         if last.any():
             self.finished += self.batch.finished()
             self.batch.start_next(last)

@@ -27,7 +27,7 @@ class Farms:
 
     def __init__(self, scenario, count):
         self.batch = core.FarmBatch(aquafarm_gym.find_scenario(scenario), count,
-                                    ["features", "rewards", "reasons", "legal", "started"])
+                                    ["features", "rewards", "end_reasons", "legal", "is_first"])
         buffers, width = self.batch.buffers, len(self.batch.feature_names)
         self.buffers, self.finished = buffers, []
         self.shapes = (jax.ShapeDtypeStruct((count, width), jnp.float32),
@@ -43,7 +43,7 @@ class Farms:
     def _now(self):
         legal = action_mask(self.buffers["legal"][:, 0]).astype(bool)
         return (self.buffers["features"][:, 0].copy(), legal, self.buffers["rewards"][:, 0].copy(),
-                self.buffers["reasons"] != 0)
+                self.buffers["end_reasons"] != 0)
 
     def _step(self, actions):
         self.batch.step(np.asarray(actions, np.uint8)[:, None])
@@ -85,8 +85,8 @@ def value(weights, features):
 
 def rollout(farms, weights, features, mask, key):
     """Plays HORIZON steps; returns the last observation and the rollout [T, N, …]."""
-    def one(carry, step_key):
-        features, mask = carry
+    def one(state, step_key):
+        features, mask = state
         actions = jax.random.categorical(step_key, log_probs(weights, features, mask))
         after, after_mask, rewards, over = farms.step(actions)
         return (after, after_mask), (features, mask, actions, REWARD_SCALE * rewards, over)

@@ -27,16 +27,16 @@ def played(scenario, steps, seed=5, episode=3):
     scenario = aquafarm_gym.find_scenario(scenario)
     farms = aquafarm_gym.LocalFarms(scenario, 1, hashes=True)
     farms.reset(seed, episode)
-    buffers, chance = farms.buffers, np.random.default_rng(1)
+    buffers, rng = farms.buffers, np.random.default_rng(1)
     kept = bags.Recorded(scenario, "x.bag: episode 3", seed, episode, [[10] * farms.agents],
                          [[np.float32(0)] * farms.agents], [int(buffers["hashes"][0])], [0])
     for _ in range(steps):
-        actions = chance.integers(0, 10, (1, farms.agents)).astype(np.uint8)
+        actions = rng.integers(0, 10, (1, farms.agents)).astype(np.uint8)
         farms.step(actions)
         kept.actions.append(actions[0].tolist())
         kept.rewards.append(list(buffers["rewards"][0].copy()))
         kept.hashes.append(int(buffers["hashes"][0]))
-        kept.reasons.append(int(buffers["reasons"][0]))
+        kept.reasons.append(int(buffers["end_reasons"][0]))
     return kept
 
 

@@ -110,8 +110,8 @@ class CoreTest(unittest.TestCase):
             self.assertEqual((scenario, hash(scenario), scenario.yaml),
                              (again, hash(again), again.yaml))
             self.assertNotEqual(scenario, core.Scenario.load(str(DATA / "reef.yaml")))
-            batch = core.FarmBatch(scenario, 2, ["rewards", "terms", "outcomes", "legal", "in_play",
-                                                 "reasons", "started", "hashes", "features"])
+            batch = core.FarmBatch(scenario, 2, ["rewards", "terms", "outcomes", "legal", "active",
+                                                 "end_reasons", "is_first", "hashes", "features"])
             self.assertEqual(batch, copy.deepcopy(batch))
             batch.reset(5)
             batch.start(np.array([False, True]), [0, 9], [0, 3], 1)
@@ -132,7 +132,7 @@ class CoreTest(unittest.TestCase):
         own, replay = np.zeros((4, 1), np.float32), np.zeros((2, 4, 1, 8), np.float32)
         batch.bind("rewards", own)
         batch.bind("terms", replay[1])
-        for array in (own, replay, batch.buffers["reasons"]):
+        for array in (own, replay, batch.buffers["end_reasons"]):
             with self.assertRaisesRegex(ValueError, "cannot resize an array that references"):
                 array.resize((1 << 20,), refcheck=False)
         batch.bind("rewards", np.zeros((4, 1), np.float32))
@@ -201,24 +201,44 @@ class CoreTest(unittest.TestCase):
 
     def test_rewards_are_the_sum_of_their_terms_and_finished_episodes_add_up(self):
         reef = core.Scenario.load(str(DATA / "reef.yaml"))
-        batch = core.FarmBatch(reef, 8, ["rewards", "terms", "reasons", "started"])
+        batch = core.FarmBatch(reef, 8, ["rewards", "terms", "end_reasons", "is_first"])
         batch.reset(2)
         returns, ended = np.zeros(8), 0
         for joint in actions_of(3, batch, 1500):
             batch.step(joint)
             buffers = batch.buffers
-            returns[buffers["started"] != 0] = 0
-            played = buffers["started"] == 0
+            returns[buffers["is_first"] != 0] = 0
+            played = buffers["is_first"] == 0
             terms = buffers["terms"].sum(axis=2, dtype=np.float32)
             np.testing.assert_allclose(buffers["rewards"][played], terms[played], atol=1e-4)
             returns += np.where(played, terms.sum(axis=1), 0)
             finished = batch.finished()
             self.assertEqual([one["farm"] for one in finished],
-                             list(np.flatnonzero(buffers["reasons"])))
+                             list(np.flatnonzero(buffers["end_reasons"])))
             for one in finished:
                 ended += 1
                 self.assertAlmostEqual(one["episode_return"], returns[one["farm"]], delta=0.5)
         self.assertGreater(ended, 8)
+
+    def test_former_names_of_buffers_work_with_a_warning(self):
+        former = {"in_play": "active", "reasons": "end_reasons", "started": "is_first"}
+        with self.assertWarnsRegex(DeprecationWarning, "^buffer 'in_play' is now 'active'; use"):
+            batch = core.FarmBatch(PAPER, 2, [*former, "rewards"])
+        self.assertEqual({*former.values(), "rewards"}, {*batch.buffers})
+        batch.reset(1)
+        for name, new in former.items():
+            with self.assertWarnsRegex(DeprecationWarning, f"^buffer '{name}' is now '{new}'; use"):
+                self.assertIs(batch.buffers[name], batch.buffers[new])
+            with self.assertWarns(DeprecationWarning):
+                self.assertIs(batch.buffers.get(name), batch.buffers[new])
+            self.assertIn(name, batch.buffers)
+        own = np.zeros(2, np.uint8)
+        with self.assertWarns(DeprecationWarning):
+            batch.bind("started", own)
+        self.assertIs(batch.buffers["is_first"], own)
+        with self.assertRaises(KeyError):
+            core.FarmBatch(PAPER, 2, ["rewards"]).buffers["started"]
+        self.assertNotIn("started", core.FarmBatch(PAPER, 2, ["rewards"]).buffers)
 
     def test_a_summary_has_the_entries_of_no_episode_and_each_has_a_column(self):
         batch = core.FarmBatch(core.Scenario.load(str(DATA / "reef.yaml")), 8)
@@ -257,7 +277,7 @@ class CoreTest(unittest.TestCase):
         self.assertLess(time.monotonic() - before, 60)
 
     def test_a_thousand_farms_make_millions_of_steps_a_second(self):
-        batch = core.FarmBatch(PAPER, 1024, ["rewards", "reasons", "started", "index"])
+        batch = core.FarmBatch(PAPER, 1024, ["rewards", "end_reasons", "is_first", "index"])
         batch.reset(1)
         actions = actions_of(1, batch, 64)
         rates = []

@@ -143,10 +143,10 @@ view: {mode: partial, monitoring_radius: 4, kinds: true}
             self.assertEqual(ours.metadata["autoreset_mode"], mode)
             seeds = [11, 5, 7, 2**62, 0]
             self.check_step(ours.reset(seed=seeds), theirs.reset(seed=seeds))
-            chance = np.random.default_rng(1)
+            rng = np.random.default_rng(1)
             ended = 0
             for _ in range(3 * SHORT):
-                actions = chance.integers(0, 10, 5)
+                actions = rng.integers(0, 10, 5)
                 one, other = ours.step(actions), theirs.step(actions)
                 for mine, yours in zip(one[1:4], other[1:4]):
                     np.testing.assert_array_equal(mine, yours)
@@ -183,7 +183,8 @@ view: {mode: partial, monitoring_radius: 4, kinds: true}
         mask = np.array([False, True, False])
         after, infos = env.reset(seed=9, options={"reset_mask": mask, "episode": 20})
         np.testing.assert_array_equal(after[~mask], before[~mask])
-        np.testing.assert_array_equal(infos["started"], mask)
+        np.testing.assert_array_equal(infos["is_first"], mask)
+        self.assertIs(infos["started"], infos["is_first"])  # its name in version 0.1.0
         alone = FarmEnv()
         expected = alone.reset(seed=9, options={"episode": 21})[0]
         np.testing.assert_array_equal(after[1], expected)
@@ -249,11 +250,11 @@ view: {mode: partial, monitoring_radius: 4, kinds: true}
         one = FarmParallelEnv(REEF)
         seen = envs.reset(seed=6)[0]
         alone = one.reset(seed=6, options={"episode": 1})[0]
-        chance = np.random.default_rng(1)
+        rng = np.random.default_rng(1)
         for _ in range(50):
             if not one.agents:
                 break
-            actions = chance.integers(0, 10, (3, 3))
+            actions = rng.integers(0, 10, (3, 3))
             seen, rewards, terminated, truncated, infos = envs.step(actions)
             alone, alone_rewards, *_ = one.step(
                 {agent: actions[1, one._number[agent]] for agent in one.agents})
@@ -337,9 +338,9 @@ view: {mode: partial, monitoring_radius: 4, kinds: true}
         self.assertEqual((envs.num_envs, envs.action_masks().shape), (6, (6, 10)))
         envs.seed(3)
         np.testing.assert_array_equal(envs.reset(), np.concatenate(teams.reset(seed=3)[0]))
-        chance = np.random.default_rng(2)
+        rng = np.random.default_rng(2)
         for step in range(1, 41):
-            actions = chance.integers(0, 10, 6)
+            actions = rng.integers(0, 10, 6)
             seen, rewards, dones, infos = envs.step(actions)
             expected, _, terminated, truncated, more = teams.step(actions.reshape(3, 2))
             np.testing.assert_array_equal(seen, np.concatenate(expected))

@@ -67,10 +67,10 @@ class GymTest(unittest.TestCase):
         local = FarmParallelEnv(REEF)
         ros = FarmParallelEnv(farms=RosFarms("/reef"))
         self.assert_same(local.reset(seed=1), ros.reset(seed=1))
-        chance = np.random.default_rng(2)
+        rng = np.random.default_rng(2)
         early = 0
         for _ in range(3000):
-            actions = {agent: int(chance.integers(10)) for agent in local.agents}
+            actions = {agent: int(rng.integers(10)) for agent in local.agents}
             one = local.step(actions)
             self.assert_same(one, ros.step(actions))
             self.assertEqual(local.agents, ros.agents)
@@ -91,7 +91,7 @@ class GymTest(unittest.TestCase):
         for actions in np.random.default_rng(3).integers(0, 10, (1200, 8)):
             one = local.step(actions)
             self.assert_same(one, ros.step(actions))
-            if one[4]["started"][0]:
+            if one[4]["is_first"][0]:
                 alone = single.reset(options={"episode": single._episodes.episode + 8})[0]
             else:
                 alone, reward, *_ = single.step(actions[0])
@@ -106,32 +106,32 @@ class GymTest(unittest.TestCase):
                                                    f"step_limit: {step_limit}", text))
                         for text in (paper, reef))
             self.check_ends_of_many(FarmVectorEnv(16, one), limited)
-            chance = np.random.default_rng(4)
+            rng = np.random.default_rng(4)
             single, pair = FarmEnv(one), FarmParallelEnv(two)
             single.reset(seed=1)
             ends = (False, False)
             while not any(ends):
-                *_, terminated, truncated, info = single.step(int(chance.integers(10)))
+                *_, terminated, truncated, info = single.step(int(rng.integers(10)))
                 ends = terminated, truncated
             self.assertEqual(ends, (not limited, limited))
             self.assertEqual(info["reason"] == core.STEP_LIMIT, limited)
             pair.reset(seed=1)
             while pair.agents:
                 _, _, terminated, truncated, infos = pair.step(
-                    {agent: int(chance.integers(10)) for agent in pair.agents})
+                    {agent: int(rng.integers(10)) for agent in pair.agents})
             self.assertEqual(any(truncated.values()), limited)
             for agent, info in infos.items():
                 self.assertNotEqual(terminated[agent], truncated[agent])
                 self.assertEqual(info["reason"] == core.STEP_LIMIT, limited)
 
     def check_ends_of_many(self, env, limited):
-        chance = np.random.default_rng(4)
+        rng = np.random.default_rng(4)
         env.reset(seed=1)
         before, ended = np.zeros(env.num_envs, bool), 0
         while ended < env.num_envs:
-            _, rewards, terminated, truncated, infos = env.step(chance.integers(0, 10,
+            _, rewards, terminated, truncated, infos = env.step(rng.integers(0, 10,
                                                                                 env.num_envs))
-            np.testing.assert_array_equal(infos["started"], before)  # begins in the next step
+            np.testing.assert_array_equal(infos["is_first"], before)  # begins in the next step
             self.assertFalse(rewards[before].any() or (terminated | truncated)[before].any())
             before = terminated | truncated
             self.assertFalse((terminated if limited else truncated).any())
@@ -144,10 +144,10 @@ class GymTest(unittest.TestCase):
     def test_resets_of_many_farms_play_no_episode_twice(self):
         env = FarmVectorEnv(4, "paper")
         env.reset(seed=1)
-        chance = np.random.default_rng(5)
+        rng = np.random.default_rng(5)
         played = []
         for i in range(6000):
-            infos = env.step(chance.integers(0, 10, 4))[4]
+            infos = env.step(rng.integers(0, 10, 4))[4]
             ended = {name: infos["summary"][name][infos["_summary"]] for name in infos["summary"]}
             played += list(zip(ended["seed"].tolist(), ended["episode"].tolist()))
             if i % 1999 == 1998:

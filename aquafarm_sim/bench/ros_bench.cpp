@@ -168,7 +168,7 @@ class FarmsDriver {
     aquafarm_msgs::Reset reset;
     reset.request.farms = kFarms;
     reset_.Call(reset);
-    call_.request.encodings = aquafarm_msgs::StepResult::INDEX;
+    call_.request.observation_types = aquafarm_msgs::StepResult::INDEX;
     call_.request.actions.resize(kFarms);
   }
   void Step() {

@@ -21,7 +21,7 @@ namespace {
 
 using aquafarm_sim::FarmServer;
 
-constexpr std::int32_t kMostFarms = 64;  // more take long
+constexpr std::int32_t kMaxFarms = 64;  // more take long
 
 std::unique_ptr<FarmServer> MakeServer() {
   aquafarm_sim::ServerOptions options;
@@ -71,7 +71,7 @@ void Execute(FarmServer& server, std::uint8_t service, const std::vector<std::ui
     case 1: {
       Reset call;
       call.request = Read<Reset::Request>(bytes);
-      if (call.request.farms > kMostFarms) return;
+      if (call.request.farms > kMaxFarms) return;
       return server.Reset(call.request, call.response);
     }
     case 2: {

@@ -326,10 +326,10 @@ TEST_F(EpisodeBag, AChunkOfAnySizeHasItsLine) {
     rosbag::Bag bag(path, rosbag::bagmode::Write);
     bag.setCompression(rosbag::compression::LZ4);
     bag.setChunkThreshold(600'000);
-    aquafarm::RandomStream chance({3, 0, aquafarm::RngStream::kExploration, 0});
+    aquafarm::RandomStream rng({3, 0, aquafarm::RngStream::kExploration, 0});
     aquafarm_msgs::SavedState saved;
     saved.data.resize(700'000);
-    for (auto& byte : saved.data) byte = static_cast<std::uint8_t>(chance.Below(256));
+    for (auto& byte : saved.data) byte = static_cast<std::uint8_t>(rng.Below(256));
     for (const double time : {1.0, 2.0}) bag.write("/ranch/saved_state", ros::Time(time), saved);
   }
   const std::string content = ContentOf(path);

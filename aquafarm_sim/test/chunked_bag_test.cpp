@@ -40,7 +40,7 @@ class ChunkedBagTest : public testing::Test {
 /// Writes messages of two topics, about 2 MB that lz4 cannot compress, and thus several chunks.
 template <typename Write>
 void WriteMessages(const Write& write) {
-  std::mt19937 chance(1);
+  std::mt19937 rng(1);
   nav_msgs::OccupancyGrid grid;
   diagnostic_msgs::KeyValue word;
   for (std::uint32_t i = 1; i <= 1000; ++i) {
@@ -48,7 +48,7 @@ void WriteMessages(const Write& write) {
     write("/ranch/word", ros::Time(i, 5), word);
     if (i % 10 != 0) continue;
     grid.data.resize(20'000 + i);
-    for (auto& cell : grid.data) cell = static_cast<std::int8_t>(chance());
+    for (auto& cell : grid.data) cell = static_cast<std::int8_t>(rng());
     write("/ranch/grid", ros::Time(i, 6), grid);
   }
 }
@@ -99,8 +99,8 @@ TEST_F(ChunkedBagTest, CanBeAppendedTo) {
 TEST_F(ChunkedBagTest, AMessageMayBeLargerThanAChunkAndItsBlocks) {
   nav_msgs::OccupancyGrid grid;
   grid.data.resize(5'000'000);
-  std::mt19937 chance(1);
-  for (auto& cell : grid.data) cell = static_cast<std::int8_t>(chance());
+  std::mt19937 rng(1);
+  for (auto& cell : grid.data) cell = static_cast<std::int8_t>(rng());
   ChunkedBag ours(path_);
   ours.Write("/ranch/grid", ros::Time(1), grid);
   ours.Write("/ranch/grid", ros::Time(1), grid);

@@ -59,12 +59,12 @@ class EpisodeBag : public testing::Test {
 
   // Takes random joint steps, the same in every call.
   static void Play(FarmServer& ranch, std::int32_t farms, int steps) {
-    aquafarm::RandomStream chance({3, 0, aquafarm::RngStream::kExploration, 0});
+    aquafarm::RandomStream rng({3, 0, aquafarm::RngStream::kExploration, 0});
     aquafarm_msgs::Step::Request request;
     for (int i = 0; i < steps; ++i) {
       request.actions.clear();
       for (std::int32_t k = 0; k < farms * ranch.agents(); ++k) {
-        request.actions.push_back(static_cast<std::uint8_t>(chance.Below(aquafarm::kActionCount)));
+        request.actions.push_back(static_cast<std::uint8_t>(rng.Below(aquafarm::kActionCount)));
       }
       ASSERT_TRUE(ranch.Step(request).ok);
     }

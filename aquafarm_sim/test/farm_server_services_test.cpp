@@ -17,10 +17,11 @@ using namespace test;  // NOLINT: the fixture
 using aquafarm_msgs::StepResult;
 
 aquafarm_msgs::Step::Response StepAll(FarmServer& ranch, const std::vector<std::uint8_t>& actions,
-                                      std::uint8_t encodings = 0, std::uint64_t sequence = 0) {
+                                      std::uint8_t observation_types = 0,
+                                      std::uint64_t sequence = 0) {
   aquafarm_msgs::Step::Request request;
   request.actions = actions;
-  request.encodings = encodings;
+  request.observation_types = observation_types;
   request.sequence = sequence;
   return ranch.Step(request);
 }
@@ -117,11 +118,11 @@ TEST(FarmServerServices, AStepForFarmsThatAnotherHasMovedIsStale) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Step::Request mine;
   mine.actions = {kNorth};
-  mine.turn = ResetTo(*ranch, 3).result.turn;
-  mine.turn = ranch->Step(mine).result.turn;
+  mine.state_id = ResetTo(*ranch, 3).result.state_id;
+  mine.state_id = ranch->Step(mine).result.state_id;
   aquafarm_msgs::SaveState saved;
   ranch->SaveState(saved.response);
-  mine.turn = ranch->Step(mine).result.turn;
+  mine.state_id = ranch->Step(mine).result.state_id;
   ASSERT_EQ(2U, StateOf(*ranch).step) << "its own steps are no others'";
   const std::vector<std::function<void()>> others{
       [&] {
@@ -144,7 +145,7 @@ TEST(FarmServerServices, AStepForFarmsThatAnotherHasMovedIsStale) {
     EXPECT_NE(std::string::npos, stale.message.find("another client has stepped or reset them"))
         << i;
     EXPECT_EQ(hash, StateOf(*ranch).hash) << i;
-    mine.turn = StepAll(*ranch, {kHold}).result.turn;
+    mine.state_id = StepAll(*ranch, {kHold}).result.state_id;
   }
 }
 
@@ -152,7 +153,7 @@ TEST(FarmServerServices, PausesAndBulletinsMakeNoStepStale) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Step::Request mine;
   mine.actions = {kNorth};
-  mine.turn = ResetTo(*ranch, 3).result.turn;
+  mine.state_id = ResetTo(*ranch, 3).result.state_id;
   for (const bool paused : {true, false}) {
     aquafarm_msgs::Pause pause;
     pause.request.paused = paused;
@@ -190,7 +191,7 @@ TEST(FarmServerServices, AJointStepHearsWhoIsInTheWayBeforeItIsStale) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Step::Request mine;
   mine.actions = {kNorth};
-  mine.turn = ResetTo(*ranch, 3).result.turn;
+  mine.state_id = ResetTo(*ranch, 3).result.state_id;
   const auto set_pace = [&](const char* pace) {
     aquafarm_msgs::SetPace call;
     call.request.pace = pace;
@@ -201,7 +202,7 @@ TEST(FarmServerServices, AJointStepHearsWhoIsInTheWayBeforeItIsStale) {
   EXPECT_EQ(Outcome::WRONG_PACE, ranch->Step(mine).code);
   set_pace("lockstep");
   EXPECT_EQ(Outcome::STALE, ranch->Step(mine).code);
-  mine.turn = ResetTo(*ranch, 3).result.turn;
+  mine.state_id = ResetTo(*ranch, 3).result.state_id;
   aquafarm_msgs::Claim::Response claim;
   ranch->Claim(0, "/agent", false, claim);
   aquafarm_msgs::Step::Request theirs;
@@ -259,7 +260,7 @@ TEST(FarmServerServices, FinishedEpisodesComeWithTheStepThatEndsThem) {
   EXPECT_EQ(1, last.truncated[1]);
   const auto next = StepAll(*ranch, {kNorth, kSouth}).result;
   EXPECT_TRUE(next.finished.empty());
-  EXPECT_EQ(1, next.started[0]);
+  EXPECT_EQ(1, next.is_first[0]);
   EXPECT_EQ(2U, StateOf(*ranch, 0).episode);
   EXPECT_EQ(3U, StateOf(*ranch, 1).episode);
 }
@@ -287,12 +288,12 @@ TEST(FarmServerServices, ResetChangesTheNumberOfFarmsAndStartsWhereAsked) {
   call.request.farms = 3;
   call.request.has_episode = true;
   call.request.episode = 100;
-  call.request.encodings = StepResult::INDEX;
+  call.request.observation_types = StepResult::INDEX;
   call.request.with_spec = true;
   ranch->Reset(call.request, call.response);
   EXPECT_TRUE(call.response.ok) << call.response.message;
   EXPECT_EQ(3, call.response.spec.farms);
-  EXPECT_EQ(std::vector<std::uint8_t>(3, 1), call.response.result.started);
+  EXPECT_EQ(std::vector<std::uint8_t>(3, 1), call.response.result.is_first);
   EXPECT_EQ(3U, call.response.result.index.size());
   EXPECT_EQ(102U, StateOf(*ranch, 2).episode);
 }
@@ -356,8 +357,8 @@ TEST(FarmServerServices, AResetOnlyIfOverLeavesAnEpisodeInProgressAlone) {
     EXPECT_TRUE(call.response.ok) << call.response.message;
     return call.response;
   };
-  const std::uint64_t turn = StepAll(*ranch, {kNorth}).result.turn;
-  EXPECT_EQ(turn, reset().result.turn);
+  const std::uint64_t state_id = StepAll(*ranch, {kNorth}).result.state_id;
+  EXPECT_EQ(state_id, reset().result.state_id);
   EXPECT_EQ(0U, reset().episode);
   EXPECT_EQ(1U, StateOf(*ranch).step);
   StepAll(*ranch, {kNorth});
@@ -462,11 +463,11 @@ TEST(FarmServerServices, AnIndexThatTheFarmHasNotIsRefused) {
   scenario.devices.count = 20;
   const auto ranch = MakeRanch(scenario);
   aquafarm_msgs::Reset call;
-  call.request.encodings = StepResult::INDEX;
+  call.request.observation_types = StepResult::INDEX;
   ranch->Reset(call.request, call.response);
   EXPECT_FALSE(call.response.ok);
   EXPECT_EQ(call.response.code, Outcome::BAD_VALUE);
-  call.request.encodings = StepResult::FEATURES;
+  call.request.observation_types = StepResult::FEATURES;
   ranch->Reset(call.request, call.response);
   EXPECT_TRUE(call.response.ok) << call.response.message;
 }

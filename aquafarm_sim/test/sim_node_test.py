@@ -124,7 +124,8 @@ class SimNodeTest(unittest.TestCase):
     def test_a_saved_state_resumes_with_equal_hashes(self):
         def play():
             return [call("step", actions=[direction, NORTH, EAST],
-                         encodings=StepResult.HASHES).result.hashes for direction in range(8)]
+                         observation_types=StepResult.HASHES).result.hashes
+                    for direction in range(8)]
         play()
         saved = call("save_state")
         self.assertTrue(saved.ok, saved.message)
@@ -155,9 +156,9 @@ class SimNodeTest(unittest.TestCase):
         self.assertEqual((5, 3), (following.seed, following.episode))
 
     def test_a_joint_step_is_repeated_by_its_sequence(self):
-        first = call("step", actions=[0, 0, 0], sequence=77, encodings=31)
+        first = call("step", actions=[0, 0, 0], sequence=77, observation_types=31)
         self.assertTrue(first.ok, first.message)
-        self.assertEqual(first, call("step", actions=[0, 0, 0], sequence=77, encodings=31))
+        self.assertEqual(first, call("step", actions=[0, 0, 0], sequence=77, observation_types=31))
         self.assertEqual(1, state().step)
         self.assertEqual(24, len(first.result.terms))
         self.assertEqual(3, len(first.result.energy))

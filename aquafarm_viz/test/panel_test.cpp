@@ -81,8 +81,8 @@ TEST(RanchModel, KeepsTheWholeCurveInBoundedRoom) {
     model.Take(Training(episode, static_cast<float>(episode)));
   }
   const auto& curve = model.curve();
-  EXPECT_GE(curve.size(), RanchModel::kMostPoints / 2);
-  EXPECT_LT(curve.size(), RanchModel::kMostPoints);
+  EXPECT_GE(curve.size(), RanchModel::kMaxPoints / 2);
+  EXPECT_LT(curve.size(), RanchModel::kMaxPoints);
   EXPECT_EQ(curve.front().episode, 1.0);
   EXPECT_GT(curve.back().episode, 19900.0);
   for (std::size_t i = 1; i < curve.size(); ++i) {
@@ -351,7 +351,7 @@ TEST(RanchWidget, SaysWithinFiveSecondsThatThePlanIsNoLongerRenewed) {
                   "still planning (that may take more than 60 s)."),
       std::string::npos)
       << text();
-  model.HearPlanNode(now);
+  model.MarkPlanNodePresent(now);
   EXPECT_EQ(text().find("NOT RENEWED"), std::string::npos);
 }
 
@@ -374,7 +374,7 @@ TEST(RanchWidget, ShowsTablesAndTheCurve) {
                         static_cast<float>(100.0 * std::sin(episode / 10.0))));
   }
   widget.Refresh();
-  widget.Tell("<b>paused</b>");  // must not be parsed as markup
+  widget.ShowMessage("<b>paused</b>");  // must not be parsed as markup
   const QImage after = widget.grab().toImage();
   const QRgb curve = qRgb(0xff, 0xd4, 0x3b);
   EXPECT_EQ(Count(before, curve), 0);

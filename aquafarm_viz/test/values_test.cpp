@@ -145,8 +145,8 @@ TEST(Values, SignsPutOnAMapAreThoseDrawnOnIt) {
     for (std::size_t i = 0; i < values.actions.size(); ++i) values.actions[i] = i % 12;
     const Layout layout = MakeLayout(side, side, {640, 640});
     cv::Mat3b drawn(layout.map.size());
-    cv::RNG chance(1);
-    chance.fill(drawn, cv::RNG::UNIFORM, 0, 256);
+    cv::RNG rng(1);
+    rng.fill(drawn, cv::RNG::UNIFORM, 0, 256);
     const cv::Mat below = drawn.clone();
     cv::Mat put = drawn.clone();
     const MoveSigns signs(layout);

@@ -156,9 +156,9 @@ bool WriteRequested(const Arguments& arguments, const SavedPolicy& saved,
     if (stop_requested) return false;
   }
   if (!arguments.values.empty()) {
-    const RolloutValues values =
-        PlayValues(scenario, saved.encodings, make_policy, arguments.seed, arguments.route_episode,
-                   arguments.values_episodes, &stop_requested, arguments.values_discount);
+    const RolloutValues values = PlayValues(
+        scenario, saved.observation_types, make_policy, arguments.seed, arguments.route_episode,
+        arguments.values_episodes, &stop_requested, arguments.values_discount);
     if (stop_requested) return false;
     WriteValues(arguments.values, values, saved.path, *scenario);
   }
@@ -167,7 +167,7 @@ bool WriteRequested(const Arguments& arguments, const SavedPolicy& saved,
                   arguments.values_discount);
   }
   if (!arguments.route.empty()) {
-    const Route route = TraceRoute(scenario, saved.encodings, make_policy, arguments.seed,
+    const Route route = TraceRoute(scenario, saved.observation_types, make_policy, arguments.seed,
                                    arguments.route_episode, &stop_requested);
     if (stop_requested) return false;
     WriteRoute(arguments.route, route, spec);
@@ -177,11 +177,11 @@ bool WriteRequested(const Arguments& arguments, const SavedPolicy& saved,
 
 ExitCode Run(Arguments arguments) {
   const SavedPolicy saved = FindPolicy(arguments.policy);
-  arguments.environment.encodings = saved.encodings;
+  arguments.environment.observation_types = saved.observation_types;
   arguments.scenario.name = ScenarioOf(arguments, saved);
   if (ReadsTokens(saved.checkpoint)) {  // tokens are cheaper than states
     arguments.scenario.tokens = true;
-    arguments.environment.encodings &= static_cast<std::uint8_t>(~kStatesBit);
+    arguments.environment.observation_types &= static_cast<std::uint8_t>(~kStatesBit);
   }
   const auto scenario = arguments.scenario.Load();
   RefuseForFamily(arguments, *scenario);

@@ -25,7 +25,7 @@ struct Arguments {
   std::string output;
   std::int32_t storms{2000};
   std::int32_t bulletins{20};
-  std::int32_t judges{2000};
+  std::int32_t scoring{2000};
   std::int32_t first_year{2010};
   double within_km{300.0};
   double lead_h{24.0};
@@ -190,7 +190,7 @@ Json RunAverse(Arguments& arguments) {
   for (std::int32_t i = 0; i < arguments.storms; ++i) {
     const TrialStorm storm =
         DrawTrial(tracks, trials.place(), arguments.trial, static_cast<std::uint64_t>(i));
-    const AverseResult result = trials.CompareAverse(storm, arguments.judges);
+    const AverseResult result = trials.CompareAverse(storm, arguments.scoring);
     groups.push_back(result.track);
     mean.push_back(result.mean);
     gain.push_back(result.mean - result.averse);
@@ -200,9 +200,9 @@ Json RunAverse(Arguments& arguments) {
   std::printf(
       "mean of the worst 5 %% of the losses, %d storms, %d judging members\n"
       "  without --risk-averse %.3f; with it less by %.4f +- %.4f; other plan in %d storms\n",
-      arguments.storms, arguments.judges, MeanOf(mean).mean, by.mean, by.half, changed);
+      arguments.storms, arguments.scoring, MeanOf(mean).mean, by.mean, by.half, changed);
   return {{"storms", arguments.storms},
-          {"judges", arguments.judges},
+          {"judges", arguments.scoring},
           {"members", arguments.request.members},
           {"seed", arguments.trial.seed},
           {"tracks", tracks.size()},
@@ -294,7 +294,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                "storms: the true winds are the bulletin's with an error, instead of the reverse");
   app.add_flag("!--no-reacting", arguments.reacts,
                "storms: leave out the policies that plan again at each bulletin");
-  app.add_option("--judges", arguments.judges, "averse: members that compare the plans")
+  app.add_option("--judges", arguments.scoring, "averse: members that compare the plans")
       ->check(CLI::Range(100, 20000));
   app.add_option("-o,--output", arguments.output, "write the results as JSON");
 }

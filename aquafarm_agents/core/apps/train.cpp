@@ -112,15 +112,15 @@ RunReport TrainHere(Arguments& arguments, ProcessGroup* group) {
   const RunOptions& options = arguments.options;
   EnvironmentOptions& environment = arguments.environment;
   if (environment.farms == 0) environment.farms = DefaultFarms(options.algorithm);
-  const auto make = [&](std::uint8_t encodings) {
-    environment.encodings = encodings;
+  const auto make = [&](std::uint8_t observation_types) {
+    environment.observation_types = observation_types;
     return MakeLocalFarms(arguments.scenario.Load(), environment);
   };
   if (group == nullptr) return Train(options, make, Print, &stop_requested);
-  const auto make_share = [&](std::uint8_t encodings) {
+  const auto make_share = [&](std::uint8_t observation_types) {
     const FarmShare share = ShareOfRank(environment.farms, group->rank(), group->size());
     EnvironmentOptions own = environment;
-    own.encodings = encodings;
+    own.observation_types = observation_types;
     own.farms /= group->size();
     return MakeLocalFarms(arguments.scenario.Load(), own, share);
   };

@@ -24,7 +24,7 @@ constexpr const char* kLstmOptions =
 
 std::shared_ptr<const Scenario> Paper(bool all_features) {
   Scenario scenario = LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml");
-  scenario.view.waterways = scenario.view.courses = all_features;
+  scenario.view.routes = scenario.view.lookahead_risk = all_features;
   return std::make_shared<const Scenario>(std::move(scenario));
 }
 

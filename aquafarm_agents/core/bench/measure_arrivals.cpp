@@ -38,7 +38,7 @@ std::shared_ptr<const Scenario> MakeScenario() {
   scenario.ports.count = 2;
   scenario.devices.count = 3;
   scenario.step_limit = kSteps;
-  scenario.view.waterways = true;
+  scenario.view.routes = true;
   scenario.view.disaster_slots = 1;
   scenario.view.forecast_leads_h = {0.25F, 0.5F};  // 5 and 10 steps
   scenario.hash = HashScenario(scenario);
@@ -58,16 +58,16 @@ class Farms {
     results_.rewards.resize(n);
     results_.outcomes.resize(n);
     results_.legal.resize(n);
-    results_.in_play.resize(n);
-    results_.reasons.resize(n);
-    results_.started.resize(n);
+    results_.active.resize(n);
+    results_.end_reasons.resize(n);
+    results_.is_first.resize(n);
     results_.features.resize(n * static_cast<std::size_t>(batch_.encoder().feature_count()));
     output_.rewards = results_.rewards.data();
     output_.outcomes = results_.outcomes.data();
     output_.legal = results_.legal.data();
-    output_.in_play = results_.in_play.data();
-    output_.reasons = results_.reasons.data();
-    output_.started = results_.started.data();
+    output_.active = results_.active.data();
+    output_.end_reasons = results_.end_reasons.data();
+    output_.is_first = results_.is_first.data();
     output_.features = results_.features.data();
   }
   EnvironmentSpec spec() const {
@@ -117,9 +117,9 @@ class Farms {
     }
     if (!changed_) return;
     changed_ = false;
-    const std::vector<std::uint8_t> started = results_.started;
+    const std::vector<std::uint8_t> is_first = results_.is_first;
     batch_.Write(output_);
-    results_.started = started;
+    results_.is_first = is_first;
   }
 
   FarmBatch batch_;
@@ -154,7 +154,7 @@ Played Play(const std::shared_ptr<const Scenario>& scenario, Policy& policy, Arr
       policy.Act(*results, actions);
       results = &farms.Step(actions);
       for (std::size_t i = 0; i < over.size(); ++i) {
-        if (over[i] || results->reasons[i] == 0) continue;
+        if (over[i] || results->end_reasons[i] == 0) continue;
         over[i] = true;
         records[i] = farms.batch().farm(static_cast<std::int32_t>(i)).record();
       }

@@ -18,7 +18,7 @@ class TrainingLoop {
   TrainingLoop(const char* algorithm, const std::string& options,
                std::shared_ptr<const Scenario> scenario, std::int32_t farms, int first_steps)
       : environment_(std::move(scenario),
-                     {farms, FindAlgorithm(algorithm).encodings(options), false, 1}),
+                     {farms, FindAlgorithm(algorithm).observation_types(options), false, 1}),
         learner_(FindAlgorithm(algorithm).make(environment_.spec(), 1, options)),
         results_(&environment_.Reset(1)) {
     Run(first_steps);

@@ -20,9 +20,9 @@ struct Chain {
     spec.state_count = 3;
     results.rewards = {0.0F};
     results.legal = {kAllActions};
-    results.reasons = {0};
-    results.started = {1};
-    results.in_play = {1};
+    results.end_reasons = {0};
+    results.is_first = {1};
+    results.active = {1};
     results.index = {0};
   }
   template <typename L>
@@ -30,9 +30,9 @@ struct Chain {
                       EndReason reason = EndReason::kNone) {
     results.index[0] = state;
     results.rewards[0] = reward;
-    results.reasons[0] = static_cast<std::uint8_t>(reason);
+    results.end_reasons[0] = static_cast<std::uint8_t>(reason);
     learner.Step(results, 0.0, actions);
-    results.started[0] = 0;
+    results.is_first[0] = 0;
     return actions[0];
   }
 };

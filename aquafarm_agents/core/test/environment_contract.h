@@ -21,8 +21,8 @@ class RandomActions {
  public:
   explicit RandomActions(std::uint64_t seed)
       : stream_(StreamKey{seed, 0, RngStream::kExploration, 0}) {}
-  std::vector<std::uint8_t> Next(std::size_t entries) {
-    std::vector<std::uint8_t> actions(entries);
+  std::vector<std::uint8_t> Next(std::size_t slots) {
+    std::vector<std::uint8_t> actions(slots);
     for (auto& action : actions) action = static_cast<std::uint8_t>(stream_.Below(kActionCount));
     return actions;
   }
@@ -31,18 +31,14 @@ class RandomActions {
   RandomStream stream_;
 };
 
-inline std::size_t Entries(const EnvironmentSpec& spec) {
-  return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
-}
-
 /// Compares all fields except `finished`.
 inline void ExpectSame(const StepResults& a, const StepResults& b) {
   EXPECT_EQ(a.rewards, b.rewards);
   EXPECT_EQ(a.outcomes, b.outcomes);
   EXPECT_EQ(a.legal, b.legal);
-  EXPECT_EQ(a.reasons, b.reasons);
-  EXPECT_EQ(a.started, b.started);
-  EXPECT_EQ(a.in_play, b.in_play);
+  EXPECT_EQ(a.end_reasons, b.end_reasons);
+  EXPECT_EQ(a.is_first, b.is_first);
+  EXPECT_EQ(a.active, b.active);
   EXPECT_EQ(a.hashes, b.hashes);
   EXPECT_EQ(a.index, b.index);
   EXPECT_EQ(a.features, b.features);
@@ -51,12 +47,12 @@ inline void ExpectSame(const StepResults& a, const StepResults& b) {
 
 inline void ExpectFirstObservations(const EnvironmentSpec& spec, const StepResults& results) {
   const auto farms = static_cast<std::size_t>(spec.farms);
-  EXPECT_EQ(results.started, std::vector<std::uint8_t>(farms, 1));
-  EXPECT_EQ(results.reasons, std::vector<std::uint8_t>(farms, 0));
-  EXPECT_EQ(results.rewards, std::vector<float>(Entries(spec), 0.0F));
-  EXPECT_EQ(results.legal.size(), Entries(spec));
-  EXPECT_EQ(results.in_play, std::vector<std::uint8_t>(Entries(spec), 1));
-  EXPECT_EQ(results.outcomes.size(), Entries(spec));
+  EXPECT_EQ(results.is_first, std::vector<std::uint8_t>(farms, 1));
+  EXPECT_EQ(results.end_reasons, std::vector<std::uint8_t>(farms, 0));
+  EXPECT_EQ(results.rewards, std::vector<float>(SlotCount(spec), 0.0F));
+  EXPECT_EQ(results.legal.size(), SlotCount(spec));
+  EXPECT_EQ(results.active, std::vector<std::uint8_t>(SlotCount(spec), 1));
+  EXPECT_EQ(results.outcomes.size(), SlotCount(spec));
   EXPECT_EQ(results.hashes.size(), farms);
   EXPECT_TRUE(results.finished.empty());
 }
@@ -81,41 +77,41 @@ inline void ExpectStepsKeepTheRules(Environment& environment, std::uint64_t seed
   std::vector<double> returns(farms, 0.0);
   std::vector<std::int32_t> length(farms, 0);
   for (int step = 0; step < steps; ++step) {
-    const auto actions = random.Next(Entries(spec));
+    const auto actions = random.Next(SlotCount(spec));
     const StepResults& now = environment.Step(actions);
     std::size_t ended = 0;
     for (std::size_t farm = 0; farm < farms; ++farm) {
-      EXPECT_EQ(now.started[farm] != 0, last.reasons[farm] != 0) << "next-step reset";
+      EXPECT_EQ(now.is_first[farm] != 0, last.end_reasons[farm] != 0) << "next-step reset";
       for (std::size_t agent = 0; agent < static_cast<std::size_t>(spec.agents); ++agent) {
         const std::size_t k = farm * static_cast<std::size_t>(spec.agents) + agent;
         if (!now.index.empty()) {
           EXPECT_LT(now.index[k], spec.state_count);
         }
-        if (now.started[farm] != 0) {
-          EXPECT_EQ(now.in_play[k], 1) << "every agent begins";
+        if (now.is_first[farm] != 0) {
+          EXPECT_EQ(now.active[k], 1) << "every agent begins";
         } else {
-          EXPECT_LE(now.in_play[k], last.in_play[k]) << "none comes back";
+          EXPECT_LE(now.active[k], last.active[k]) << "none comes back";
           EXPECT_EQ(now.outcomes[k] == static_cast<std::uint8_t>(Outcome::kOutOfPlay),
-                    last.in_play[k] == 0);
+                    last.active[k] == 0);
         }
-        if (now.started[farm] != 0) {
+        if (now.is_first[farm] != 0) {
           EXPECT_EQ(now.rewards[k], 0.0F);
         } else if (one_ship_masks) {
           ExpectMaskHeld(actions[k], last.legal[k], now.outcomes[k]);
         }
         returns[farm] += static_cast<double>(now.rewards[k]);
       }
-      if (now.started[farm] != 0) {
+      if (now.is_first[farm] != 0) {
         returns[farm] = 0.0;
         length[farm] = 0;
       } else {
         ++length[farm];
       }
-      if (now.reasons[farm] == 0) continue;
+      if (now.end_reasons[farm] == 0) continue;
       ASSERT_LT(ended, now.finished.size());
       const EpisodeSummary& result = now.finished[ended++];
       EXPECT_EQ(result.farm, static_cast<std::int32_t>(farm)) << "finished in farm order";
-      EXPECT_EQ(static_cast<std::uint8_t>(result.reason), now.reasons[farm]);
+      EXPECT_EQ(static_cast<std::uint8_t>(result.reason), now.end_reasons[farm]);
       EXPECT_EQ(result.seed, seed);
       const auto expected = next_episode.emplace(result.farm, farm).first;
       EXPECT_EQ(result.episode, expected->second) << "farm i plays i, i + N, i + 2N";
@@ -137,7 +133,7 @@ inline void ExpectSeedsReproduce(Environment& environment, int steps) {
     RandomActions random(7);
     run.push_back(environment.Reset(11, 3).hashes);
     for (int i = 0; i < steps; ++i) {
-      run.push_back(environment.Step(random.Next(Entries(environment.spec()))).hashes);
+      run.push_back(environment.Step(random.Next(SlotCount(environment.spec()))).hashes);
     }
   }
   EXPECT_EQ(runs[0], runs[1]);
@@ -147,14 +143,14 @@ inline void ExpectSeedsReproduce(Environment& environment, int steps) {
 inline void ExpectSaveAndLoadContinue(Environment& environment, int steps) {
   RandomActions random(13);
   environment.Reset(5);
-  const std::size_t entries = Entries(environment.spec());
-  for (int i = 0; i < steps; ++i) environment.Step(random.Next(entries));
-  const StepResults standing = environment.Step(random.Next(entries));
+  const std::size_t slots = SlotCount(environment.spec());
+  for (int i = 0; i < steps; ++i) environment.Step(random.Next(slots));
+  const StepResults standing = environment.Step(random.Next(slots));
   const std::string saved = environment.Save();
   std::vector<std::vector<std::uint8_t>> actions;
   std::vector<StepResults> expected;
   for (int i = 0; i < steps; ++i) {
-    actions.push_back(random.Next(entries));
+    actions.push_back(random.Next(slots));
     expected.push_back(environment.Step(actions.back()));
   }
   environment.Reset(99);
@@ -170,7 +166,7 @@ inline void ExpectBadBytesAreRefused(Environment& environment) {
   const std::string saved = environment.Save();
   EXPECT_THROW(environment.Load("no farm at all"), InputError);
   EXPECT_THROW(environment.Load(saved.substr(0, saved.size() / 2)), InputError);
-  const std::vector<std::uint8_t> actions(Entries(environment.spec()), 0);
+  const std::vector<std::uint8_t> actions(SlotCount(environment.spec()), 0);
   const StepResults after = environment.Step(actions);
   environment.Reset(5);
   ExpectSame(environment.Step(actions), after);
@@ -193,9 +189,9 @@ inline void RunEnvironmentContract(Environment& environment, int steps = 600,
   ExpectSeedsReproduce(environment, 50);
   ExpectSaveAndLoadContinue(environment, 60);
   ExpectBadBytesAreRefused(environment);
-  const std::vector<std::uint8_t> too_few(Entries(spec) - 1, 0);
+  const std::vector<std::uint8_t> too_few(SlotCount(spec) - 1, 0);
   EXPECT_THROW(environment.Step(too_few), LogicError);
-  EXPECT_THROW(environment.Step(std::vector<std::uint8_t>(Entries(spec), kActionCount + 1)),
+  EXPECT_THROW(environment.Step(std::vector<std::uint8_t>(SlotCount(spec), kActionCount + 1)),
                LogicError);
   EXPECT_FALSE(environment.ConsumeRestart());
 }

@@ -23,11 +23,11 @@ struct ExpectedSarsa final : TableLearner {
     for (std::size_t i = 0; i < actions.size(); ++i) {
       const std::size_t farm = i / static_cast<std::size_t>(table_.agents);
       const auto agent = static_cast<std::int32_t>(i % static_cast<std::size_t>(table_.agents));
-      const auto allowed = AllowedOf(now.legal[i]);
+      const auto allowed = ActionMaskOf(now.legal[i]);
       const std::size_t row = table_.Row(agent, now.index[i]);
       const float* const values = &table_.values[row];
       const Best best = BestOf(values, allowed);
-      if (now.started[farm] == 0 && pending_[i] != kNoAction) {
+      if (now.is_first[farm] == 0 && pending_[i] != kNoAction) {
         float sum = 0;
         for (unsigned a = 0; a < 10; ++a) sum += (allowed >> a & 1U) != 0 ? values[a] : 0;
         const float mean = sum / static_cast<float>(__builtin_popcount(allowed));
@@ -36,7 +36,7 @@ struct ExpectedSarsa final : TableLearner {
         value += learning_rate_ * (now.rewards[i] + gamma * next - value);
       }
       actions[i] = explorer_.Choose(values, allowed, best, i);
-      pending_[i] = now.in_play[i] == 0 ? kNoAction : row + actions[i];
+      pending_[i] = now.active[i] == 0 ? kNoAction : row + actions[i];
     }
   }
 };
@@ -45,6 +45,6 @@ std::unique_ptr<Learner> Make(const EnvironmentSpec& spec, std::uint64_t seed,
                               const std::string& options) {
   return std::make_unique<ExpectedSarsa>(spec, seed, options);
 }
-std::uint8_t Encodings(const std::string&) { return kIndexBit; }
+std::uint8_t ObservationTypes(const std::string&) { return kIndexBit; }
 const bool kRegistered = RegisterLearner({"expected_sarsa", "tabular Expected SARSA", true, 4000000,
-                                          Encodings, Make, MakeTabularPolicy});
+                                          ObservationTypes, Make, MakeTabularPolicy});

@@ -394,8 +394,8 @@ def draw_route(path, label, route_file):
     _explain_route(all_axes[-1], axes, bool(panels))
     _disasters(axes, route["steps"])
     cells = np.array([step["cell"] for step in route["steps"]])
-    chance = np.random.Generator(np.random.PCG64(1))  # separates repeated visits of a cell
-    shown = cells + chance.uniform(-0.18, 0.18, cells.shape)
+    rng = np.random.Generator(np.random.PCG64(1))  # separates repeated visits of a cell
+    shown = cells + rng.uniform(-0.18, 0.18, cells.shape)
     axes.plot(shown[:, 0], shown[:, 1], color="black", linewidth=0.6, alpha=0.6, zorder=4)
     points = axes.scatter(shown[:, 0], shown[:, 1], c=np.arange(len(shown)), cmap="plasma", s=26,
                           zorder=5)

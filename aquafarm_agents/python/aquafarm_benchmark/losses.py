@@ -79,10 +79,10 @@ def _intervals(losses, starts):
     groups = index.max() + 1
     if groups < 2:
         return [[float("nan")] * 2] * 2
-    chance = np.random.Generator(np.random.PCG64(1))
+    rng = np.random.Generator(np.random.PCG64(1))
     order = np.argsort(-losses, kind="stable")
     losses, index = losses[order], index[order]
-    tails = [tail(losses, np.bincount(chance.integers(groups, size=groups),
+    tails = [tail(losses, np.bincount(rng.integers(groups, size=groups),
                                       minlength=groups)[index]) for _ in range(_RESAMPLES)]
     return np.percentile(tails, [2.5, 97.5], axis=0).T.tolist()
 

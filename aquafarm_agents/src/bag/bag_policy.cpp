@@ -66,7 +66,7 @@ class PolicyProbe {
         name_(saved.checkpoint.algorithm),
         scenario_(ScenarioOf(spec, path)),
         farms_(scenario_, 1),
-        environment_(scenario_, {1, saved.encodings, false, 1}),
+        environment_(scenario_, {1, saved.observation_types, false, 1}),
         policy_(agents::MakePolicy(saved, environment_.spec())),
         elsewhere_(agents::MakePolicy(saved, environment_.spec())) {
     aquafarm_sim::NamingBag(path, [&] { farms_.Reset(spec.seed, spec.episode, {}); });
@@ -138,7 +138,7 @@ class PolicyProbe {
   }
 
   std::vector<agents::GreedyAction> Moves() {
-    return agents::GreedyActions(farms_.farm(0), elsewhere_->encodings(), *elsewhere_);
+    return agents::GreedyActions(farms_.farm(0), elsewhere_->observation_types(), *elsewhere_);
   }
 
   EpisodeChoices Summary() const {
@@ -187,7 +187,7 @@ class PolicyProbe {
                ", expected [0, 10]";
       }
       actions.push_back(action);
-      if (!ships[i].in_play) continue;
+      if (!ships[i].active) continue;
       ++episode_.choices;
       episode_.agreed += choice_.actions[i] == action ? 1 : 0;
     }
@@ -291,9 +291,9 @@ std::map<Key, FarmSpec> ReadSpecs(const rosbag::Bag& bag, const std::string& top
 /// Reason why a policy gives no maps of values and moves on farms of a scenario; empty if it does.
 std::string WhyNoMaps(const agents::SavedPolicy& saved, const aquafarm::Scenario& scenario) {
   const std::string& name = saved.checkpoint.algorithm;
-  if (saved.encodings == 0)
+  if (saved.observation_types == 0)
     return name + " reads no observation, so it has no values or greedy actions";
-  if ((saved.encodings & agents::kStatesBit) != 0) {
+  if ((saved.observation_types & agents::kStatesBit) != 0) {
     return name + " plans on the whole farm and has no values and best moves of cells";
   }
   return agents::WhyNoBestMoves(scenario);

@@ -43,9 +43,9 @@ constexpr std::uint32_t kQueue = 10;
 
 class AgentDriver::Impl {
  public:
-  Impl(const ros::NodeHandle& node, std::uint8_t encodings, AgentDriverOptions options)
+  Impl(const ros::NodeHandle& node, std::uint8_t observation_types, AgentDriverOptions options)
       : options_(options),
-        encodings_(encodings),
+        observation_types_(observation_types),
         node_(node),
         get_(node, options.wait_limit_s, options.stop),
         reset_(node, options.wait_limit_s, options.stop) {
@@ -63,7 +63,7 @@ class AgentDriver::Impl {
     farm_ = std::make_unique<aquafarm::Farm>(scenario_);
     encoder_ = std::make_unique<aquafarm::Encoder>(*scenario_);
     spec_ = MakeSpec(*scenario_, *encoder_, 1);
-    if ((encodings_ & kIndexBit) != 0 && spec_.state_count == 0) {
+    if ((observation_types_ & kIndexBit) != 0 && spec_.state_count == 0) {
       throw InputError("policy: scenario " + spec_.scenario_name + " has too many states for it");
     }
     SizeResults();
@@ -110,15 +110,16 @@ class AgentDriver::Impl {
     results_.rewards.resize(agents);
     results_.outcomes.resize(agents);
     results_.legal.assign(agents, aquafarm::kMoveMask);
-    results_.in_play.assign(agents, 0);
-    results_.in_play[static_cast<std::size_t>(options_.ship)] = 1;
-    results_.reasons.resize(1);
-    results_.started.assign(1, 1);
-    if ((encodings_ & kIndexBit) != 0) results_.index.resize(agents);
-    if ((encodings_ & kFeaturesBit) != 0) {
+    results_.active.assign(agents, 0);
+    results_.active[static_cast<std::size_t>(options_.ship)] = 1;
+    results_.end_reasons.resize(1);
+    results_.is_first.assign(1, 1);
+    if ((observation_types_ & kIndexBit) != 0) results_.index.resize(agents);
+    if ((observation_types_ & kFeaturesBit) != 0) {
       results_.features.resize(agents * static_cast<std::size_t>(spec_.feature_count));
     }
-    if ((encodings_ & kPlanesBit) != 0) results_.planes.resize(agents * encoder_->planes_size());
+    if ((observation_types_ & kPlanesBit) != 0)
+      results_.planes.resize(agents * encoder_->planes_size());
   }
 
   void Board() {
@@ -166,9 +167,9 @@ class AgentDriver::Impl {
   void Look(const FarmState& message) {
     if (farm_->seed() != message.seed || farm_->episode() != message.episode) {
       farm_->Reset(message.seed, message.episode);
-      results_.started[0] = 1;
+      results_.is_first[0] = 1;
     }
-    if (message.step == 0) results_.started[0] = 1;  // also if the same episode is restarted
+    if (message.step == 0) results_.is_first[0] = 1;  // also if the same episode is restarted
     const auto ship = static_cast<std::size_t>(options_.ship);
     aquafarm_sim::FromMsg(message, *scenario_, farm_->layout(), view_);
     results_.legal[ship] = message.ships[ship].legal_actions;
@@ -185,7 +186,7 @@ class AgentDriver::Impl {
 
   // Paced farms start their next episode by themselves.
   void StartNext(const FarmState& over) {
-    results_.started[0] = 1;
+    results_.is_first[0] = 1;
     if (over.pace == FarmState::PACED) return;
     aquafarm_msgs::Reset reset;
     reset.request.only_if_over = true;
@@ -194,7 +195,7 @@ class AgentDriver::Impl {
   }
 
   void Send(const FarmState& now, std::uint8_t action) {
-    results_.started[0] = 0;
+    results_.is_first[0] = 0;
     acted_in_ = {now.seed, now.episode};
     if (action < aquafarm::kMoveCount) {
       aquafarm_msgs::Move move;
@@ -235,7 +236,7 @@ class AgentDriver::Impl {
   }
 
   const AgentDriverOptions options_;
-  const std::uint8_t encodings_;
+  const std::uint8_t observation_types_;
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
   ServiceLink get_;
@@ -263,9 +264,9 @@ class AgentDriver::Impl {
   ros::Subscriber observation_;
 };
 
-AgentDriver::AgentDriver(const ros::NodeHandle& node, std::uint8_t encodings,
+AgentDriver::AgentDriver(const ros::NodeHandle& node, std::uint8_t observation_types,
                          AgentDriverOptions options)
-    : impl_(std::make_unique<Impl>(node, encodings, options)) {}
+    : impl_(std::make_unique<Impl>(node, observation_types, options)) {}
 
 AgentDriver::~AgentDriver() = default;
 

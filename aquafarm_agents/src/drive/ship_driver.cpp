@@ -35,7 +35,7 @@ constexpr double kRetryPeriod_s = 0.1;
 
 class ShipDriver::Impl {
  public:
-  Impl(const ros::NodeHandle& node, std::uint8_t encodings, ShipDriverOptions options)
+  Impl(const ros::NodeHandle& node, std::uint8_t observation_types, ShipDriverOptions options)
       : options_(std::move(options)),
         node_(node),
         get_(node, options_.wait_limit_s, options_.stop),
@@ -50,7 +50,7 @@ class ShipDriver::Impl {
         aquafarm::ParseScenario(spec.scenario_yaml, spec.scenario_name));
     EnvironmentOptions mirror;
     mirror.farms = spec.farms;
-    mirror.encodings = encodings;
+    mirror.observation_types = observation_types;
     mirror_ = std::make_unique<LocalEnvironment>(std::move(scenario), mirror);
     if (options_.ship >= spec.agents || options_.ship < -1) {
       throw InputError("~ship: got " + std::to_string(options_.ship) +
@@ -193,9 +193,9 @@ class ShipDriver::Impl {
   std::optional<std::pair<std::uint64_t, std::uint64_t>> seen_;  // episode and step
 };
 
-ShipDriver::ShipDriver(const ros::NodeHandle& node, std::uint8_t encodings,
+ShipDriver::ShipDriver(const ros::NodeHandle& node, std::uint8_t observation_types,
                        ShipDriverOptions options)
-    : impl_(std::make_unique<Impl>(node, encodings, options)) {}
+    : impl_(std::make_unique<Impl>(node, observation_types, options)) {}
 
 ShipDriver::~ShipDriver() = default;
 

@@ -33,9 +33,9 @@ static_assert(int{StepResult::TERMS} == int{aquafarm::kTermsField});
 
 constexpr double kRetryPeriod_s = 0.1;
 // Max restarts without a completed episode. More indicate another client on the same farms.
-constexpr int kMostRestarts = 20;
+constexpr int kMaxRestarts = 20;
 // Observation types that the sim node also provides.
-constexpr int kFarmEncodings =
+constexpr int kFarmObservationTypes =
     aquafarm::agents::kIndexBit | aquafarm::agents::kFeaturesBit | aquafarm::agents::kPlanesBit;
 
 EnvironmentSpec FromMsg(const aquafarm_msgs::FarmSpec& message) {
@@ -75,8 +75,9 @@ std::string Seconds(double seconds) {
 RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOptions options)
     : node_(node),
       options_(std::move(options)),
-      encodings_(static_cast<std::uint8_t>((options_.encodings & kFarmEncodings) |
-                                           (options_.hashes ? int{StepResult::HASHES} : 0))),
+      observation_types_(
+          static_cast<std::uint8_t>((options_.observation_types & kFarmObservationTypes) |
+                                    (options_.hashes ? int{StepResult::HASHES} : 0))),
       limit_(options_.call_limit_s),
       // Must not repeat the numbers of an earlier client of the same farms.
       sequence_(ros::WallTime::now().toNSec()) {
@@ -89,14 +90,14 @@ RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOption
   spec_ = FromMsg(now.spec);
   if (options_.farms > 0) spec_.farms = options_.farms;
   share_ = aquafarm::agents::WholeOr(options_.share, spec_.farms);
-  own_rewards_ = aquafarm::agents::WantsOwnRewards(options_.encodings, spec_);
-  if (own_rewards_) encodings_ |= StepResult::TERMS;
-  if ((options_.encodings & aquafarm::agents::kIndexBit) != 0 && spec_.state_count == 0) {
+  own_rewards_ = aquafarm::agents::WantsOwnRewards(options_.observation_types, spec_);
+  if (own_rewards_) observation_types_ |= StepResult::TERMS;
+  if ((options_.observation_types & aquafarm::agents::kIndexBit) != 0 && spec_.state_count == 0) {
     throw InputError(
         "scenario " + spec_.scenario_name +
         ": too many states for a table, expected a learner with a network; use algorithm auto");
   }
-  if ((options_.encodings & aquafarm::agents::kStatesBit) != 0) {
+  if ((options_.observation_types & aquafarm::agents::kStatesBit) != 0) {
     copies_ = std::make_unique<aquafarm::FarmBatch>(
         std::make_shared<const aquafarm::Scenario>(
             aquafarm::ParseScenario(spec_.scenario_yaml, spec_.scenario_name)),
@@ -118,7 +119,7 @@ const StepResults& RosEnvironment::Reset(std::uint64_t seed, std::uint64_t first
   reset.request.episode = first_episode + static_cast<std::uint64_t>(share_.first);
   reset.request.stride = static_cast<std::uint32_t>(share_.total);
   reset.request.farms = spec_.farms;
-  reset.request.encodings = encodings_;
+  reset.request.observation_types = observation_types_;
   reset.request.sequence = ++sequence_;
   reset.request.with_spec = true;
   CallOrThrow(reset_client_, names::kReset, reset);
@@ -140,9 +141,9 @@ const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions
   AQUAFARM_CHECK_LE(*std::max_element(actions.begin(), actions.end()),
                     static_cast<int>(aquafarm::Action::kHold));
   step_.request.actions.assign(actions.begin(), actions.end());
-  step_.request.encodings = encodings_;
+  step_.request.observation_types = observation_types_;
   step_.request.sequence = ++sequence_;
-  step_.request.turn = turn_;
+  step_.request.state_id = state_id_;
   double waited_s = 0.0;
   ros::WallTime lost_since;
   for (;;) {
@@ -179,7 +180,7 @@ void RosEnvironment::Take(StepResult& result) {
       results_.states[static_cast<std::size_t>(i)] = &copies_->farm(i);
     }
   }
-  turn_ = result.turn;
+  state_id_ = result.state_id;
   aquafarm::VisitStepFields([](const aquafarm::StepField&, auto& to, auto& from) { to.swap(from); },
                             results_, result);
   if (own_rewards_) aquafarm::agents::UseOwnRewards(results_);
@@ -201,7 +202,7 @@ const StepResults& RosEnvironment::Load(const std::string& bytes) {
   if (share_.total != spec_.farms) Reset(seed_);  // states hold no distance of episodes
   aquafarm_msgs::LoadState load;
   load.request.data.assign(own.begin(), own.end());
-  load.request.encodings = encodings_;
+  load.request.observation_types = observation_types_;
   CallOrThrow(load_client_, names::kLoadState, load);
   if (!load.response.ok) throw InputError("sim node: load refused: " + load.response.message);
   ReadProgress();
@@ -239,7 +240,7 @@ aquafarm_msgs::GetState::Response RosEnvironment::GetState(std::int32_t farm, bo
 }
 
 void RosEnvironment::Restart(const std::string& why) {
-  if (++restarts_ > kMostRestarts) {
+  if (++restarts_ > kMaxRestarts) {
     throw EnvironmentLost("sim node: another client keeps changing the farms: " + why);
   }
   const std::uint64_t next = NextRound();

@@ -78,7 +78,7 @@ PolicyParams ReadPolicyParams(const ros::NodeHandle& node) {
 ExitCode Evaluate(const ros::NodeHandle& node, const PolicyParams& params,
                   const agents::SavedPolicy& saved) {
   RosEnvironmentOptions options;
-  options.encodings = saved.encodings;
+  options.observation_types = saved.observation_types;
   options.wait_limit_s = params.sim_timeout_s;
   options.stop = &stop_requested;
   options.on_notice = [](const std::string& text) { ROS_WARN("%s", text.c_str()); };
@@ -102,7 +102,7 @@ ExitCode Evaluate(const ros::NodeHandle& node, const PolicyParams& params,
   return evaluation.complete ? ExitCode::kOk : ExitCode::kInterrupted;
 }
 
-void TellEnded(std::size_t successes, std::size_t episodes) {
+void ReportEnded(std::size_t successes, std::size_t episodes) {
   std::printf("%zu of %zu episodes ended with every device delivered\n", successes, episodes);
 }
 
@@ -114,26 +114,27 @@ double ValuesPeriod_s(const PolicyParams& params) {
 // Runs the agent of one ship, which receives only that ship's observation.
 ExitCode ActAlone(const ros::NodeHandle& node, const PolicyParams& params,
                   const agents::SavedPolicy& saved) {
-  AgentDriver driver(node, saved.encodings, {params.ship, params.sim_timeout_s, &stop_requested});
+  AgentDriver driver(node, saved.observation_types,
+                     {params.ship, params.sim_timeout_s, &stop_requested});
   const auto policy = MakeAndWarn(saved, driver.spec());
   ValuesPublisher values(node, ValuesPeriod_s(params));
   values.Offer(agents::MakePolicy(saved, driver.spec()));
   ROS_INFO("driving ship %d with %s", params.ship, saved.path.c_str());
   const auto ended =
       driver.Drive(*policy, static_cast<std::uint64_t>(params.seed), params.episodes);
-  TellEnded(static_cast<std::size_t>(std::count(ended.begin(), ended.end(), true)), ended.size());
+  ReportEnded(static_cast<std::size_t>(std::count(ended.begin(), ended.end(), true)), ended.size());
   return ExitCode::kOk;
 }
 
 ExitCode Act(const ros::NodeHandle& node, const PolicyParams& params,
              const agents::SavedPolicy& saved) {
-  const bool needs_whole_farm = (saved.encodings & agents::kStatesBit) != 0;
+  const bool needs_whole_farm = (saved.observation_types & agents::kStatesBit) != 0;
   if (params.ship >= 0 && !needs_whole_farm) return ActAlone(node, params, saved);
   ShipDriverOptions options;
   options.ship = params.ship;
   options.wait_limit_s = params.sim_timeout_s;
   options.stop = &stop_requested;
-  ShipDriver driver(node, saved.encodings, options);
+  ShipDriver driver(node, saved.observation_types, options);
   const auto policy = MakeAndWarn(saved, driver.spec());
   ValuesPublisher values(node, ValuesPeriod_s(params));
   values.Offer(agents::MakePolicy(saved, driver.spec()));
@@ -142,7 +143,7 @@ ExitCode Act(const ros::NodeHandle& node, const PolicyParams& params,
       driver.Drive(*policy, static_cast<std::uint64_t>(params.seed), params.episodes);
   std::size_t successes = 0;
   for (const aquafarm::EpisodeSummary& result : ended) successes += result.Success() ? 1 : 0;
-  TellEnded(successes, ended.size());
+  ReportEnded(successes, ended.size());
   return ExitCode::kOk;
 }
 

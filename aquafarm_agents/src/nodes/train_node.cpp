@@ -212,14 +212,14 @@ agents::RunReport Train(ros::NodeHandle& node, TrainParams params, agents::Proce
   ValuesPublisher values(node, params.values_period_s);
   params.environment.stop = &stop_requested;
   params.environment.on_notice = [&reporter](const std::string& text) { reporter.Warn(text); };
-  const auto make = [&node, &params](std::uint8_t encodings) {
+  const auto make = [&node, &params](std::uint8_t observation_types) {
     RosEnvironmentOptions options = params.environment;
-    options.encodings = encodings;
+    options.observation_types = observation_types;
     return std::make_unique<RosEnvironment>(node, options);
   };
-  const auto make_share = [&node, &params, group](std::uint8_t encodings) {
+  const auto make_share = [&node, &params, group](std::uint8_t observation_types) {
     RosEnvironmentOptions options = params.environment;
-    options.encodings = encodings;
+    options.observation_types = observation_types;
     options.share = agents::ShareOfRank(options.farms, group->rank(), group->size());
     options.farms /= group->size();
     return std::make_unique<RosEnvironment>(node, options);

@@ -63,8 +63,8 @@ void ValuesPublisher::Refresh(const std::function<std::unique_ptr<Policy>()>& ma
 }
 
 void ValuesPublisher::Offer(std::unique_ptr<Policy> policy) {
-  const std::uint8_t encodings = policy->encodings();
-  if (encodings == 0 || (encodings & aquafarm::agents::kStatesBit) != 0) return;
+  const std::uint8_t observation_types = policy->observation_types();
+  if (observation_types == 0 || (observation_types & aquafarm::agents::kStatesBit) != 0) return;
   const aquafarm::MutexLock lock(mutex_);
   policy_ = std::move(policy);
 }
@@ -118,8 +118,8 @@ void ValuesPublisher::Look(Policy& policy) {
   aquafarm_msgs::SaveState save;
   call(names::kSaveState, save);
   farms_->Load({save.response.data.begin(), save.response.data.end()});
-  const auto moves =
-      aquafarm::agents::GreedyActions(farms_->farm(0), policy.encodings(), policy, &ending_);
+  const auto moves = aquafarm::agents::GreedyActions(farms_->farm(0), policy.observation_types(),
+                                                     policy, &ending_);
   if (ending_) return;
   std_msgs::Header header;
   header.stamp = ros::Time::now();

@@ -36,6 +36,11 @@ std::uint64_t CheckEpisode(py::handle episode) {
   return WholeNumber(episode, "FarmBatch: episode", 0, kAnyNumber, "number episodes from 0");
 }
 
+// Returns the name that a buffer has now, with a warning for one of version 0.1.0.
+std::string CurrentName(const std::string& name) {
+  return py::module_::import("aquafarm_core._names").attr("current")(name).cast<std::string>();
+}
+
 // Converts a statistic to what Python gets: a number, or the name of a reason.
 template <typename T>
 T ForPython(T value) {
@@ -62,7 +67,7 @@ Batch::Batch(std::shared_ptr<const Scenario> scenario, py::handle farms,
       batch_(scenario_, CheckFarms(farms), threads_),
       types_(BufferTypes(batch_)) {
   for (const std::string& name : write) {
-    const BufferType& type = TypeOf(name);
+    const BufferType& type = TypeOf(CurrentName(name));
     py::array array(py::dtype(type.dtype), type.shape);
     std::memset(array.mutable_data(), 0, static_cast<std::size_t>(array.nbytes()));
     Keep(type, std::move(array));
@@ -71,7 +76,7 @@ Batch::Batch(std::shared_ptr<const Scenario> scenario, py::handle farms,
 
 void Batch::Bind(const std::string& name, const py::array& array) {
   const Turn turn(busy_);
-  const BufferType& type = TypeOf(name);
+  const BufferType& type = TypeOf(CurrentName(name));
   if (!Fits(array, type)) {
     throw InputError(name + ": got " + Describe(array) + ", expected writeable row-major " +
                      Describe(type.dtype, type.shape));

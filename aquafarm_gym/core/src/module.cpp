@@ -124,8 +124,8 @@ void DefineBatch(py::module_& module) {
 
 `buffers` holds the arrays named in `write`; reset and step write into them and copy nothing.
 N farms, S agents: rewards float32 [N, S], terms float32 [N, S, len(TERMS)], energy float32 [N, S]
-(kWh), distance float32 [N, S] (km), outcomes uint8 [N, S], legal uint16 [N, S], in_play uint8
-[N, S], reasons uint8 [N], started uint8 [N], hashes uint64 [N], index uint32 [N, S],
+(kWh), distance float32 [N, S] (km), outcomes uint8 [N, S], legal uint16 [N, S], active uint8
+[N, S], end_reasons uint8 [N], is_first uint8 [N], hashes uint64 [N], index uint32 [N, S],
 features float32 [N, S, F], planes uint8 [N, S, P, H, W].
 A farm whose reason is not 0 ignores the action of the next step and starts its next episode.)")
       .def(py::init([](std::shared_ptr<Scenario> scenario, const py::object& farms,
@@ -133,7 +133,7 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
              return std::make_unique<Batch>(std::move(scenario), farms, write, threads);
            }),
            py::arg("scenario"), py::arg("farms") = 1,
-           py::arg("write") = std::vector<std::string>{"rewards", "reasons", "started"},
+           py::arg("write") = std::vector<std::string>{"rewards", "end_reasons", "is_first"},
            py::arg("threads") = 1)
       .def("bind", &Batch::Bind, py::arg("name"), py::arg("array"),
            "Writes into this array from now on: the caller's memory, such as a replay's.")
@@ -154,7 +154,11 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
       .def("load", &Batch::Load, py::arg("data"), "Continues saved farms bit for bit.")
       .def("__eq__", &Batch::Equals, py::is_operator())
       .def(py::pickle([](const Batch& batch) { return batch.State(); }, &Batch::FromState))
-      .def_property_readonly("buffers", &Batch::buffers)
+      .def_property_readonly(
+          "buffers",
+          [](const Batch& batch) {
+            return py::module_::import("aquafarm_core._names").attr("Buffers")(batch.buffers());
+          })
       .def_property_readonly("farms", [](const Batch& b) { return b.batch().farms(); })
       .def_property_readonly("agents", [](const Batch& b) { return b.batch().agents(); })
       .def_property_readonly("scenario", &Batch::scenario)

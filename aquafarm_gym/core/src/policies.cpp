@@ -145,8 +145,8 @@ class BatchPolicy {
 
   void Begin(py::handle seed) {
     const Turn turn(busy_, "Policy");
-    constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
-    policy_->Begin(WholeNumber(seed, "Policy: seed", 0, kMost, "pass a seed of this range"),
+    constexpr std::uint64_t kMax = std::numeric_limits<std::uint64_t>::max();
+    policy_->Begin(WholeNumber(seed, "Policy: seed", 0, kMax, "pass a seed of this range"),
                    spec_.farms);
   }
 
@@ -187,8 +187,9 @@ class BatchPolicy {
 
  private:
   void Allocate() {
-    const std::uint8_t bits = policy_->encodings() & (agents::kIndexBit | agents::kFeaturesBit |
-                                                      agents::kPlanesBit | agents::kOwnRewardsBit);
+    const std::uint8_t bits =
+        policy_->observation_types() &
+        (agents::kIndexBit | agents::kFeaturesBit | agents::kPlanesBit | agents::kOwnRewardsBit);
     if ((bits & agents::kIndexBit) != 0 && spec_.state_count == 0) {
       throw InputError("Policy: scenario " + spec_.scenario_name +
                        " has too many states for a table, expected a policy of a network");
@@ -196,7 +197,7 @@ class BatchPolicy {
     StepShape shape = sample_.shape();
     shape.farms = static_cast<std::size_t>(spec_.farms);
     SizeStepFields(shape, bits, results_, output_);
-    if ((policy_->encodings() & agents::kStatesBit) == 0) return;
+    if ((policy_->observation_types() & agents::kStatesBit) == 0) return;
     copies_ = std::make_unique<FarmBatch>(sample_.farm(0).shared_scenario(), spec_.farms);
     results_.states.resize(shape.farms);
   }

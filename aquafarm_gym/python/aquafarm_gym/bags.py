@@ -130,7 +130,7 @@ def replay(recorded: Recorded, observation: str = "features") -> list[Replayed]:
         for what, got, kept in (("rewards", buffers["rewards"][0].tolist() if step else [],
                                  [float(one) for one in recorded.rewards[step]] if step else []),
                                 ("hash", int(buffers["hashes"][0]), recorded.hashes[step]),
-                                ("reason", int(buffers["reasons"][0]), recorded.reasons[step])):
+                                ("reason", int(buffers["end_reasons"][0]), recorded.reasons[step])):
             if got != kept:
                 raise ValueError(f"{recorded.where}: step {step}: {what}: got {got} in the replay, "
                                  f"expected {kept}; was it recorded by aquafarm {core.VERSION}?")

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from aquafarm_gym import rendering, spaces
 from aquafarm_gym.episodes import Episodes, check_options, check_seed
-from aquafarm_gym.farms import ENCODINGS, LocalFarms
+from aquafarm_gym.farms import OBSERVATIONS, LocalFarms
 from aquafarm_gym.rendering import Pictures, Window, check_render_mode, html_of
 from aquafarm_gym.single_farm import info_at, observation_at
 
@@ -28,7 +28,7 @@ def one_agent(farms: Any) -> Any:
 def observation_of(farms: Any, observation: str) -> npt.NDArray[Any]:
     """Returns the array of an observation; raises ValueError if the farms do not write it."""
     if observation not in farms.buffers:
-        has = ", ".join(name for name in ENCODINGS if name in farms.buffers)
+        has = ", ".join(name for name in OBSERVATIONS if name in farms.buffers)
         raise ValueError(f"observation: got '{observation}', but the farms given write {has}")
     array: npt.NDArray[Any] = farms.buffers[observation]
     return array
@@ -96,12 +96,12 @@ class FarmEnv(gymnasium.Env[Any, Any]):
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         if not self.action_space.contains(action):
             raise ValueError(f"action: got {action!r}, expected a whole number in [0, 9]")
-        if self._buffers["reasons"][0] != 0:
+        if self._buffers["end_reasons"][0] != 0:
             raise gymnasium.error.ResetNeeded("step: the episode is over; reset first")
         self._actions[0, 0] = action
         self.farms.step(self._actions)
         self._show()
-        reason = int(self._buffers["reasons"][0])
+        reason = int(self._buffers["end_reasons"][0])
         truncated = reason == core.STEP_LIMIT
         return (self._observe(), float(self._buffers["rewards"][0, 0]),
                 reason != 0 and not truncated, truncated, self._info())

@@ -113,7 +113,7 @@ def evaluate(learner: Learner, scenario: core.Scenario, observation: str, episod
     for episode in range(episodes):
         farms.reset(FIRST_EVALUATION_SEED + seed, episode)
         starts.add(int(farms.buffers["hashes"][0]))
-        while not farms.buffers["reasons"][0]:
+        while not farms.buffers["end_reasons"][0]:
             mask = spaces.action_mask(farms.buffers["legal"][0, 0])
             now = np.int64(seen[0, 0]) if observation == "index" else seen[0, 0].copy()
             farms.step(np.array([[learner.act(now, mask)]], np.uint8))

@@ -15,8 +15,8 @@ import aquafarm_core as core
 import numpy as np
 import numpy.typing as npt
 
-ENCODINGS: tuple[str, ...] = ("index", "features", "planes")
-ALWAYS: tuple[str, ...] = ("rewards", "outcomes", "legal", "in_play", "reasons", "started")
+OBSERVATIONS: tuple[str, ...] = ("index", "features", "planes")
+ALWAYS: tuple[str, ...] = ("rewards", "outcomes", "legal", "active", "end_reasons", "is_first")
 
 
 def find_scenario(scenario: core.Scenario | str | pathlib.Path) -> core.Scenario:
@@ -39,11 +39,12 @@ def find_scenario(scenario: core.Scenario | str | pathlib.Path) -> core.Scenario
     raise ValueError(f"scenario: got '{scenario}', {expected}")
 
 
-def check_encoding(encoding: str, state_count: int, name: str) -> None:
-    """Raises ValueError for an unknown encoding, and for `index` if a farm has too many states."""
-    if encoding not in ENCODINGS:
-        raise ValueError(f"observation: got '{encoding}', expected one of: {', '.join(ENCODINGS)}")
-    if encoding == "index" and state_count == 0:
+def check_observation(observation: str, state_count: int, name: str) -> None:
+    """Raises ValueError for an unknown type, and for `index` if a farm has too many states."""
+    if observation not in OBSERVATIONS:
+        raise ValueError(f"observation: got '{observation}', expected one of: "
+                         + ", ".join(OBSERVATIONS))
+    if observation == "index" and state_count == 0:
         raise ValueError(f"observation: got 'index', but {name} has too many states for a table; "
                          "expected features or planes")
 
@@ -79,7 +80,7 @@ class LocalFarms(Farms):
     def __init__(self, scenario: core.Scenario | str | pathlib.Path = "paper", farms: int = 1,
                  observation: str = "features", hashes: bool = False, threads: int = 1) -> None:
         scenario = find_scenario(scenario)
-        check_encoding(observation, core.FarmBatch(scenario).state_count, scenario.name)
+        check_observation(observation, core.FarmBatch(scenario).state_count, scenario.name)
         write = [*ALWAYS, observation] + (["hashes"] if hashes else [])
         self.scenario = scenario
         self.batch = core.FarmBatch(scenario, farms, write, threads)

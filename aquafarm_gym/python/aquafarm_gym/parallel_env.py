@@ -106,10 +106,10 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
                                  "[0, 9]")
             joint[0, self._number[agent]] = action
         self.farms.step(joint)
-        reason = int(self._buffers["reasons"][0])
+        reason = int(self._buffers["end_reasons"][0])
         truncated = reason == core.STEP_LIMIT
         over = reason != 0 and not truncated
-        delivered = self._buffers["in_play"][0] == 0
+        delivered = self._buffers["active"][0] == 0
         terminations = self._of_agents(lambda i: bool(over or delivered[i]))
         results = (self._of_agents(self._observe),
                    self._of_agents(lambda i: float(self._buffers["rewards"][0, i])), terminations,

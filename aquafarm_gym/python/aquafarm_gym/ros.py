@@ -18,7 +18,7 @@ from aquafarm_msgs.msg import Outcome, StepResult
 from aquafarm_msgs.srv import GetState, Reset, Step
 from rospy.impl.tcpros_base import TCPROSTransport
 
-from aquafarm_gym.farms import Farms, check_encoding
+from aquafarm_gym.farms import Farms, check_observation
 
 RETRY_PERIOD_S: float = 0.1
 MASTER_LIMIT_S: float = 5.0
@@ -92,36 +92,37 @@ class RosFarms(Farms):
                           for name, kind in (("step", Step), ("reset", Reset),
                                              ("get_state", GetState))}
         spec = self._call("get_state", farm=0, with_spec=True).spec
-        check_encoding(observation, spec.state_count, spec.scenario_name)
+        check_observation(observation, spec.state_count, spec.scenario_name)
         self.yaml = spec.scenario_yaml
         scenario = core.Scenario.parse(self.yaml, spec.scenario_name)
         # The arrays of a batch in this process, which this object fills instead.
         arrays = core.FarmBatch(
             scenario, farms,
-            write=["rewards", "outcomes", "legal", "in_play", "reasons", "started", observation]
+            write=["rewards", "outcomes", "legal", "active", "end_reasons", "is_first", observation]
             + (["hashes"] if hashes else []))
         super().__init__(scenario, farms, spec.state_count, arrays.feature_names)
-        self.buffers: dict[str, npt.NDArray[Any]] = dict(arrays.buffers)
-        self._encodings = BITS[observation] | (StepResult.HASHES if hashes else 0)
+        self.buffers: dict[str, npt.NDArray[Any]] = arrays.buffers
+        self._observation_types = BITS[observation] | (StepResult.HASHES if hashes else 0)
         # Random start, so that the numbers differ from those of earlier clients of this node.
         self._sequence = itertools.count(int.from_bytes(os.urandom(7), "little") + 1)
-        self._turn: int | None = None  # of the last response; None: needs a reset
+        self._state_id: int | None = None  # of the last response; None: needs a reset
         self._finished: list[dict[str, Any]] = []
 
     def reset(self, seed: int, first_episode: int = 0) -> None:
         """As FarmBatch.reset."""
-        self._turn = None
+        self._state_id = None
         answer = self._call("reset", has_seed=True, seed=seed, has_episode=True,
-                            episode=first_episode, farms=self.farms, encodings=self._encodings,
+                            episode=first_episode, farms=self.farms,
+                            observation_types=self._observation_types,
                             sequence=next(self._sequence))
         self._take(answer.result)
 
     def step(self, actions: npt.NDArray[np.uint8]) -> None:
         """As FarmBatch.step."""
-        if self._turn is None:
+        if self._state_id is None:
             raise ValueError("step: got no reset before, expected one")
         answer = self._call("step", sequence=next(self._sequence), actions=actions.tobytes(),
-                            encodings=self._encodings, turn=self._turn)
+                            observation_types=self._observation_types, state_id=self._state_id)
         self._take(answer.result)
 
     def finished(self) -> list[dict[str, Any]]:
@@ -138,7 +139,7 @@ class RosFarms(Farms):
             got = getattr(result, name)
             flat = np.frombuffer(got, np.uint8) if isinstance(got, bytes) else got
             array.reshape(-1)[:] = flat
-        self._turn = result.turn
+        self._state_id = result.state_id
         self._finished = [
             {**{key: getattr(one, key) for key in core.NO_EPISODE},
              "reason": core.REASONS[one.reason], "success": bool(one.success)}
@@ -154,7 +155,7 @@ class RosFarms(Farms):
                     return answer
                 why = answer.message
                 if answer.code == Outcome.STALE:
-                    self._turn = None
+                    self._state_id = None
                     raise ConnectionError(f"sim node: its farms changed ({why}); reset to continue")
                 if answer.code not in (Outcome.PAUSED, Outcome.CLAIMED, Outcome.SHUTTING_DOWN):
                     raise ValueError(f"sim node: {name} refused: {why}")

@@ -48,7 +48,7 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         self._observation = array.reshape(-1, *array.shape[2:])
         self._dtype = np.int64 if observation == "index" else array.dtype
         self._rewards, self._legal = buffers["rewards"].reshape(-1), buffers["legal"].reshape(-1)
-        self._reasons = buffers["reasons"]
+        self._reasons = buffers["end_reasons"]
         self._actions = np.zeros((self.farms.farms, self._agents), np.uint8)
         self._episodes = Episodes()
         super().__init__(self.farms.farms * self._agents,

@@ -20,7 +20,7 @@ def observation_at(name: str, array: npt.NDArray[Any], agent: int) -> Any:
 def info_at(farms: Any, agent: int) -> dict[str, Any]:
     """Returns the info of an agent after reset and step."""
     buffers = farms.buffers
-    over = buffers["reasons"][0] != 0
+    over = buffers["end_reasons"][0] != 0
     summary = summary_of(farms.finished()[0]) if over else NO_SUMMARY.copy()
     return {"action_mask": spaces.action_mask(buffers["legal"][0, agent]),
             "outcome": int(buffers["outcomes"][0, agent]), "reason": summary["reason"],

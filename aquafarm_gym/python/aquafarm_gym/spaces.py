@@ -41,11 +41,11 @@ def action_space() -> spaces.Discrete:
     return spaces.Discrete(N_ACTIONS)
 
 
-def observation_space(farms: Any, encoding: str) -> spaces.Space[Any]:
+def observation_space(farms: Any, observation: str) -> spaces.Space[Any]:
     """Returns a Discrete for `index`, a bounded Box for `features` and `planes`."""
-    if encoding == "index":
+    if observation == "index":
         return spaces.Discrete(farms.state_count)
-    if encoding == "features":
+    if observation == "features":
         bounds = np.array([feature_bounds(name) for name in farms.feature_names], np.float32)
         return spaces.Box(bounds[:, 0], bounds[:, 1], dtype=np.float32)
     return spaces.Box(0, 255, (farms.plane_count, farms.height, farms.width), np.uint8)
@@ -57,9 +57,9 @@ def action_mask(legal: npt.ArrayLike) -> npt.NDArray[np.int8]:
     return np.unpackbits(bits, axis=-1, count=N_ACTIONS, bitorder="little").view(np.int8)
 
 
-def state_space(farms: Any, encoding: str) -> spaces.Space[Any]:
+def state_space(farms: Any, observation: str) -> spaces.Space[Any]:
     """Returns the space of the observations of all agents of a farm."""
-    own = observation_space(farms, encoding)
+    own = observation_space(farms, observation)
     if isinstance(own, spaces.Discrete):
         return spaces.MultiDiscrete([int(own.n)] * farms.agents)
     assert isinstance(own, spaces.Box)

@@ -79,7 +79,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         buffers = self.farms.buffers
         self._observation = self._agents_of(observation_of(self.farms, self.observation))
         self._all_rewards = buffers["rewards"]
-        self._reasons, self._started = buffers["reasons"], buffers["started"].view(bool)
+        self._reasons, self._is_first = buffers["end_reasons"], buffers["is_first"].view(bool)
         self._legal = self._agents_of(buffers["legal"])
         self._outcomes = self._agents_of(buffers["outcomes"])
         self._actions = np.zeros((self.num_envs, self.farms.agents), np.uint8)
@@ -197,7 +197,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
                 "reset them with options={'reset_mask': mask} first")
         self._actions[...] = actions.reshape(self._actions.shape)
         self.farms.step(self._actions)
-        self._begun += self._started
+        self._begun += self._is_first
         over = self._reasons != 0
         truncated = self._reasons == core.STEP_LIMIT
         rewards = self._rewards()
@@ -245,7 +245,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         infos = {"action_mask": spaces.action_mask(self._legal),
                  "outcome": self._outcomes.astype(np.int64),
                  "reason": self._reasons.astype(np.int64), "is_success": success,
-                 "started": self._started.copy(), "summary": summary}
+                 "is_first": self._is_first.copy(), "summary": summary}
+        infos["started"] = infos["is_first"]  # its name in version 0.1.0
         infos.update(self._more_infos())
         infos.update({f"_{name}": self._everywhere for name in infos})
         infos["_summary"] = over
@@ -285,7 +286,7 @@ class FarmVectorEnv(VectorBase):
     its next episode: in the next step, whose action it ignores (the default), in the same step, or
     only by reset with a reset_mask. With copy=False observations and rewards are the arrays that
     the farms write; the next step overwrites them. infos has the same keys at every step: those of
-    FarmEnv as arrays [N, …], and `started`, each with its mask `_action_mask` …. `summary` is valid
+    FarmEnv as arrays [N, …], and `is_first`, each with its mask `_action_mask` …. `summary` is valid
     where `_summary` is True and 0 elsewhere. In the mode SameStep, infos also contain `final_obs`
     and `final_info` when an episode ends.
     """
@@ -309,7 +310,7 @@ class TeamVectorEnv(VectorBase):
     """N farms with S ships each as joint steps: actions [N, S], observations [N, S, …].
 
     The reward is the sum over the agents. infos["agent_rewards"], float32 [N, S], contains the
-    reward of each agent. infos["in_play"], bool [N, S], is False for a delivered self-propelled
+    reward of each agent. infos["active"], bool [N, S], is False for a delivered self-propelled
     device. Other results are as in FarmVectorEnv, with S entries per farm.
     """
 
@@ -330,5 +331,6 @@ class TeamVectorEnv(VectorBase):
         return np.asarray(self._all_rewards.sum(axis=1))
 
     def _more_infos(self) -> dict[str, Any]:
-        return {"agent_rewards": self._all_rewards.copy(),
-                "in_play": self.farms.buffers["in_play"].astype(bool)}
+        active = self.farms.buffers["active"].astype(bool)
+        return {"agent_rewards": self._all_rewards.copy(), "active": active,
+                "in_play": active}  # its name in version 0.1.0

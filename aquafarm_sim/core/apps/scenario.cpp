@@ -157,8 +157,8 @@ void RefuseUnused(const Arguments& arguments, const Scenario& made) {
 std::string Learner(const Scenario& made) {
   if (made.AgentCount() > 1) return " algorithm:=auto";
   const std::uint64_t states = Encoder(made).state_count();
-  constexpr std::uint64_t kMost = 100'000'000;
-  if (states == 0 || states > kMost) {  // ten values per state: beyond a table of 4 GB
+  constexpr std::uint64_t kMax = 100'000'000;
+  if (states == 0 || states > kMax) {  // ten values per state: beyond a table of 4 GB
     return " algorithm:=dqn options:=train_interval=4 steps:=1200000";
   }
   return "";

@@ -24,7 +24,7 @@ Scenario Paper() { return LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"); }
 // 43 features instead of 81.
 Scenario PaperWithPlainFeatures() {
   Scenario scenario = Paper();
-  scenario.view.waterways = scenario.view.courses = false;
+  scenario.view.routes = scenario.view.lookahead_risk = false;
   return scenario;
 }
 
@@ -34,14 +34,14 @@ void StepFarms(benchmark::State& state, Scenario scenario, Wanted wanted,
   FarmBatch batch(std::make_shared<const Scenario>(std::move(scenario)), farms);
   const auto agents = static_cast<std::size_t>(batch.farms() * batch.agents());
   std::vector<float> rewards(agents);
-  std::vector<std::uint8_t> reasons(static_cast<std::size_t>(farms));
+  std::vector<std::uint8_t> end_reasons(static_cast<std::size_t>(farms));
   std::vector<std::uint32_t> index(agents);
   std::vector<float> features(agents * static_cast<std::size_t>(batch.encoder().feature_count()));
   std::vector<std::uint8_t> planes(
       wanted == Wanted::kPlanes ? agents * batch.encoder().planes_size() : 0);
   BatchOutput output;
   output.rewards = rewards.data();
-  output.reasons = reasons.data();
+  output.end_reasons = end_reasons.data();
   if (wanted == Wanted::kIndex) output.index = index.data();
   if (wanted == Wanted::kFeatures) output.features = features.data();
   if (wanted == Wanted::kPlanes) output.planes = planes.data();

@@ -152,10 +152,10 @@ void TakeConnection(const BagRecords& record, Connections& connections) {
 // @param connections receives the connections of the chunk
 // @throws Damage, or rosbag::BagException if the chunk cannot be decompressed
 ChunkMessages ReadChunk(const BagRecords& chunk, Connections& connections) {
-  constexpr std::size_t kMost = std::size_t{256} << 20U;  // rosbag allocates twice as much
+  constexpr std::size_t kMax = std::size_t{256} << 20U;  // rosbag allocates twice as much
   const std::size_t size = chunk.Get<std::uint32_t>("size");
   const std::string_view kind = chunk.Text("compression");
-  if (size > kMost) throw Damage("a chunk of more than 256 MiB" + chunk.Where());
+  if (size > kMax) throw Damage("a chunk of more than 256 MiB" + chunk.Where());
   std::vector<std::uint8_t> room;
   std::string_view content = chunk.data();
   if (kind == "none") {
@@ -244,7 +244,7 @@ void CheckIndex(BagRecords& records, std::size_t bytes) {
   const std::uint32_t connection_count = records.Get<std::uint32_t>("conn_count");
   if (index == 0) return;  // the recording was killed
   // No recording of a ranch is compressed this much. Reading such a bag would take hours.
-  const std::uint64_t most_bytes = (std::uint64_t{1} << 30U) + 4'000 * std::uint64_t{bytes};
+  const std::uint64_t max_bytes = (std::uint64_t{1} << 30U) + 4'000 * std::uint64_t{bytes};
   std::uint64_t all_bytes = 0;
   std::map<std::uint64_t, ChunkMessages> chunks;
   Connections connections;
@@ -253,7 +253,7 @@ void CheckIndex(BagRecords& records, std::size_t bytes) {
     records.Expect(BagOp::kChunk);
     const std::string where = records.Where();
     all_bytes += records.Get<std::uint32_t>("size");
-    if (all_bytes > most_bytes) throw Damage("chunks of more than its size can hold" + where);
+    if (all_bytes > max_bytes) throw Damage("chunks of more than its size can hold" + where);
     ChunkMessages& messages = chunks[records.begin()] = ReadChunk(records, connections);
     ChunkMessages indexed;
     for (std::size_t left = messages.Counts().size(); left > 0; --left) {

@@ -20,8 +20,8 @@ constexpr std::string_view kBegin{"#ROSBAG V2.0\n"};
 // Length of the first record's fields and padding. Tools that append or reindex overwrite the
 // record in place, so it must be as long as rosbag's.
 constexpr std::size_t kHeaderBytes = 4096;
-constexpr std::size_t kMostChunkBytes = std::size_t{256} << 20U;  // lz4 and readers count in int
-constexpr int kLz4Block = 6;                                      // 1 MiB, as in rosbag
+constexpr std::size_t kMaxChunkBytes = std::size_t{256} << 20U;  // lz4 and readers count in int
+constexpr int kLz4Block = 6;                                     // 1 MiB, as in rosbag
 
 // The format requires little-endian byte order. All machines that ROS supports are little-endian.
 template <typename Number>
@@ -127,7 +127,7 @@ ChunkedBag::Connection& ChunkedBag::Connect(const std::string& topic, const std:
 std::uint8_t* ChunkedBag::AddMessage(Connection& connection, const ros::Time& time,
                                      std::uint32_t length) {
   if (time < latest_) throw std::invalid_argument("a message before the one written last");
-  if (chunk_.size() + length > kMostChunkBytes) throw std::length_error("a message of 256 MiB");
+  if (chunk_.size() + length > kMaxChunkBytes) throw std::length_error("a message of 256 MiB");
   latest_ = time;
   if (!chunk_start_) chunk_start_ = time;
   ++connection.count;

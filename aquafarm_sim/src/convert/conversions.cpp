@@ -31,7 +31,7 @@ void FillShip(const aquafarm::Farm& farm, std::int32_t id, aquafarm_msgs::ShipSt
     if (devices[i].carrier == id) message.aboard.push_back(static_cast<std::int32_t>(i));
   }
   message.capacity = ship.own_device == kNone ? farm.scenario().ships.capacity : 0;
-  message.active = ship.in_play;
+  message.active = ship.active;
   message.action = static_cast<std::uint8_t>(ship.action);
   message.outcome = static_cast<std::uint8_t>(ship.outcome);
   message.terms = ToMsg(ship.terms);
@@ -55,7 +55,7 @@ void FillOtherShip(const aquafarm::Farm& farm, const aquafarm::KnownShip& known,
   message.y = known.visible ? known.cell.y : 0;
   message.own_device = ship.own_device;
   message.capacity = ship.own_device == kNone ? farm.scenario().ships.capacity : 0;
-  message.active = ship.in_play;
+  message.active = ship.active;
   for (std::size_t i = 0; known.visible && i < farm.devices().size(); ++i) {
     if (farm.devices()[i].carrier == known.id) {
       message.aboard.push_back(static_cast<std::int32_t>(i));
@@ -165,10 +165,10 @@ T ClosedSet(const char* name, std::uint8_t value, int count) {
   return static_cast<T>(value);
 }
 
-void CheckSize(const std::string& name, std::size_t size, std::size_t most) {
-  if (size <= most) return;
+void CheckSize(const std::string& name, std::size_t size, std::size_t max) {
+  if (size <= max) return;
   throw aquafarm::InputError(name + ": got " + std::to_string(size) +
-                             " entries, expected at most " + std::to_string(most));
+                             " entries, expected at most " + std::to_string(max));
 }
 
 std::vector<aquafarm::QuadrantRadii> QuadrantsOf(const std::string& name,

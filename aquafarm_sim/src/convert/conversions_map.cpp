@@ -56,17 +56,17 @@ void RiskToMsg(const std::vector<aquafarm::Disaster>& disasters, const aquafarm:
 void SeaToMsg(const aquafarm::SeaLayer& layer, const aquafarm::Scenario& scenario,
               const MessageContext& context, nav_msgs::OccupancyGrid& message) {
   FillGridInfo(scenario, context, message);
-  float least = std::numeric_limits<float>::infinity();
-  float greatest = -least;
+  float min = std::numeric_limits<float>::infinity();
+  float max = -min;
   for (const float value : layer.values) {  // fmin and fmax ignore NaN
-    least = std::fmin(least, value);
-    greatest = std::fmax(greatest, value);
+    min = std::fmin(min, value);
+    max = std::fmax(max, value);
   }
-  const float scale = greatest > least ? 100.0F / (greatest - least) : 0.0F;
+  const float scale = max > min ? 100.0F / (max - min) : 0.0F;
   for (std::size_t i = 0; i < message.data.size(); ++i) {
     const float value = layer.values[i];
     message.data[i] =
-        static_cast<std::int8_t>(std::isnan(value) ? -1L : std::lround((value - least) * scale));
+        static_cast<std::int8_t>(std::isnan(value) ? -1L : std::lround((value - min) * scale));
   }
 }
 

@@ -12,7 +12,7 @@ namespace aquafarm_sim {
 namespace {
 
 constexpr std::size_t kMaxFixes = 10000;
-constexpr std::size_t kMostRings = 8;  // max number of wind radii in any source
+constexpr std::size_t kMaxRings = 8;  // max number of wind radii in any source
 
 void CheckNumber(const std::string& name, double value, double low, double high) {
   if (value >= low && value <= high) return;  // false for NaN
@@ -21,10 +21,10 @@ void CheckNumber(const std::string& name, double value, double low, double high)
   throw aquafarm::InputError(name + text);
 }
 
-void CheckCount(const std::string& name, std::size_t count, std::size_t most) {
-  if (count <= most) return;
+void CheckCount(const std::string& name, std::size_t count, std::size_t max) {
+  if (count <= max) return;
   throw aquafarm::InputError(name + ": got " + std::to_string(count) +
-                             " entries, expected at most " + std::to_string(most));
+                             " entries, expected at most " + std::to_string(max));
 }
 
 std::optional<double> IfSaid(float value) {
@@ -40,7 +40,7 @@ aquafarm::StormFix FixFrom(const aquafarm_msgs::StormFix& message, const std::st
   CheckNumber(name + ".averaging_min", message.averaging_min, 0.0, 60.0);
   CheckNumber(name + ".max_wind_radius_km", static_cast<double>(message.max_wind_radius_km), 0.0,
               5000.0);
-  CheckCount(name + ".rings", message.rings.size(), kMostRings);
+  CheckCount(name + ".rings", message.rings.size(), kMaxRings);
   aquafarm::StormFix fix;
   fix.time = message.stamp.sec;
   fix.position = {message.latitude_deg, message.longitude_deg};

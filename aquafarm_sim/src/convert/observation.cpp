@@ -87,7 +87,7 @@ void FromMsg(const aquafarm_msgs::FarmState& message, const aquafarm::Scenario& 
   const aquafarm_msgs::ShipState& self = message.ships[static_cast<std::size_t>(message.observer)];
   view.ship = message.observer;
   view.self = {self.x, self.y};
-  view.in_play = self.active != 0;
+  view.active = self.active != 0;
   view.step = static_cast<std::int32_t>(message.step);
   view.aboard = static_cast<std::int32_t>(self.aboard.size());
   view.capacity = scenario.ships.capacity;

@@ -87,7 +87,7 @@ void CommandBarrier::Accept(const ShipCommand& command, const CommandResult& ans
 
 bool CommandBarrier::IsMissing(const aquafarm::Farm& farm, std::int32_t ship) const {
   const Slot& slot = *slots_[Index(ship)];
-  return farm.ships()[Index(ship)].in_play && !slot.is_absent && !slot.pending;
+  return farm.ships()[Index(ship)].active && !slot.is_absent && !slot.pending;
 }
 
 bool CommandBarrier::IsComplete(const aquafarm::Farm& farm) const {

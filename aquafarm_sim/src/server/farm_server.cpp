@@ -47,8 +47,8 @@ FarmServer::FarmServer(std::shared_ptr<const aquafarm::Scenario> scenario,
       barrier_(agents_),
       claims_(agents_, options.claim_timeout_s),
       clock_(StartOf(options)),
-      turn_(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch() /
-                                       std::chrono::nanoseconds(1))),
+      state_id_(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch() /
+                                           std::chrono::nanoseconds(1))),
       actions_(static_cast<std::size_t>(agents_)) {
   const MutexLock lock(mutex_);
   counters_.absences.resize(static_cast<std::size_t>(agents_));
@@ -88,7 +88,7 @@ aquafarm_msgs::CommandResult FarmServer::Command(const ShipCommand& command) {
       return Refuse(command.ship, refusal->code, refusal->message);
     return clock_.context().paced ? AcceptPaced(command) : StepTogether(command, lock);
   } catch (const std::exception& error) {
-    ++turn_;  // the farm may have stepped
+    ++state_id_;  // the farm may have stepped
     DropCommands();
     return Refuse(command.ship, Outcome::INTERNAL_ERROR, error.what());
   }
@@ -314,12 +314,12 @@ void FarmServer::Tick() {
       return;
     }
     for (std::int32_t ship = 0; ship < agents_; ++ship) {
-      const bool is_in_play = batch_->farm(0).ships()[static_cast<std::size_t>(ship)].in_play;
-      if (is_in_play && !barrier_.HasCommand(ship)) ++counters_.late_ships;
+      const bool is_active = batch_->farm(0).ships()[static_cast<std::size_t>(ship)].active;
+      if (is_active && !barrier_.HasCommand(ship)) ++counters_.late_ships;
     }
     StepPublishedFarm();
   } catch (const std::exception& error) {
-    ++turn_;  // the farm may have stepped
+    ++state_id_;  // the farm may have stepped
     DropCommands();
     clock_.SetPaused(true);  // a farm that cannot continue must not fail at every tick
     counters_.fault = error.what();
@@ -343,7 +343,7 @@ void FarmServer::Shutdown() {
 }
 
 void FarmServer::Advance() {
-  ++turn_;
+  ++state_id_;
   clock_.Advance();
 }
 

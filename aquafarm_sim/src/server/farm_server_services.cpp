@@ -20,13 +20,14 @@ namespace {
 using aquafarm_msgs::Outcome;
 using aquafarm_msgs::StepResult;
 
-constexpr std::uint8_t kAllEncodings = StepResult::INDEX | StepResult::FEATURES |
-                                       StepResult::PLANES | StepResult::HASHES | StepResult::TERMS;
+constexpr std::uint8_t kAllObservationTypes = StepResult::INDEX | StepResult::FEATURES |
+                                              StepResult::PLANES | StepResult::HASHES |
+                                              StepResult::TERMS;
 
-std::string OutOfRange(const std::string& name, std::int64_t got, std::int64_t least,
-                       std::int64_t most) {
-  return name + ": got " + std::to_string(got) + ", expected [" + std::to_string(least) + ", " +
-         std::to_string(most) + "]";
+std::string OutOfRange(const std::string& name, std::int64_t got, std::int64_t min,
+                       std::int64_t max) {
+  return name + ": got " + std::to_string(got) + ", expected [" + std::to_string(min) + ", " +
+         std::to_string(max) + "]";
 }
 
 /// Returns true if any field of the storm is set. An incomplete storm is refused, not ignored.
@@ -71,13 +72,13 @@ const aquafarm_msgs::Step::Response& FarmServer::Step(const aquafarm_msgs::Step:
     joint_step_at_ = Clock::now();
     aquafarm_msgs::Step::Response& answer = steps_.Begin();
     Answer(Outcome::OK, "", answer);
-    batch_->Step(request.actions.data(), Prepare(request.encodings, answer.result));
+    batch_->Step(request.actions.data(), Prepare(request.observation_types, answer.result));
     barrier_.Drop();
     Complete(request.actions.data(), answer.result);
     steps_.Complete(key);
     return answer;
   } catch (const std::exception& error) {
-    ++turn_;  // some farms may have stepped
+    ++state_id_;  // some farms may have stepped
     DropCommands();
     Answer(Outcome::INTERNAL_ERROR, error.what(), step_refusal_);
     return step_refusal_;
@@ -95,10 +96,10 @@ std::optional<FarmServer::Refusal> FarmServer::Check(const aquafarm_msgs::Step::
     if (auto refusal = CheckHolder(ship, caller)) return refusal;
   }
   // Checked last: a client that waits for the farms then gets STALE only once, when they are free.
-  if (request.turn != 0 && request.turn != turn_) {
+  if (request.state_id != 0 && request.state_id != state_id_) {
     return Refusal{Outcome::STALE,
-                   "turn: got " + std::to_string(request.turn) + ", the farms are at " +
-                       std::to_string(turn_) +
+                   "state_id: got " + std::to_string(request.state_id) + ", the farms are at " +
+                       std::to_string(state_id_) +
                        ": another client has stepped or reset them, or the node has restarted"};
   }
   const auto expected =
@@ -114,31 +115,34 @@ std::optional<FarmServer::Refusal> FarmServer::Check(const aquafarm_msgs::Step::
   if (highest > kLast) {
     return Refusal{Outcome::BAD_ACTION, OutOfRange("actions", highest, 0, kLast)};
   }
-  return CheckAnswerSize(batch_->farms(), request.encodings);
+  return CheckAnswerSize(batch_->farms(), request.observation_types);
 }
 
-std::optional<FarmServer::Refusal> FarmServer::CheckAnswerSize(std::int32_t farms,
-                                                               std::uint8_t encodings) const {
-  if (encodings > kAllEncodings) {
-    return Refusal{Outcome::BAD_VALUE, OutOfRange("encodings", encodings, 0, kAllEncodings)};
+std::optional<FarmServer::Refusal> FarmServer::CheckAnswerSize(
+    std::int32_t farms, std::uint8_t observation_types) const {
+  if (observation_types > kAllObservationTypes) {
+    return Refusal{Outcome::BAD_VALUE,
+                   OutOfRange("observation_types", observation_types, 0, kAllObservationTypes)};
   }
   const aquafarm::Encoder& encoder = batch_->encoder();
-  if ((encodings & StepResult::INDEX) != 0 && encoder.state_count() == 0) {
-    return Refusal{Outcome::BAD_VALUE, "encodings: this farm has too many states for INDEX"};
+  if ((observation_types & StepResult::INDEX) != 0 && encoder.state_count() == 0) {
+    return Refusal{Outcome::BAD_VALUE,
+                   "observation_types: this farm has too many states for INDEX"};
   }
   const std::size_t entries = static_cast<std::size_t>(farms) * static_cast<std::size_t>(agents_);
   std::size_t bytes = 0;
-  if ((encodings & StepResult::FEATURES) != 0) {
+  if ((observation_types & StepResult::FEATURES) != 0) {
     bytes += entries * sizeof(float) * static_cast<std::size_t>(encoder.feature_count());
   }
-  if ((encodings & StepResult::PLANES) != 0) bytes += entries * encoder.planes_size();
+  if ((observation_types & StepResult::PLANES) != 0) bytes += entries * encoder.planes_size();
   if (bytes <= kMaxAnswerBytes) return std::nullopt;
-  return Refusal{Outcome::BAD_VALUE, "encodings: the answer would have " + std::to_string(bytes) +
-                                         " bytes, expected at most " +
+  return Refusal{Outcome::BAD_VALUE, "observation_types: the answer would have " +
+                                         std::to_string(bytes) + " bytes, expected at most " +
                                          std::to_string(kMaxAnswerBytes) + "; use fewer farms"};
 }
 
-aquafarm::BatchOutput FarmServer::Prepare(std::uint8_t encodings, StepResult& result) const {
+aquafarm::BatchOutput FarmServer::Prepare(std::uint8_t observation_types,
+                                          StepResult& result) const {
   const aquafarm::StepShape shape = batch_->shape();
   result.farms = batch_->farms();
   result.agents = agents_;
@@ -146,14 +150,14 @@ aquafarm::BatchOutput FarmServer::Prepare(std::uint8_t encodings, StepResult& re
   result.truncated.resize(shape.farms);
   result.finished.clear();
   aquafarm::BatchOutput output;
-  aquafarm::SizeStepFields(shape, encodings, result, output);
+  aquafarm::SizeStepFields(shape, observation_types, result, output);
   return output;
 }
 
 void FarmServer::Describe(StepResult& result) const {
-  result.turn = turn_;
-  for (std::size_t i = 0; i < result.reasons.size(); ++i) {
-    const auto reason = static_cast<aquafarm::EndReason>(result.reasons[i]);
+  result.state_id = state_id_;
+  for (std::size_t i = 0; i < result.end_reasons.size(); ++i) {
+    const auto reason = static_cast<aquafarm::EndReason>(result.end_reasons[i]);
     result.terminated[i] = aquafarm::IsTerminated(reason) ? 1 : 0;
     result.truncated[i] = aquafarm::IsTruncated(reason) ? 1 : 0;
   }
@@ -162,22 +166,22 @@ void FarmServer::Describe(StepResult& result) const {
 void FarmServer::Complete(const std::uint8_t* actions, StepResult& result) {
   constexpr bool kByJointStep = true;
   for (std::int32_t i = 0; recorder_ != nullptr && i < batch_->farms(); ++i) {
-    if (result.started[static_cast<std::size_t>(i)] != 0) {
+    if (result.is_first[static_cast<std::size_t>(i)] != 0) {
       recorder_->OnStart(batch_->farm(i), i, clock_.context());
     } else {
       recorder_->OnStep(batch_->farm(i), i, actions + std::ptrdiff_t{i} * agents_);
     }
   }
-  if (result.started[0] != 0) {
+  if (result.is_first[0] != 0) {
     EpisodeBegan(kByJointStep);
   } else {
     Advance();
     Changed(kByJointStep);
   }
   Describe(result);
-  for (std::size_t i = 0; i < result.reasons.size(); ++i) {
-    counters_.farm_steps += result.started[i] == 0 ? 1 : 0;
-    if (result.reasons[i] == 0) continue;
+  for (std::size_t i = 0; i < result.end_reasons.size(); ++i) {
+    counters_.farm_steps += result.is_first[i] == 0 ? 1 : 0;
+    if (result.end_reasons[i] == 0) continue;
     const auto farm = static_cast<std::int32_t>(i);
     result.finished.push_back(ToMsg(batch_->farm(farm).record(), farm, clock_.context()));
     Notify([&](FarmListener& listener) { listener.OnEpisodeEnd(result.finished.back()); });
@@ -214,16 +218,16 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
                         std::to_string(farms) + ", the number of farms",
                     response);
     }
-    if (const auto refusal = CheckAnswerSize(farms, request.encodings)) {
+    if (const auto refusal = CheckAnswerSize(farms, request.observation_types)) {
       return Answer(refusal->code, refusal->message, response);
     }
     const aquafarm::Layout& layout = batch_->farm(0).layout();
     const std::int64_t cells =
-        farms * static_cast<std::int64_t>(layout.cells.size() + layout.ways.size());
+        farms * static_cast<std::int64_t>(layout.cells.size() + layout.routes.size());
     if (scenario_->layout == aquafarm::LayoutMode::kPerEpisode && cells > kMaxDrawnCells) {
       return Answer(Outcome::BAD_VALUE,
                     "farms: " + std::to_string(farms) + " layouts would have " +
-                        std::to_string(cells) + " cells and ways, expected at most " +
+                        std::to_string(cells) + " cells and routes, expected at most " +
                         std::to_string(kMaxDrawnCells),
                     response);
     }
@@ -232,7 +236,7 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
                                 : request.has_seed  ? 0
                                                     : NextEpisode();
     if (!goes_on) StartEpisodes(farms, seed, first, request.stride);
-    batch_->Write(Prepare(request.encodings, response.result));
+    batch_->Write(Prepare(request.observation_types, response.result));
     Describe(response.result);
     response.seed = batch_->farm(0).seed();
     response.episode = batch_->farm(0).episode();
@@ -310,7 +314,7 @@ void FarmServer::LoadState(const aquafarm_msgs::LoadState::Request& request,
                            aquafarm_msgs::LoadState::Response& response) {
   const aquafarm::MutexLock lock(mutex_);
   Guarded(Outcome::BAD_DATA, response, [&]() AQUAFARM_REQUIRES(mutex_) {
-    if (const auto refusal = CheckAnswerSize(batch_->farms(), request.encodings)) {
+    if (const auto refusal = CheckAnswerSize(batch_->farms(), request.observation_types)) {
       return Answer(refusal->code, refusal->message, response);
     }
     batch_->Load(std::string(request.data.begin(), request.data.end()));
@@ -320,7 +324,7 @@ void FarmServer::LoadState(const aquafarm_msgs::LoadState::Request& request,
     }
     ForgetAnswers();
     EpisodeBegan();
-    batch_->Write(Prepare(request.encodings, response.result));
+    batch_->Write(Prepare(request.observation_types, response.result));
     Describe(response.result);
     response.hash = batch_->farm(0).Hash();
     if (request.with_spec) FillSpec(0, response.spec);
@@ -409,9 +413,9 @@ void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
     const std::int32_t end = request.farm < 0 ? batch_->farms() : first + 1;
     for (std::int32_t i = first; i < end; ++i) {
       const auto count = static_cast<std::int32_t>(batch_->farm(i).disasters().size());
-      const std::int32_t most = std::min(count, aquafarm::kMaxDisasters - 1);
-      if (request.id < 0 || request.id > most) {
-        return Answer(Outcome::BAD_VALUE, OutOfRange("id", request.id, 0, most), response);
+      const std::int32_t max = std::min(count, aquafarm::kMaxDisasters - 1);
+      if (request.id < 0 || request.id > max) {
+        return Answer(Outcome::BAD_VALUE, OutOfRange("id", request.id, 0, max), response);
       }
     }
     if (request.forecast_only != 0) return IssueForecast(request, first, end, response);

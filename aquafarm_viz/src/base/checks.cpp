@@ -18,8 +18,8 @@ bool Within(double value, double low, double high) {
   return std::isfinite(value) && value >= low && value <= high;
 }
 
-std::string CheckCount(const std::string& where, std::size_t got, std::size_t most) {
-  return got <= most ? "" : Fault(where + ".size", got, std::size_t{0}, most);
+std::string CheckCount(const std::string& where, std::size_t got, std::size_t max) {
+  return got <= max ? "" : Fault(where + ".size", got, std::size_t{0}, max);
 }
 
 std::string CheckDisaster(const std::string& where, const aquafarm_msgs::DisasterState& disaster) {
@@ -78,11 +78,11 @@ std::string CheckSpec(const aquafarm_msgs::FarmSpec& spec) {
 }
 
 std::string CheckState(const aquafarm_msgs::FarmState& state) {
-  for (const auto& [name, count, most] :
+  for (const auto& [name, count, max] :
        {std::tuple{"state.ships", state.ships.size(), kMaxShips},
         {"state.devices", state.devices.size(), kMaxDevices},
         {"state.disasters", state.disasters.size(), kMaxDisasters}}) {
-    if (auto fault = CheckCount(name, count, static_cast<std::size_t>(most)); !fault.empty()) {
+    if (auto fault = CheckCount(name, count, static_cast<std::size_t>(max)); !fault.empty()) {
       return fault;
     }
   }

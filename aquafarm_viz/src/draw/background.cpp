@@ -100,11 +100,11 @@ std::string DegreesText(int minutes, char positive, char negative) {
 // Calls draw(minutes, position) for each tick of an axis that begins at `start_deg` and has
 // `px_per_deg` pixels a degree.
 template <typename Draw>
-void ForTicks(double start_deg, double px_per_deg, int length_px, double least_px, Draw draw) {
+void ForTicks(double start_deg, double px_per_deg, int length_px, double min_px, Draw draw) {
   int step = 1;
   for (const int minutes : {1, 2, 5, 10, 15, 30, 60, 120, 300, 600}) {
     step = minutes;
-    if (px_per_deg * minutes / 60.0 >= least_px) break;
+    if (px_per_deg * minutes / 60.0 >= min_px) break;
   }
   const auto first = static_cast<int>(std::ceil(start_deg * 60.0 / step));
   for (int tick = first;; ++tick) {

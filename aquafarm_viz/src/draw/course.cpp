@@ -12,8 +12,8 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr double kFar_px = 1.0e5;    // points farther away are clipped
-constexpr double kLeastMark = 22.0;  // distance of two marks [design units]
+constexpr double kFar_px = 1.0e5;  // points farther away are clipped
+constexpr double kMinMark = 22.0;  // distance of two marks [design units]
 
 bool IsNear(cv::Point2d at) { return std::abs(at.x) < kFar_px && std::abs(at.y) < kFar_px; }
 
@@ -92,7 +92,7 @@ double MarkHours(const aquafarm_msgs::FarmSpec& spec, const Track& ahead, const 
       (ahead.back().step - ahead.front().step) * std::max(1.0, spec.step_duration_s) / 3600.0;
   if (!(length > 0.0) || !(hours > 0.0) || !std::isfinite(length)) return 24.0;
   for (const double each : {0.5, 1.0, 2.0, 3.0, 6.0, 12.0}) {
-    if (length / hours * each >= kLeastMark * layout.unit) return each;
+    if (length / hours * each >= kMinMark * layout.unit) return each;
   }
   return 24.0;
 }
@@ -102,7 +102,7 @@ double MarkHours(const aquafarm_msgs::FarmSpec& spec, const Track& ahead, const 
 std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                                    const Course& course, const ToPixel& to_pixel,
                                    const Layout& layout) {
-  constexpr std::size_t kMostMarks = 64;
+  constexpr std::size_t kMaxMarks = 64;
   std::vector<CourseMark> marks;
   if (course.kind == Course::Kind::kExtrapolated || course.ahead.size() < 2) return marks;
   DrawCone(image, course, to_pixel, layout);
@@ -111,7 +111,7 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
   const double hours = MarkHours(spec, course.ahead, to_pixel, layout);
   const double steps = hours * 3600.0 / std::max(1.0, spec.step_duration_s);
   const double now = course.ahead.front().step;
-  for (std::size_t i = 1; i <= kMostMarks && now + double(i) * steps <= course.ahead.back().step;
+  for (std::size_t i = 1; i <= kMaxMarks && now + double(i) * steps <= course.ahead.back().step;
        ++i) {
     const TrackPoint point = TrackAt(course.ahead, now + double(i) * steps);
     const cv::Point2d at = to_pixel(point.x, point.y);

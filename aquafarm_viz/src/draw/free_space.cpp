@@ -25,8 +25,8 @@ void FreeSpace::Block(cv::Rect part) {
 }
 
 void FreeSpace::BlockLine(cv::Point2d from, cv::Point2d to, int width) {
-  constexpr int kMostSquares = 500;
-  const int count = std::clamp(static_cast<int>(cv::norm(to - from) / width), 1, kMostSquares);
+  constexpr int kMaxSquares = 500;
+  const int count = std::clamp(static_cast<int>(cv::norm(to - from) / width), 1, kMaxSquares);
   for (int i = 0; i <= count; ++i) {
     const cv::Point2d at = from + (to - from) * (double(i) / count);
     if (std::abs(at.x) > 1e5 || std::abs(at.y) > 1e5) continue;
@@ -53,7 +53,7 @@ std::optional<cv::Rect> FreeSpace::Take(cv::Size size, cv::Point2d near, double 
   if (blocks.width > used_.cols || blocks.height > used_.rows) return std::nullopt;
   cv::Mat1i sums;
   cv::integral(used_, sums, CV_32S);
-  double least = farthest;
+  double nearest = farthest;
   std::optional<cv::Point> best;
   // The first and the last position along an axis whose middle is within reach.
   const auto range = [farthest](double middle, int length, int all) {
@@ -68,13 +68,13 @@ std::optional<cv::Rect> FreeSpace::Take(cv::Size size, cv::Point2d near, double 
     for (int column = left; column <= right_most; ++column) {
       const double away = std::hypot((column + blocks.width / 2.0) * kBlock - near.x,
                                      (row + blocks.height / 2.0) * kBlock - near.y);
-      if (away >= least) continue;
+      if (away >= nearest) continue;
       const int bottom = row + blocks.height;
       const int right = column + blocks.width;
       if (sums(bottom, right) - sums(row, right) - sums(bottom, column) + sums(row, column) > 0) {
         continue;
       }
-      least = away;
+      nearest = away;
       best = cv::Point(column, row);
     }
   }

@@ -75,10 +75,10 @@ MapPlace PlaceMap(int width, int height, ImageSize size) {
   return {layout.map, layout.view};
 }
 
-int TickStep(double cell_px, double least_px) {
+int TickStep(double cell_px, double min_px) {
   for (int power = 1;; power *= 10) {
     for (const int factor : {1, 2, 5}) {
-      if (factor * power * cell_px >= least_px) return factor * power;
+      if (factor * power * cell_px >= min_px) return factor * power;
     }
   }
 }

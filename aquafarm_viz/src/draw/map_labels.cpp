@@ -24,8 +24,8 @@ using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr std::size_t kMostDangerLabels = 40;  // more are not read, and cost time
-constexpr double kDangerRing = 2.0;            // of the first device in danger [device radii]
+constexpr std::size_t kMaxDangerLabels = 40;  // more are not read, and cost time
+constexpr double kDangerRing = 2.0;           // of the first device in danger [device radii]
 
 cv::Rect Around(cv::Point2d at, double radius) {
   return {cvFloor(at.x - radius), cvFloor(at.y - radius), cvCeil(2.0 * radius),
@@ -142,7 +142,7 @@ void LabelDanger(cv::Mat& map, const FarmSpec& spec, const FarmState& state, con
     const DeviceState* device = Find(state, one.id);
     const std::string danger = DangerText(spec, one);
     if (device == nullptr || danger.empty()) continue;
-    if (labels++ == kMostDangerLabels) break;
+    if (labels++ == kMaxDangerLabels) break;
     const std::string text = DeviceLabel(one.id) + ": " + danger;
     const cv::Point2d at = layout.view.ToPixel(device->x, device->y);
     const cv::Size size(fonts.bold.Width(text) + layout.Px(13), layout.Px(18));

@@ -262,14 +262,14 @@ void ListKinds(Panel& panel, const FarmState& state, const Layout& layout) {
 
 void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                  const Outlook& outlook, const Layout& layout) {
-  constexpr std::size_t kMostRows = 6;
+  constexpr std::size_t kMaxRows = 6;
   const auto delivered = std::count_if(
       state.devices.begin(), state.devices.end(),
       [](const DeviceState& device) { return device.status == DeviceState::DELIVERED; });
   const std::string zone = spec.has_start_time && trail != nullptr ? ", " + ZoneText(spec) : "";
   panel.Heading("DEVICES" + zone,
                 std::to_string(delivered) + " / " + std::to_string(state.devices.size()) + " safe");
-  if (state.devices.size() > kMostRows) return ListKinds(panel, state, layout);
+  if (state.devices.size() > kMaxRows) return ListKinds(panel, state, layout);
   ListEachDevice(panel, spec, state, trail, outlook, layout);
 }
 

@@ -198,9 +198,9 @@ void LabelScale(Inset& inset, double reach_m, FreeSpace& space, const Layout& la
 // Draws a square, also where the course crosses the farm, and the word "ranch" next to it.
 void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout& layout,
               const Fonts& fonts) {
-  constexpr double kLeastSide = 9.0;  // [design units]
-  const double wide = std::max(kLeastSide * layout.unit, spec.width * inset.px_per_cell);
-  const double tall = std::max(kLeastSide * layout.unit, spec.height * inset.px_per_cell);
+  constexpr double kMinSide = 9.0;  // [design units]
+  const double wide = std::max(kMinSide * layout.unit, spec.width * inset.px_per_cell);
+  const double tall = std::max(kMinSide * layout.unit, spec.height * inset.px_per_cell);
   const cv::Rect farm(cvRound((inset.image.cols - wide) / 2.0),
                       cvRound((inset.image.rows - tall) / 2.0), cvRound(wide), cvRound(tall));
   cv::rectangle(inset.image, farm, Bgr(layout.style->halo), layout.Px(4.0));

@@ -44,17 +44,17 @@ SeaLayer LayerOf(const aquafarm_msgs::FarmSpec& spec, const std::string& name) {
 struct HeatMap {
   cv::Mat3b color;
   cv::Mat1b known;
-  float least{std::numeric_limits<float>::infinity()};
-  float greatest{-std::numeric_limits<float>::infinity()};
+  float min{std::numeric_limits<float>::infinity()};
+  float max{-std::numeric_limits<float>::infinity()};
 };
 
 HeatMap Heat(const SeaLayer& layer, int width, int height) {
   HeatMap map;
   for (const float value : layer.values) {  // fmin and fmax ignore NaN
-    map.least = std::fmin(map.least, value);
-    map.greatest = std::fmax(map.greatest, value);
+    map.min = std::fmin(map.min, value);
+    map.max = std::fmax(map.max, value);
   }
-  const float span = std::max(map.greatest - map.least, std::numeric_limits<float>::min());
+  const float span = std::max(map.max - map.min, std::numeric_limits<float>::min());
   cv::Mat1b shade(height, width, std::uint8_t{0});
   map.known = cv::Mat1b(height, width, std::uint8_t{0});
   for (int y = 0; y < height; ++y) {
@@ -63,7 +63,7 @@ HeatMap Heat(const SeaLayer& layer, int width, int height) {
       if (std::isnan(value)) continue;
       map.known(height - 1 - y, x) = 255;
       shade(height - 1 - y, x) =
-          static_cast<std::uint8_t>(std::lround(255.0F * (value - map.least) / span));
+          static_cast<std::uint8_t>(std::lround(255.0F * (value - map.min) / span));
     }
   }
   cv::applyColorMap(shade, map.color, cv::COLORMAP_VIRIDIS);
@@ -93,11 +93,10 @@ void DrawSea(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const std::strin
                       part);
     }
   }
-  const std::string words = heat.least > heat.greatest
+  const std::string words = heat.min > heat.max
                                 ? layer.name + ": unknown"
-                                : layer.name + ": " + Number(double(heat.least), 2) +
-                                      " (dark) to " + Number(double(heat.greatest), 2) + " " +
-                                      layer.units;
+                                : layer.name + ": " + Number(double(heat.min), 2) + " (dark) to " +
+                                      Number(double(heat.max), 2) + " " + layer.units;
   const int margin = layout.Px(6.0);
   DrawLabel(map, fonts.bold, words, {margin, map.rows - margin - fonts.bold.cap_height()}, layout);
 }

@@ -61,7 +61,7 @@ struct Fonts {
 };
 
 /// Returns the tick spacing of an axis [cells]: 1, 2 or 5 times a power of ten, min `least_px`.
-int TickStep(double cell_px, double least_px);
+int TickStep(double cell_px, double min_px);
 
 /// Draws the constant parts of an episode: sea, islands, rocks, axes, legend.
 cv::Mat DrawBackground(const aquafarm_msgs::FarmSpec& spec, const Layout& layout,

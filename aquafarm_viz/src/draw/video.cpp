@@ -101,11 +101,11 @@ class Quantizer {
     for (int i = 0; i < kSide * kSide * kSide; ++i) {
       const cv::Vec3i color(Middle(i / (kSide * kSide)), Middle(i / kSide % kSide),
                             Middle(i % kSide));
-      int least = std::numeric_limits<int>::max();
+      int nearest = std::numeric_limits<int>::max();
       for (std::size_t k = 0; k < palette.size(); ++k) {
         const cv::Vec3i off = color - cv::Vec3i(palette[k]);
-        if (off.dot(off) >= least) continue;
-        least = static_cast<int>(off.dot(off));
+        if (off.dot(off) >= nearest) continue;
+        nearest = static_cast<int>(off.dot(off));
         nearest_[static_cast<std::size_t>(i)] = static_cast<GifByteType>(k);
       }
     }

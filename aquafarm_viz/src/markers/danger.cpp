@@ -29,8 +29,8 @@ using aquafarm_msgs::FarmState;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr std::size_t kMostLabels = 40;  // more are not read, and cost time
-constexpr double kLetter = 0.5;          // mean width of a letter of rviz relative to the height
+constexpr std::size_t kMaxLabels = 40;  // more are not read, and cost time
+constexpr double kLetter = 0.5;         // mean width of a letter of rviz relative to the height
 constexpr Rgb kAlarm{0xff, 0xb4, 0x54};
 
 // A rectangle that a label covers [cells].
@@ -235,9 +235,9 @@ class DeviceLabels {
   }
 
   // Labels the next devices, up to a number of labels in all.
-  void Add(MarkerArray& array, Labels& labels, std::size_t most) {
+  void Add(MarkerArray& array, Labels& labels, std::size_t max_labels) {
     const double radius = 0.86 * maker_.thing_m() / maker_.cell_m();
-    for (; next_ < devices_.size() && labelled_.size() < most; ++next_) {
+    for (; next_ < devices_.size() && labelled_.size() < max_labels; ++next_) {
       const DeviceOutlook& one = *devices_[next_];
       const DeviceState& device = Find(one.id);
       const std::string text = DeviceLabel(one.id) + ": " + DangerText(spec_, one);
@@ -401,7 +401,7 @@ MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state) {
   DeviceLabels devices(maker, spec, state, outlook);
   devices.Add(array, labels, 1);
   LabelPointers(array, maker, spec, state, courses, pointers, labels);
-  devices.Add(array, labels, kMostLabels);
+  devices.Add(array, labels, kMaxLabels);
   devices.Finish(array);
   const std::string alarm = OutlookText(spec, state, outlook);
   if (alarm.empty() || state.terminated || state.truncated) {

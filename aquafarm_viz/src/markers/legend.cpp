@@ -155,10 +155,10 @@ class Row {
 };
 
 // The largest of 1, 2 and 5 times a power of ten that is at most `most_m`.
-double RoundLength(double most_m) {
-  const double power = std::pow(10.0, std::floor(std::log10(most_m)));
+double RoundLength(double max_m) {
+  const double power = std::pow(10.0, std::floor(std::log10(max_m)));
   for (const double factor : {5.0, 2.0}) {
-    if (factor * power <= most_m) return factor * power;
+    if (factor * power <= max_m) return factor * power;
   }
   return power;
 }

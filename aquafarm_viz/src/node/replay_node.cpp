@@ -18,7 +18,7 @@ namespace {
 using aquafarm_msgs::Outcome;
 
 constexpr double kTick_s = 0.01;
-constexpr double kMostSpeed = 1000.0;
+constexpr double kMaxSpeed = 1000.0;
 constexpr std::uint32_t kQueue = 100;
 
 template <typename Response>
@@ -41,7 +41,7 @@ ReplayParams ReadReplayParams(const ros::NodeHandle& node) {
   ReplayParams params;
   aquafarm_sim::Params reader(node);
   reader.Text("bag", params.bag);
-  reader.Number("speed", 0.001, kMostSpeed, params.speed);
+  reader.Number("speed", 0.001, kMaxSpeed, params.speed);
   reader.Number("start_s", 0.0, 1e9, params.start_s);
   reader.Int("start_episode", -1, INT_MAX, params.start_episode);
   reader.Int("start_step", 0, INT_MAX, params.start_step);
@@ -168,9 +168,9 @@ bool ReplayNode::OnSetPace(aquafarm_msgs::SetPace::Request& request,
   response.rate_hz = speed_ / period_s;
   if (!request.pace.empty() && request.pace != "paced") {
     Refuse("pace: got " + request.pace + ", a replay is paced", response);
-  } else if (!(request.rate_hz >= 0.0) || !(speed <= kMostSpeed)) {
+  } else if (!(request.rate_hz >= 0.0) || !(speed <= kMaxSpeed)) {
     Refuse("rate_hz: got " + std::to_string(request.rate_hz) + ", expected [0, " +
-               std::to_string(kMostSpeed / period_s) + "]",
+               std::to_string(kMaxSpeed / period_s) + "]",
            response);
   } else {
     speed_ = speed;

@@ -23,8 +23,8 @@ namespace {
 
 constexpr double kWarnEvery_s = 5.0;
 constexpr int kJpegQuality = 90;
-constexpr std::size_t kStamps = 200;      // states to search for the one of a map of values
-constexpr std::int32_t kMostRoutes = 64;  // max ships with a route topic
+constexpr std::size_t kStamps = 200;     // states to search for the one of a map of values
+constexpr std::int32_t kMaxRoutes = 64;  // max ships with a route topic
 
 visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
                                        const visualization_msgs::MarkerArray& second) {
@@ -87,7 +87,7 @@ void VizNode::OnSpec(const aquafarm_msgs::FarmSpecConstPtr& spec) {
   }
   marked_ = pictured_ = routed_ = false;
   for (auto ship = static_cast<std::int32_t>(routes_.size());
-       ship < std::min(spec->agents, kMostRoutes); ++ship) {
+       ship < std::min(spec->agents, kMaxRoutes); ++ship) {
     routes_.push_back(node_.advertise<nav_msgs::Path>(
         "ship_" + std::to_string(ship) + "/" + names::kRoute, 2,
         [this](const ros::SingleSubscriberPublisher&) { routed_ = false; }));

@@ -55,10 +55,10 @@ CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve) {
   return {low - margin, high + margin};
 }
 
-std::vector<double> RoundTicks(const CurveRange& range, int most) {
+std::vector<double> RoundTicks(const CurveRange& range, int max) {
   constexpr std::size_t kFewest = 3;
   const double span = range.high - range.low;
-  const double power = std::pow(10.0, std::ceil(std::log10(span / std::max(1, most))));
+  const double power = std::pow(10.0, std::ceil(std::log10(span / std::max(1, max))));
   // From coarse to fine, until there are enough ticks.
   std::vector<double> ticks;
   for (const double factor : {1.0, 0.5, 0.2, 0.1, 0.05, 0.02}) {
@@ -67,7 +67,7 @@ std::vector<double> RoundTicks(const CurveRange& range, int most) {
     for (double i = std::ceil(range.low / step); i * step <= range.high; i += 1.0) {
       finer.push_back(i == 0.0 ? 0.0 : i * step);
     }
-    if (ticks.size() >= kFewest && int(finer.size()) > most) break;
+    if (ticks.size() >= kFewest && int(finer.size()) > max) break;
     ticks = finer;
   }
   return ticks;

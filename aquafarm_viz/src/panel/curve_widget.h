@@ -21,7 +21,7 @@ CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve);
 
 /// Returns the multiples of 1, 2 or 5 times a power of ten within a range: as many as fit into
 /// `most`, but at least three.
-std::vector<double> RoundTicks(const CurveRange& range, int most);
+std::vector<double> RoundTicks(const CurveRange& range, int max);
 
 /// Plots the mean return over episodes as a line and the success rate (0 … 100 %, on the right) as
 /// a dashed one.

@@ -67,8 +67,9 @@ RanchPanel::RanchPanel(QWidget* parent)
         changed_ = true;
       });
   plan_heartbeat_ = aquafarm_sim::Subscribe<std_msgs::Time>(
-      node_, names::kPlanHeartbeat, 2,
-      [this](const std_msgs::TimeConstPtr&) { model_.HearPlanNode(ros::SteadyTime::now()); });
+      node_, names::kPlanHeartbeat, 2, [this](const std_msgs::TimeConstPtr&) {
+        model_.MarkPlanNodePresent(ros::SteadyTime::now());
+      });
   QTimer::singleShot(kRefresh_ms, this, [this] { FitWindow(*this); });  // the window is shown then
   connect(&timer_, &QTimer::timeout, this, [this] {
     // Also without new messages, because the window size may have changed.
@@ -96,7 +97,7 @@ void RanchPanel::save(rviz::Config config) const {
 std::unique_ptr<ServiceCaller> RanchPanel::MakeCaller(double limit_s) {
   return std::make_unique<ServiceCaller>(node_, limit_s, [this](const std::string& line) {
     QMetaObject::invokeMethod(
-        widget_, [this, line] { widget_->Tell(line); }, Qt::QueuedConnection);
+        widget_, [this, line] { widget_->ShowMessage(line); }, Qt::QueuedConnection);
   });
 }
 

@@ -90,7 +90,7 @@ RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget*
   AddPlaces(all);
   AddHelm(all);
   AddDisaster(all);
-  told_ = AddLine(all);
+  message_ = AddLine(all);
   Refresh();
 }
 
@@ -253,6 +253,6 @@ void RanchWidget::RefreshPlan() {
   Fill(plan_devices_, PlanDevices(*plan));
 }
 
-void RanchWidget::Tell(const std::string& line) { told_->setText(Text(line)); }
+void RanchWidget::ShowMessage(const std::string& line) { message_->setText(Text(line)); }
 
 }  // namespace aquafarm_viz

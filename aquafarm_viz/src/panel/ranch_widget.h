@@ -42,7 +42,7 @@ class RanchWidget : public QWidget {
   /// Updates the line of the plan, which states for how long plan_node has been silent.
   void RefreshPlanAge();
   /// Sets the line at the bottom: the result of the last button.
-  void Tell(const std::string& line);
+  void ShowMessage(const std::string& line);
 
  private:
   QLabel* AddLine(QBoxLayout* layout);
@@ -60,7 +60,7 @@ class RanchWidget : public QWidget {
   QLabel* headline_;
   QLabel* reward_;
   QLabel* training_;
-  QLabel* told_;
+  QLabel* message_;
   QTableWidget* ships_;
   QTableWidget* devices_;
   QLabel* plan_;

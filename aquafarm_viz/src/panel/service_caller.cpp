@@ -6,7 +6,7 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr std::size_t kMostWaiting = 8;  // max waiting calls; further ones are refused
+constexpr std::size_t kMaxWaiting = 8;  // max waiting calls; further ones are refused
 
 }  // namespace
 
@@ -31,14 +31,14 @@ ServiceCaller::~ServiceCaller() {
 void ServiceCaller::Enqueue(const std::string& name, std::function<std::string()> job) {
   {
     const aquafarm::MutexLock lock(mutex_);
-    if (jobs_.size() < kMostWaiting) {
+    if (jobs_.size() < kMaxWaiting) {
       jobs_.push_back(std::move(job));
       job = nullptr;
     }
   }
   changed_.notify_all();
   if (job == nullptr) return;
-  on_answer_(node_.resolveName(name) + ": not called: " + std::to_string(kMostWaiting) +
+  on_answer_(node_.resolveName(name) + ": not called: " + std::to_string(kMaxWaiting) +
              " calls are already waiting");
 }
 

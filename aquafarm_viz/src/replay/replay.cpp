@@ -174,7 +174,7 @@ std::vector<std::size_t> ReplayTape::UpTo(const Step& step) const {
   const std::optional<std::size_t> spec = SpecOf(step);
   if (spec) newest.erase(messages_[*spec].getTopic());
   for (const auto& [topic, position] : newest) positions.push_back(position);
-  for (auto one = steps_.rbegin(); one != steps_.rend() && states < kMostStates; ++one) {
+  for (auto one = steps_.rbegin(); one != steps_.rend() && states < kMaxStates; ++one) {
     if (one->position >= step.position || one->run != step.run) continue;
     positions.push_back(one->position);
     ++states;

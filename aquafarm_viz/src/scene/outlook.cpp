@@ -20,8 +20,8 @@ using aquafarm_msgs::DeviceState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr std::size_t kMostDevices = 1000;  // of a scenario
-constexpr int kMostSteps = 1000;
+constexpr std::size_t kMaxOutlookDevices = 1000;  // of a scenario
+constexpr int kMaxSteps = 1000;
 constexpr double kWorse = 0.5;  // a risk must be lower by this much to count as another ring
 
 double LargestRadius(const TrackPoint& storm) {
@@ -182,7 +182,7 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
       outlook.devices.push_back({device.id, 0.0, 0U, "", {}});
     }
   }
-  outlook.is_known = devices.size() <= kMostDevices;
+  outlook.is_known = devices.size() <= kMaxOutlookDevices;
   if (!outlook.is_known) {
     outlook.devices.clear();
     return outlook;
@@ -196,7 +196,7 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
     const double end = courses[i].ahead.back().step - double(state.step);
     const double known = courses[i].known_until - double(state.step);
     if (known < disaster.steps_left) outlook.known_until = std::min(outlook.known_until, known);
-    last = std::max(last, int(std::min(end, double(kMostSteps))));
+    last = std::max(last, int(std::min(end, double(kMaxSteps))));
   }
   for (int step = 0; step <= last; ++step) AddStep(state, courses, step, devices, outlook);
   std::stable_sort(outlook.devices.begin(), outlook.devices.end(), IsMoreUrgent);

@@ -41,13 +41,13 @@ cv::Point PortShift(const FarmSpec& spec, const FarmState& state,
   constexpr double kEnough = 2.0;  // [cells]
   const int away = -DeliveredSide(spec, port.cell.y);
   cv::Point best(-1, away);
-  double most = -1.0;
+  double widest = -1.0;
   for (const cv::Point shift : {cv::Point(-1, away), {1, away}, {-1, -away}, {1, -away}}) {
     const int x = port.cell.x + shift.x;
     const int y = port.cell.y + shift.y;
     const double room = InGrid(spec, x, y) ? std::min(kEnough, free_around(x, y)) : -1.0;
-    if (room <= most) continue;
-    most = room;
+    if (room <= widest) continue;
+    widest = room;
     best = shift;
   }
   return best;

@@ -38,7 +38,7 @@ void RanchModel::Take(const aquafarm_msgs::TrainingStatusConstPtr& training) {
   if (!moved || !std::isfinite(training->mean_return) || came_++ % every_ != 0) return;
   curve_.push_back({double(training->episode), double(training->mean_return),
                     std::isfinite(training->success_rate) ? double(training->success_rate) : 0.0});
-  if (curve_.size() < kMostPoints) return;
+  if (curve_.size() < kMaxPoints) return;
   for (std::size_t i = 0; 2 * i < curve_.size(); ++i) curve_[i] = curve_[2 * i];
   curve_.resize((curve_.size() + 1) / 2);
   every_ *= 2;

@@ -170,8 +170,8 @@ std::vector<cv::Point> ShownActions(const Values& values, int every) {
 
 visualization_msgs::MarkerArray MoveMarkers(const Values& values,
                                             const aquafarm_msgs::FarmSpec& spec) {
-  constexpr double kMostAcross = 13.0;
-  const int every = std::max(1, int(std::ceil(std::max(spec.width, spec.height) / kMostAcross)));
+  constexpr double kMaxAcross = 13.0;
+  const int every = std::max(1, int(std::ceil(std::max(spec.width, spec.height) / kMaxAcross)));
   const double size = every == 1 ? 1.0 : 0.75 * every;
   Marker arrows = MakeMarker("moves", 0, Marker::TRIANGLE_LIST, kPaper);
   arrows.scale.x = arrows.scale.y = arrows.scale.z = 1.0;

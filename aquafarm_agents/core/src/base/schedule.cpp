@@ -46,8 +46,8 @@ std::string_view ToString(ScheduleKind value) {
 
 double Schedule::At(double progress) const {
   if (kind == ScheduleKind::kConstant) return start;
-  if (progress >= share) return end;
-  const double done = std::max(0.0, progress) / share;
+  if (progress >= fraction) return end;
+  const double done = std::max(0.0, progress) / fraction;
   if (kind == ScheduleKind::kLinear) return start + (end - start) * done;
   if (kind == ScheduleKind::kHarmonic) return start / (1.0 + (start / end - 1.0) * done);
   return start * std::pow(end / start, done);
@@ -71,16 +71,16 @@ Schedule ParseSchedule(const std::string& text, const std::string& what, double 
   }
   if (parts.size() != 4 || schedule.kind == ScheduleKind::kConstant) {
     throw InputError(what + ": got '" + text +
-                     "', expected a number or kind:start:end:share, where kind is linear, "
+                     "', expected a number or kind:start:end:fraction, where kind is linear, "
                      "exponential or harmonic");
   }
   schedule.start = ParseNumber(parts[1], what);
   schedule.end = ParseNumber(parts[2], what);
-  schedule.share = ParseNumber(parts[3], what);
+  schedule.fraction = ParseNumber(parts[3], what);
   CheckRange(schedule.start, what + ": start", min, max);
   CheckRange(schedule.end, what + ": end", min, max);
-  if (schedule.share <= 0.0 || schedule.share > 1.0) {
-    throw InputError(what + ": share: got " + parts[3] + ", expected (0, 1]");
+  if (schedule.fraction <= 0.0 || schedule.fraction > 1.0) {
+    throw InputError(what + ": fraction: got " + parts[3] + ", expected (0, 1]");
   }
   if (schedule.kind != ScheduleKind::kLinear && (schedule.start <= 0.0 || schedule.end <= 0.0)) {
     throw InputError(what + ": got '" + text + "', expected start and end above 0 when " +
@@ -92,7 +92,7 @@ Schedule ParseSchedule(const std::string& text, const std::string& what, double 
 std::string ToString(const Schedule& schedule) {
   if (schedule.kind == ScheduleKind::kConstant) return FormatNumber(schedule.start);
   return std::string(ToString(schedule.kind)) + ":" + FormatNumber(schedule.start) + ":" +
-         FormatNumber(schedule.end) + ":" + FormatNumber(schedule.share);
+         FormatNumber(schedule.end) + ":" + FormatNumber(schedule.fraction);
 }
 
 }  // namespace aquafarm::agents

@@ -10,8 +10,8 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr float kMeanShare = 0.01F;  // weight of a step in the moving average of the error
-constexpr float kMostPay = 5.0F;     // in mean intrinsic rewards: bounds outliers
+constexpr float kMeanShare = 0.01F;    // weight of a step in the moving average of the error
+constexpr float kMaxIntrinsic = 5.0F;  // in mean intrinsic rewards: bounds outliers
 
 class CuriousLearner final : public Learner {
  public:
@@ -23,7 +23,9 @@ class CuriousLearner final : public Learner {
         weight_(weight),
         module_(spec.feature_count, seed) {}
 
-  std::uint8_t encodings() const override { return learner_->encodings() | kFeaturesBit; }
+  std::uint8_t observation_types() const override {
+    return learner_->observation_types() | kFeaturesBit;
+  }
   std::string options() const override { return learner_->options(); }
   void Step(const StepResults& results, double progress,
             std::vector<std::uint8_t>& actions) override;
@@ -41,17 +43,17 @@ class CuriousLearner final : public Learner {
   const std::size_t agents_;
   const Schedule weight_;
   CuriosityModule module_;
-  StepResults paid_;                       // results with the intrinsic reward added
-  std::vector<float> seen_;                // [N, S, F] at the last step; empty before it
-  std::vector<std::uint8_t> taken_;        // [N, S] there
-  std::vector<std::uint8_t> was_in_play_;  // [N, S] there
-  float mean_error_{};                     // moving average; 0 before the first step
-  std::uint64_t steps_{};                  // of all farms
+  StepResults augmented_;                 // results with the intrinsic reward added
+  std::vector<float> seen_;               // [N, S, F] at the last step; empty before it
+  std::vector<std::uint8_t> taken_;       // [N, S] there
+  std::vector<std::uint8_t> was_active_;  // [N, S] there
+  float mean_error_{};                    // moving average; 0 before the first step
+  std::uint64_t steps_{};                 // of all farms
   // Scratch: the transitions of this step.
   std::vector<float> from_;
   std::vector<float> to_;
   std::vector<std::int64_t> actions_;
-  std::vector<std::size_t> entries_;
+  std::vector<std::size_t> slots_;
   std::vector<float> errors_;
 };
 
@@ -61,39 +63,39 @@ void CuriousLearner::Step(const StepResults& results, double progress,
   steps_ += FarmSteps(results);
   if (weight > 0.0F && !seen_.empty()) {
     AddIntrinsicReward(results, weight);
-    learner_->Step(paid_, progress, actions);
+    learner_->Step(augmented_, progress, actions);
   } else {
     learner_->Step(results, progress, actions);
   }
   seen_ = results.features;
   taken_ = actions;
-  was_in_play_ = results.in_play;
+  was_active_ = results.active;
 }
 
 void CuriousLearner::AddIntrinsicReward(const StepResults& results, float weight) {
   from_.clear();
   to_.clear();
   actions_.clear();
-  entries_.clear();
-  for (std::size_t entry = 0; entry < taken_.size(); ++entry) {
-    if (results.started[entry / agents_] != 0 || was_in_play_[entry] == 0) continue;
-    const auto begin = static_cast<std::ptrdiff_t>(entry * features_);
+  slots_.clear();
+  for (std::size_t slot = 0; slot < taken_.size(); ++slot) {
+    if (results.is_first[slot / agents_] != 0 || was_active_[slot] == 0) continue;
+    const auto begin = static_cast<std::ptrdiff_t>(slot * features_);
     const auto end = begin + static_cast<std::ptrdiff_t>(features_);
     from_.insert(from_.end(), seen_.begin() + begin, seen_.begin() + end);
     to_.insert(to_.end(), results.features.begin() + begin, results.features.begin() + end);
-    actions_.push_back(taken_[entry]);
-    entries_.push_back(entry);
+    actions_.push_back(taken_[slot]);
+    slots_.push_back(slot);
   }
-  paid_ = results;
-  if (entries_.empty()) return;
+  augmented_ = results;
+  if (slots_.empty()) return;
   module_.Step(from_, to_, actions_, steps_, errors_);
   float sum = 0.0F;
   for (const float error : errors_) sum += error;
   const float mean = sum / static_cast<float>(errors_.size());
   mean_error_ = mean_error_ == 0.0F ? mean : mean_error_ + kMeanShare * (mean - mean_error_);
   if (!(mean_error_ > 0.0F)) return;
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    paid_.rewards[entries_[i]] += weight * std::min(errors_[i] / mean_error_, kMostPay);
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    augmented_.rewards[slots_[i]] += weight * std::min(errors_[i] / mean_error_, kMaxIntrinsic);
   }
 }
 
@@ -102,7 +104,7 @@ void CuriousLearner::Save(Checkpoint& checkpoint) const {
   module_.Save(checkpoint);
   checkpoint.SetArray("curiosity.seen", seen_);
   checkpoint.SetArray("curiosity.taken", taken_);
-  checkpoint.SetArray("curiosity.in_play", was_in_play_);
+  checkpoint.SetArray("curiosity.in_play", was_active_);
   checkpoint.SetArray("curiosity.mean", std::vector<float>{mean_error_});
   checkpoint.SetArray("curiosity.steps", std::vector<std::uint64_t>{steps_});
 }
@@ -110,12 +112,12 @@ void CuriousLearner::Save(Checkpoint& checkpoint) const {
 void CuriousLearner::Load(const Checkpoint& checkpoint) {
   std::vector<float> seen;
   std::vector<std::uint8_t> taken;
-  std::vector<std::uint8_t> in_play;
+  std::vector<std::uint8_t> active;
   std::vector<float> mean;
   std::vector<std::uint64_t> steps{0};
   checkpoint.GetArray("curiosity.taken", checkpoint.Section("curiosity.taken").size(), taken);
   checkpoint.GetArray("curiosity.seen", taken.size() * features_, seen);
-  checkpoint.GetArray("curiosity.in_play", taken.size(), in_play);
+  checkpoint.GetArray("curiosity.in_play", taken.size(), active);
   checkpoint.GetArray("curiosity.mean", 1, mean);
   // Older checkpoints do not contain this section.
   if (checkpoint.Has("curiosity.steps")) checkpoint.GetArray("curiosity.steps", 1, steps);
@@ -123,7 +125,7 @@ void CuriousLearner::Load(const Checkpoint& checkpoint) {
   module_.Load(checkpoint);
   seen_ = std::move(seen);
   taken_ = std::move(taken);
-  was_in_play_ = std::move(in_play);
+  was_active_ = std::move(active);
   mean_error_ = mean[0];
   steps_ = steps[0];
 }

@@ -13,7 +13,7 @@
 namespace aquafarm::agents {
 namespace {
 
-std::uint8_t EncodingOf(NetworkKind network) {
+std::uint8_t ObservationTypeOf(NetworkKind network) {
   return network == NetworkKind::kCnn ? kPlanesBit : kFeaturesBit;
 }
 
@@ -30,17 +30,17 @@ class GreedyDqnPolicy final : public Policy {
         computed_(MakeValueNetwork<Scalar>(spec, options, network_, parameters_, Learns::kNo)) {
     parameters_.FromVector(weights);
   }
-  std::uint8_t encodings() const override { return EncodingOf(options_.network); }
+  std::uint8_t observation_types() const override { return ObservationTypeOf(options_.network); }
   void Begin(std::uint64_t, std::int32_t) override {}
   /// Inactive agents get action 0 and value 0. The network evaluates the rows from the first to the
   /// last active agent.
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
-    const auto is_in_play = [](std::uint8_t flag) { return flag != 0; };
-    const auto& flags = results.in_play;
+    const auto is_active = [](std::uint8_t flag) { return flag != 0; };
+    const auto& flags = results.active;
     const auto first = static_cast<std::size_t>(
-        std::find_if(flags.begin(), flags.end(), is_in_play) - flags.begin());
+        std::find_if(flags.begin(), flags.end(), is_active) - flags.begin());
     const auto end = static_cast<std::size_t>(
-        flags.rend() - std::find_if(flags.rbegin(), flags.rend(), is_in_play));
+        flags.rend() - std::find_if(flags.rbegin(), flags.rend(), is_active));
     actions.assign(results.legal.size(), 0);
     values_.assign(results.legal.size(), 0.0F);
     if (first >= end) return;
@@ -102,7 +102,7 @@ class DqnLearner final : public QLearner<Scalar, QNetwork> {
   DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed, const DeepOptions& options,
              std::string resolved);
 
-  std::uint8_t encodings() const override { return EncodingOf(options_.network); }
+  std::uint8_t observation_types() const override { return ObservationTypeOf(options_.network); }
   std::unique_ptr<Policy> GreedyPolicy() const override {
     return std::make_unique<GreedyDqnPolicy<Scalar>>(spec_, options_,
                                                      optimizer_.acting().ToVector());
@@ -164,7 +164,7 @@ template <typename Scalar>
 void DqnLearner<Scalar>::Draw() {
   for (std::size_t i = 0; i < size(); ++i) {
     const TransitionIndex moment = sampler_.Draw(rng_, i);
-    batch_.drawn[i] = replay_.Row(moment.age, moment.entry);
+    batch_.drawn[i] = replay_.Row(moment.age, moment.slot);
     if (options_.joint) {
       DrawJoint(i, moment);
     } else {
@@ -180,7 +180,7 @@ void DqnLearner<Scalar>::Draw() {
 template <typename Scalar>
 void DqnLearner<Scalar>::DrawAlone(std::size_t i, const TransitionIndex& moment) {
   const Transition one =
-      replay_.At(moment.age, moment.entry, static_cast<std::size_t>(options_.n_step),
+      replay_.At(moment.age, moment.slot, static_cast<std::size_t>(options_.n_step),
                  static_cast<float>(options_.gamma));
   batch_.rewards[i] = one.reward * static_cast<float>(options_.reward_scale);
   Fill(i, one.from, one.to, one.discount);
@@ -189,7 +189,7 @@ void DqnLearner<Scalar>::DrawAlone(std::size_t i, const TransitionIndex& moment)
 // The value of an agent that is done is excluded from the team's value.
 template <typename Scalar>
 void DqnLearner<Scalar>::DrawJoint(std::size_t i, const TransitionIndex& moment) {
-  const std::size_t first = moment.entry;
+  const std::size_t first = moment.slot;
   const JointTransition all =
       replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
                       static_cast<float>(options_.gamma), team_rewards_.data());
@@ -284,9 +284,9 @@ std::unique_ptr<Learner> MakeLearner(const EnvironmentSpec& spec, std::uint64_t 
 
 }  // namespace
 
-std::uint8_t DqnEncodings(const std::string& options) {
+std::uint8_t DqnObservationTypes(const std::string& options) {
   std::string resolved;
-  return EncodingOf(Parse(options, resolved).network);
+  return ObservationTypeOf(Parse(options, resolved).network);
 }
 
 std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed,

@@ -41,7 +41,7 @@ class QLearner : public ReplayLearner<Scalar> {
       : ReplayLearner<Scalar>(spec, seed, std::move(resolved), FindDevice(options.device),
                               {options.exploration,
                                options.reward_scale,
-                               {static_cast<std::size_t>(options.buffer_size), EntryCount(spec),
+                               {static_cast<std::size_t>(options.buffer_size), SlotCount(spec),
                                 spec.agents, sample.observation_size, sample.recurrent_size},
                                options,
                                sample.steps,
@@ -54,7 +54,7 @@ class QLearner : public ReplayLearner<Scalar> {
         optimizer_(options, *online_, *target_, *average_, this->device_),
         repetitions_(spec, options.repetition_penalty * options.reward_scale) {}
 
-  /// Values by which the agents act: [entries, kActionCount].
+  /// Values by which the agents act: [slots, kActionCount].
   virtual const float* ActingValues(const StepResults& results) = 0;
 
   void CountSteps(std::uint64_t farm_steps) final { optimizer_.Count(farm_steps, this->progress_); }

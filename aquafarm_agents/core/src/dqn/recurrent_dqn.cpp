@@ -23,8 +23,8 @@ std::shared_ptr<RecurrentNetwork> MakeRecurrent(const EnvironmentSpec& spec,
 /// Recurrent state of every agent: h and c, [slots, 2, hidden], zero at the start of an episode.
 class RecurrentState {
  public:
-  RecurrentState(std::size_t entries, std::int64_t hidden)
-      : hidden_(hidden), values_(entries * 2 * static_cast<std::size_t>(hidden)) {}
+  RecurrentState(std::size_t slots, std::int64_t hidden)
+      : hidden_(hidden), values_(slots * 2 * static_cast<std::size_t>(hidden)) {}
 
   std::size_t size_of_one() const { return 2 * static_cast<std::size_t>(hidden_); }
   std::vector<float>& values() { return values_; }
@@ -32,8 +32,8 @@ class RecurrentState {
 
   void ClearStarted(const StepResults& results, std::int32_t agents) {
     const std::size_t of_farm = static_cast<std::size_t>(agents) * size_of_one();
-    for (std::size_t farm = 0; farm < results.started.size(); ++farm) {
-      if (results.started[farm] == 0) continue;
+    for (std::size_t farm = 0; farm < results.is_first.size(); ++farm) {
+      if (results.is_first[farm] == 0) continue;
       const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(farm * of_farm);
       std::fill_n(begin, of_farm, 0.0F);
     }
@@ -57,7 +57,7 @@ class RecurrentPolicy final : public Policy {
         recurrent_state_(0, options.hidden_size) {
     parameters_.FromVector(weights);
   }
-  std::uint8_t encodings() const override { return kFeaturesBit; }
+  std::uint8_t observation_types() const override { return kFeaturesBit; }
   void Begin(std::uint64_t, std::int32_t farms) override {
     recurrent_state_ = RecurrentState(
         static_cast<std::size_t>(farms) * static_cast<std::size_t>(agents_), options_.hidden_size);
@@ -91,7 +91,7 @@ class RecurrentDqnLearner final : public QLearner<float, RecurrentNetwork> {
   RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint64_t seed, const DeepOptions& options,
                       std::string resolved);
 
-  std::uint8_t encodings() const override { return kFeaturesBit; }
+  std::uint8_t observation_types() const override { return kFeaturesBit; }
   std::unique_ptr<Policy> GreedyPolicy() const override {
     return std::make_unique<RecurrentPolicy>(spec_, options_, optimizer_.acting().ToVector());
   }
@@ -130,7 +130,7 @@ RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint6
                [&] { return MakeRecurrent(spec, options, seed); },
                {static_cast<std::size_t>(spec.feature_count),
                 2 * static_cast<std::size_t>(options.hidden_size), 1, 1}),
-      recurrent_state_(EntryCount(spec), options.hidden_size),
+      recurrent_state_(SlotCount(spec), options.hidden_size),
       online_values_(
           MakeRecurrentValueNetwork(spec, options, online_, optimizer_.online(), Learns::kYes)),
       target_values_(
@@ -251,7 +251,7 @@ DeepOptions Parse(const std::string& text, std::string& resolved) {
 
 }  // namespace
 
-std::uint8_t RecurrentDqnEncodings(const std::string& options) {
+std::uint8_t RecurrentDqnObservationTypes(const std::string& options) {
   std::string resolved;
   Parse(options, resolved);
   return kFeaturesBit;

@@ -43,7 +43,7 @@ FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
       encoder_(*family_),
       spec_(MakeSpec(*family_, encoder_, options.farms)),
       share_(WholeOr(share, options.farms)),
-      own_rewards_(WantsOwnRewards(options.encodings, spec_)),
+      own_rewards_(WantsOwnRewards(options.observation_types, spec_)),
       threads_(std::max(1, std::min(options.threads, options.farms))),
       views_(static_cast<std::size_t>(threads_)) {
   AQUAFARM_CHECK_EQ(family_->family.has_value(), true);
@@ -54,15 +54,15 @@ FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
   spec_.step_limit = std::max(spec_.step_limit, kMaxRanchSteps);
   const std::string is_family =
       "scenario " + spec_.scenario_name + ": is a family of ranches of different sizes, expected ";
-  if ((options.encodings & kStatesBit) != 0) {
+  if ((options.observation_types & kStatesBit) != 0) {
     throw InputError(is_family +
                      "one ranch: planners need one ranch; evaluate a policy that reads features, "
                      "or generalist");
   }
-  if ((options.encodings & (kIndexBit | kPlanesBit)) != 0) {
+  if ((options.observation_types & (kIndexBit | kPlanesBit)) != 0) {
     throw InputError(is_family + "a learner that reads features: use algorithm ppo");
   }
-  std::uint8_t bits = options.encodings & kFeaturesBit;
+  std::uint8_t bits = options.observation_types & kFeaturesBit;
   if (options.hashes) bits |= kHashesField;
   if (own_rewards_) bits |= kTermsField;
   const StepShape shape{static_cast<std::size_t>(spec_.farms),
@@ -111,8 +111,8 @@ const StepResults& FamilyEnvironment::Step(const std::vector<std::uint8_t>& acti
   return results_;
 }
 
-void FamilyEnvironment::Write(std::int32_t i, std::int32_t thread, bool started) {
-  WriteFarm(farm(i), encoder_, static_cast<std::size_t>(i), started,
+void FamilyEnvironment::Write(std::int32_t i, std::int32_t thread, bool is_first) {
+  WriteFarm(farm(i), encoder_, static_cast<std::size_t>(i), is_first,
             views_[static_cast<std::size_t>(thread)], output_);
 }
 

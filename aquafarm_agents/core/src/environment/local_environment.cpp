@@ -57,18 +57,18 @@ std::string JoinSavedFarms(const std::vector<std::string>& parts) {
   return ToBytes(all);
 }
 
-bool WantsOwnRewards(std::uint8_t encodings, EnvironmentSpec& spec) {
-  if ((encodings & kOwnRewardsBit) == 0 || !spec.team_reward) return false;
+bool WantsOwnRewards(std::uint8_t observation_types, EnvironmentSpec& spec) {
+  if ((observation_types & kOwnRewardsBit) == 0 || !spec.team_reward) return false;
   spec.team_reward = false;
   return true;
 }
 
 void UseOwnRewards(StepResults& results) {
   AQUAFARM_CHECK_EQ(results.terms.size(), results.rewards.size() * kRewardTermCount);
-  for (std::size_t entry = 0; entry < results.rewards.size(); ++entry) {
+  for (std::size_t slot = 0; slot < results.rewards.size(); ++slot) {
     // Same order of summation as RewardTerms::Total.
-    const auto own = results.terms.begin() + static_cast<std::ptrdiff_t>(entry * kRewardTermCount);
-    results.rewards[entry] = std::accumulate(own, own + kRewardTermCount, 0.0F);
+    const auto own = results.terms.begin() + static_cast<std::ptrdiff_t>(slot * kRewardTermCount);
+    results.rewards[slot] = std::accumulate(own, own + kRewardTermCount, 0.0F);
   }
 }
 
@@ -96,19 +96,19 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
     : batch_(std::move(scenario), options.farms, options.threads),
       spec_(MakeSpec(batch_.scenario(), batch_.encoder(), options.farms)),
       share_(WholeOr(share, options.farms)),
-      own_rewards_(WantsOwnRewards(options.encodings, spec_)) {
-  if ((options.encodings & kIndexBit) != 0 && spec_.state_count == 0) {
+      own_rewards_(WantsOwnRewards(options.observation_types, spec_)) {
+  if ((options.observation_types & kIndexBit) != 0 && spec_.state_count == 0) {
     throw InputError(
         "scenario " + spec_.scenario_name +
         ": too many states for a table, expected a learner with a network; use algorithm auto");
   }
-  std::uint8_t bits = options.encodings & (kIndexBit | kFeaturesBit | kPlanesBit);
+  std::uint8_t bits = options.observation_types & (kIndexBit | kFeaturesBit | kPlanesBit);
   if (options.hashes) bits |= kHashesField;
   if (own_rewards_) bits |= kTermsField;
   const StepShape shape = batch_.shape();
   SizeStepFields(shape, bits, results_, output_);
   results_.finished.reserve(shape.farms);
-  if ((options.encodings & kStatesBit) != 0) results_.states.resize(shape.farms);
+  if ((options.observation_types & kStatesBit) != 0) results_.states.resize(shape.farms);
 }
 
 const StepResults& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
@@ -139,7 +139,7 @@ void LocalEnvironment::Complete() {
 // A finished farm starts its next episode in the next step, so each reason marks a new result.
 void LocalEnvironment::CollectFinished() {
   for (std::int32_t i = 0; i < spec_.farms; ++i) {
-    if (results_.reasons[static_cast<std::size_t>(i)] == 0) continue;
+    if (results_.end_reasons[static_cast<std::size_t>(i)] == 0) continue;
     results_.finished.push_back(SummaryOf(batch_.farm(i).record(), share_.first + i));
   }
 }

@@ -18,9 +18,9 @@ std::string WhyNoBestMoves(const Scenario& scenario) {
          std::to_string(kMaxCells);
 }
 
-std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t encodings, Policy& policy,
-                                        const std::atomic<bool>* stop) {
-  if (!WhyNoBestMoves(farm.scenario()).empty() || !farm.ships()[0].in_play) return {};
+std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t observation_types,
+                                        Policy& policy, const std::atomic<bool>* stop) {
+  if (!WhyNoBestMoves(farm.scenario()).empty() || !farm.ships()[0].active) return {};
   const std::vector<Cell> cells = FreeCells(farm);
   std::vector<GreedyAction> moves;
   std::vector<std::uint8_t> actions;
@@ -29,8 +29,8 @@ std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t encodings
     const std::size_t first = moves.size();
     const auto count = static_cast<std::int32_t>(std::min(kCellsAtOnce, cells.size() - first));
     if (farms == nullptr || farms->spec().farms != count) {
-      farms = std::make_unique<LocalEnvironment>(farm.shared_scenario(),
-                                                 EnvironmentOptions{count, encodings, false, 1});
+      farms = std::make_unique<LocalEnvironment>(
+          farm.shared_scenario(), EnvironmentOptions{count, observation_types, false, 1});
     }
     policy.Begin(farm.seed(), count);
     policy.Act(PlaceInEach(farm, cells, first, *farms), actions);

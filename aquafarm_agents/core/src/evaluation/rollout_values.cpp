@@ -79,9 +79,9 @@ json ToRows(const std::vector<T>& values, std::int32_t width) {
 
 }  // namespace
 
-RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
-                         const MakePolicyFor& make_policy, std::uint64_t seed,
-                         std::uint64_t episode, std::int32_t episodes,
+RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario,
+                         std::uint8_t observation_types, const MakePolicyFor& make_policy,
+                         std::uint64_t seed, std::uint64_t episode, std::int32_t episodes,
                          const std::atomic<bool>* stop, double discount) {
   if (scenario->CellCount() > kMaxCells) {
     throw InputError("values: got a farm of " + std::to_string(scenario->CellCount()) +
@@ -103,7 +103,7 @@ RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::u
     for (std::size_t first = 0; first < starts.size(); first += kCellsAtOnce) {
       const std::size_t count = std::min(kCellsAtOnce, starts.size() - first);
       LocalEnvironment environment(scenario,
-                                   {static_cast<std::int32_t>(count), encodings, false, 1});
+                                   {static_cast<std::int32_t>(count), observation_types, false, 1});
       const std::unique_ptr<Policy> policy = make_policy(environment.spec());
       const auto returns = PlayOut(environment, &PlaceInEach(farm, starts, first, environment),
                                    *policy, values.seed, discount, stop);

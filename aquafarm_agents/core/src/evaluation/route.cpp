@@ -77,10 +77,10 @@ RouteStep Look(const Farm& farm) {
 
 }  // namespace
 
-Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
+Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t observation_types,
                  const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
                  const std::atomic<bool>* stop) {
-  LocalEnvironment environment(scenario, {1, encodings, false, 1});
+  LocalEnvironment environment(scenario, {1, observation_types, false, 1});
   const std::unique_ptr<Policy> policy = make_policy(environment.spec());
   policy->Begin(EvaluationSeed(seed), 1);
   Route route;
@@ -88,7 +88,7 @@ Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t e
   const std::unique_ptr<Policy> elsewhere = make_policy(environment.spec());
   const StepResults* results = &environment.Reset(EvaluationSeed(seed), episode);
   route.layout = farm.shared_layout();
-  route.at_start = GreedyActions(farm, encodings, *elsewhere, stop);
+  route.at_start = GreedyActions(farm, observation_types, *elsewhere, stop);
   route.steps.push_back(Look(farm));
   std::vector<std::uint8_t> actions;
   while (!farm.over() && !IsStopped(stop)) {
@@ -98,7 +98,7 @@ Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t e
     results = &environment.Step(actions);
     route.steps.push_back(Look(farm));
     if (route.after_pickup.empty() && farm.ships()[0].aboard > 0 && !farm.over()) {
-      route.after_pickup = GreedyActions(farm, encodings, *elsewhere, stop);
+      route.after_pickup = GreedyActions(farm, observation_types, *elsewhere, stop);
     }
   }
   route.result = SummaryOf(farm.record(), 0);

@@ -5,9 +5,9 @@
 
 namespace aquafarm::agents {
 
-AgentRng::AgentRng(std::uint64_t seed, std::size_t entries, std::size_t first) {
-  streams_.reserve(entries);
-  for (std::size_t i = 0; i < entries; ++i) {
+AgentRng::AgentRng(std::uint64_t seed, std::size_t slots, std::size_t first) {
+  streams_.reserve(slots);
+  for (std::size_t i = 0; i < slots; ++i) {
     streams_.emplace_back(
         StreamKey{seed, 0, RngStream::kExploration, static_cast<std::uint32_t>(first + i)});
   }

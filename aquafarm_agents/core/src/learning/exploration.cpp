@@ -116,12 +116,12 @@ std::array<double, kActionCount> BoltzmannProbabilities(const float* values, Act
   return probabilities;
 }
 
-Explorer::Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t entries,
+Explorer::Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t slots,
                    double value_scale)
     : kind_(options.kind),
       schedule_(options.level),
       value_scale_(value_scale),
-      streams_(seed, entries) {
+      streams_(seed, slots) {
   SetProgress(0.0);
 }
 
@@ -131,9 +131,9 @@ void Explorer::SetProgress(double progress) {
   epsilon_ = static_cast<float>(level_);
 }
 
-std::uint8_t Explorer::ChooseBoltzmann(const float* values, ActionMask allowed, std::size_t entry) {
+std::uint8_t Explorer::ChooseBoltzmann(const float* values, ActionMask allowed, std::size_t slot) {
   const auto probabilities = BoltzmannProbabilities(values, allowed, level_ * value_scale_);
-  auto left = static_cast<double>(streams_[entry].Unit());
+  auto left = static_cast<double>(streams_[slot].Unit());
   std::uint8_t chosen = 0;
   for (std::uint8_t a = 0; a < kActionCount; ++a) {
     if (probabilities[a] <= 0.0) continue;

@@ -38,7 +38,7 @@ class Share {
           if (field.rows == StepField::Rows::kFarms) {
             to = from;
           } else {
-            Take(from, agent, agents, all.reasons.size(), to);
+            Take(from, agent, agents, all.end_reasons.size(), to);
           }
         },
         all, share_);
@@ -72,7 +72,7 @@ class IndependentPolicy final : public Policy {
  public:
   explicit IndependentPolicy(std::vector<std::unique_ptr<Policy>> policies)
       : policies_(std::move(policies)) {}
-  std::uint8_t encodings() const override { return policies_[0]->encodings(); }
+  std::uint8_t observation_types() const override { return policies_[0]->observation_types(); }
   void Begin(std::uint64_t seed, std::int32_t farms) override {
     for (std::size_t i = 0; i < policies_.size(); ++i) policies_[i]->Begin(SeedOf(seed, i), farms);
   }
@@ -98,7 +98,7 @@ class IndependentLearner final : public Learner {
       learners_.push_back(make(SpecOfOne(spec), SeedOf(seed, i)));
     }
   }
-  std::uint8_t encodings() const override { return learners_[0]->encodings(); }
+  std::uint8_t observation_types() const override { return learners_[0]->observation_types(); }
   std::string options() const override { return learners_[0]->options(); }
   void Step(const StepResults& results, double progress,
             std::vector<std::uint8_t>& actions) override {

@@ -30,11 +30,11 @@ RandomActions ParseRandomActions(const std::string& options) {
   return actions;
 }
 
-std::uint8_t RandomEncodings(const std::string& options) {
+std::uint8_t RandomObservationTypes(const std::string& options) {
   return ParseRandomActions(options) == RandomActions::kReachable ? kFeaturesBit : 0;
 }
 
-std::uint8_t RandomPolicy::encodings() const {
+std::uint8_t RandomPolicy::observation_types() const {
   return actions_ == RandomActions::kReachable ? kFeaturesBit : 0;
 }
 

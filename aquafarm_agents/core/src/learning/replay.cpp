@@ -46,15 +46,15 @@ std::size_t SumTree::Find(float mass) const {
 
 template <typename Scalar>
 Replay<Scalar>::Replay(const ReplayOptions& options)
-    : options_(options), moments_(std::max<std::size_t>(2, options.capacity / options.entries)) {
+    : options_(options), moments_(std::max<std::size_t>(2, options.capacity / options.slots)) {
   const std::size_t all = rows();
   observations_.resize(all * options_.observation_size);
   recurrent_state_.resize(all * options_.recurrent_size);
   rewards_.resize(all);
   legal_.resize(all);
   actions_.resize(all);
-  reasons_.resize(all);
-  started_.resize(all);
+  end_reasons_.resize(all);
+  is_first_.resize(all);
 }
 
 template <typename Scalar>
@@ -66,40 +66,40 @@ void Replay<Scalar>::Add(const StepResults& results, const Scalar* observations,
     ++size_;
   }
   const std::size_t row = Row(size_ - 1, 0);
-  const std::size_t entries = options_.entries;
-  std::copy_n(observations, entries * options_.observation_size,
+  const std::size_t slots = options_.slots;
+  std::copy_n(observations, slots * options_.observation_size,
               observations_.data() + row * options_.observation_size);
   if (options_.recurrent_size > 0) {
-    std::copy_n(recurrent_state, entries * options_.recurrent_size,
+    std::copy_n(recurrent_state, slots * options_.recurrent_size,
                 recurrent_state_.data() + row * options_.recurrent_size);
   }
-  std::copy_n(results.rewards.data(), entries, rewards_.data() + row);
-  std::copy_n(results.legal.data(), entries, legal_.data() + row);
-  for (std::size_t i = 0; i < entries; ++i) {
+  std::copy_n(results.rewards.data(), slots, rewards_.data() + row);
+  std::copy_n(results.legal.data(), slots, legal_.data() + row);
+  for (std::size_t i = 0; i < slots; ++i) {
     const std::size_t farm = i / static_cast<std::size_t>(options_.agents);
     // An agent that is not in play is done, even if its farm's episode continues.
     constexpr auto kDone = static_cast<std::uint8_t>(EndReason::kAllRetrieved);
-    reasons_[row + i] = results.in_play[i] != 0 ? results.reasons[farm] : kDone;
-    started_[row + i] = results.started[farm];
+    end_reasons_[row + i] = results.active[i] != 0 ? results.end_reasons[farm] : kDone;
+    is_first_[row + i] = results.is_first[farm];
   }
 }
 
 template <typename Scalar>
 void Replay<Scalar>::SetActions(const std::vector<std::uint8_t>& actions) {
-  AQUAFARM_CHECK_EQ(actions.size(), options_.entries);
+  AQUAFARM_CHECK_EQ(actions.size(), options_.slots);
   std::copy(actions.begin(), actions.end(), actions_.data() + Row(size_ - 1, 0));
 }
 
 template <typename Scalar>
-Transition Replay<Scalar>::At(std::size_t age, std::size_t entry, std::size_t steps,
+Transition Replay<Scalar>::At(std::size_t age, std::size_t slot, std::size_t steps,
                               float discount) const {
   Transition transition;
-  transition.from = Row(age, entry);
+  transition.from = Row(age, slot);
   transition.action = actions_[transition.from];
   transition.discount = 1.0F;
   for (std::size_t k = 1; k <= steps; ++k) {
-    const std::size_t row = Row(age + k, entry);
-    if (k > 1 && started(row)) break;  // the episode was lost: end at its last stored time step
+    const std::size_t row = Row(age + k, slot);
+    if (k > 1 && is_first(row)) break;  // the episode was lost: end at its last stored time step
     transition.reward += transition.discount * rewards_[row];
     transition.discount *= discount;
     transition.to = row;
@@ -119,7 +119,7 @@ JointTransition Replay<Scalar>::JointAt(std::size_t age, std::size_t first, std:
   std::fill_n(rewards, agents, 0.0F);
   for (std::size_t k = 1; k <= steps; ++k) {
     const std::size_t row = Row(age + k, first);
-    if (k > 1 && started(row)) break;
+    if (k > 1 && is_first(row)) break;
     bool goes_on = false;
     for (std::size_t agent = 0; agent < agents; ++agent) {
       rewards[agent] += transition.discount * rewards_[row + agent];
@@ -136,7 +136,7 @@ template <typename Scalar>
 std::size_t Replay<Scalar>::bytes() const {
   const auto of = [](const auto& values) { return values.size() * sizeof(values[0]); };
   return of(observations_) + of(recurrent_state_) + of(rewards_) + of(legal_) + of(actions_) +
-         of(reasons_) + of(started_);
+         of(end_reasons_) + of(is_first_);
 }
 
 template <typename Scalar>
@@ -148,8 +148,8 @@ void Replay<Scalar>::Save(Checkpoint& checkpoint) const {
   checkpoint.LendArray("replay.rewards", rewards_);
   checkpoint.LendArray("replay.legal", legal_);
   checkpoint.LendArray("replay.actions", actions_);
-  checkpoint.LendArray("replay.reasons", reasons_);
-  checkpoint.LendArray("replay.started", started_);
+  checkpoint.LendArray("replay.reasons", end_reasons_);
+  checkpoint.LendArray("replay.started", is_first_);
 }
 
 template <typename Scalar>
@@ -165,8 +165,8 @@ void Replay<Scalar>::Load(const Checkpoint& checkpoint) {
   checkpoint.GetArray("replay.rewards", rewards_.size(), rewards_);
   checkpoint.GetArray("replay.legal", legal_.size(), legal_);
   checkpoint.GetArray("replay.actions", actions_.size(), actions_);
-  checkpoint.GetArray("replay.reasons", reasons_.size(), reasons_);
-  checkpoint.GetArray("replay.started", started_.size(), started_);
+  checkpoint.GetArray("replay.reasons", end_reasons_.size(), end_reasons_);
+  checkpoint.GetArray("replay.started", is_first_.size(), is_first_);
   oldest_ = place.oldest;
   size_ = place.size;
 }

@@ -12,10 +12,6 @@ namespace {
 
 constexpr float kLossShare = 0.01F;  // weight of one step in the moving average of the loss
 
-std::size_t Entries(const EnvironmentSpec& spec) {
-  return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
-}
-
 }  // namespace
 
 std::uint64_t QTable::BytesOf(const EnvironmentSpec& spec) {
@@ -51,8 +47,8 @@ TableLearner::TableLearner(const EnvironmentSpec& spec, std::uint64_t seed,
     : options_(TabularOptions::Parse(options, resolved_)),
       farms_(spec.farms),
       table_(spec, static_cast<float>(options_.initial_value)),
-      explorer_(options_.exploration, seed, Entries(spec)),
-      pending_(Entries(spec)),
+      explorer_(options_.exploration, seed, SlotCount(spec)),
+      pending_(SlotCount(spec)),
       loss_(std::nanf("")) {}
 
 void TableLearner::SetProgress(double progress) {
@@ -111,26 +107,26 @@ void TabularLearner<Rule>::Step(const StepResults& results, double progress,
   float* const values = table_.values.data();
   float error_sum = 0.0F;
   std::int32_t learnt = 0;
-  std::size_t entry = 0;
+  std::size_t slot = 0;
   for (std::int32_t farm = 0; farm < farms_; ++farm) {
     const auto f = static_cast<std::size_t>(farm);
-    const bool is_transition = results.started[f] == 0;
-    for (std::int32_t agent = 0; agent < table_.agents; ++agent, ++entry) {
-      const ActionMask allowed = AllowedOf(results.legal[entry]);
-      const std::size_t row = table_.Row(agent, results.index[entry]);
+    const bool is_transition = results.is_first[f] == 0;
+    for (std::int32_t agent = 0; agent < table_.agents; ++agent, ++slot) {
+      const ActionMask allowed = ActionMaskOf(results.legal[slot]);
+      const std::size_t row = table_.Row(agent, results.index[slot]);
       const Best best = BestOf(values + row, allowed);
-      const std::uint8_t action = explorer_.Choose(values + row, allowed, best, entry);
-      if (is_transition && pending_[entry] != kNoAction) {
-        const bool goes_on = !results.IsDone(entry, f);
+      const std::uint8_t action = explorer_.Choose(values + row, allowed, best, slot);
+      if (is_transition && pending_[slot] != kNoAction) {
+        const bool goes_on = !results.IsDone(slot, f);
         const float next = goes_on ? Rule::NextValue(best.value, values[row + action]) : 0.0F;
-        float& value = values[pending_[entry]];
-        const float error = results.rewards[entry] + discount * next - value;
+        float& value = values[pending_[slot]];
+        const float error = results.rewards[slot] + discount * next - value;
         value += rate * error;
         error_sum += error * error;
         ++learnt;
       }
-      pending_[entry] = results.in_play[entry] != 0 ? row + action : kNoAction;
-      actions[entry] = action;
+      pending_[slot] = results.active[slot] != 0 ? row + action : kNoAction;
+      actions[slot] = action;
     }
   }
   if (learnt > 0) AddLoss(error_sum / static_cast<float>(learnt));
@@ -142,15 +138,15 @@ template class TabularLearner<SarsaRule>;
 void GreedyTabularPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
   actions.resize(results.index.size());
   values_.resize(actions.size());
-  std::size_t entry = 0;
-  while (entry < actions.size()) {
-    for (std::int32_t agent = 0; agent < table_.agents; ++agent, ++entry) {
+  std::size_t slot = 0;
+  while (slot < actions.size()) {
+    for (std::int32_t agent = 0; agent < table_.agents; ++agent, ++slot) {
       const ActionMask allowed =
-          mask_illegal_ ? static_cast<ActionMask>(results.legal[entry] & kAllActions) : kAllActions;
-      const float* row = table_.values.data() + table_.Row(agent, results.index[entry]);
+          mask_illegal_ ? static_cast<ActionMask>(results.legal[slot] & kAllActions) : kAllActions;
+      const float* row = table_.values.data() + table_.Row(agent, results.index[slot]);
       const Best best = BestOf(row, allowed);
-      actions[entry] = best.action;
-      values_[entry] = best.value;
+      actions[slot] = best.action;
+      values_[slot] = best.value;
     }
   }
 }

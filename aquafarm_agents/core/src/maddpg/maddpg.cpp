@@ -49,7 +49,7 @@ struct Window {
 ReplayLearnerOptions SharedOptions(const EnvironmentSpec& spec, const MaddpgOptions& options) {
   ReplayLearnerOptions shared;
   shared.exploration = options.exploration;
-  shared.replay = {static_cast<std::size_t>(options.buffer_size), EntryCount(spec), spec.agents,
+  shared.replay = {static_cast<std::size_t>(options.buffer_size), SlotCount(spec), spec.agents,
                    static_cast<std::size_t>(spec.feature_count),
                    options.recurrent ? 2 * static_cast<std::size_t>(options.hidden_size) : 0};
   shared.sampling.priority_exponent = options.priority_exponent;
@@ -65,7 +65,7 @@ class MaddpgLearner final : public ReplayLearner<float> {
   MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed, const MaddpgOptions& options,
                 std::string resolved);
 
-  std::uint8_t encodings() const override { return kFeaturesBit; }
+  std::uint8_t observation_types() const override { return kFeaturesBit; }
   LearnerStatus status() const override {
     return {loss_, static_cast<float>(explorer_.level()),
             static_cast<float>(options_.actor_rate.At(progress_))};
@@ -114,9 +114,9 @@ class MaddpgLearner final : public ReplayLearner<float> {
   JointCritic critic_;
   JointCritic target_critic_;
   FlatAdam actor_;
-  FlatAdam judge_;
+  FlatAdam critic_optimizer_;
   FlatParameters actor_target_;
-  FlatParameters judge_target_;
+  FlatParameters target_critic_parameters_;
   RandomStream acting_;  // for exploration
   std::vector<float> recurrent_state_;
   double due_{};
@@ -128,8 +128,9 @@ class MaddpgLearner final : public ReplayLearner<float> {
   Window from_;
   Window to_;
   std::vector<TransitionIndex> drawn_;  // [B]
-  std::vector<float> taken_;    // [B, S, kActionCount] one-hot; zeros for an agent that is done
-  std::vector<float> judged_;   // [B, S, kActionCount] one-hot; action 0 for an agent that is done
+  std::vector<float> taken_;  // [B, S, kActionCount] one-hot; zeros for an agent that is done
+  std::vector<float>
+      critic_actions_;          // [B, S, kActionCount] one-hot; action 0 for an agent that is done
   std::vector<float> rewards_;  // [B, S]
   std::vector<float> discounts_;      // [B, S]
   std::vector<float> weights_;        // [B, S] 0 for an agent that was already done
@@ -147,24 +148,24 @@ MaddpgLearner::MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       critic_(spec, options.hidden_size),
       target_critic_(spec, options.hidden_size),
       actor_((DrawWeights(actors_, seed, kActorStream), actors_), device_),
-      judge_((DrawWeights(critic_, seed, kCriticStream), critic_), device_),
+      critic_optimizer_((DrawWeights(critic_, seed, kCriticStream), critic_), device_),
       actor_target_(target_actors_, device_),
-      judge_target_(target_critic_, device_),
+      target_critic_parameters_(target_critic_, device_),
       acting_({seed, 0, RngStream::kLearner, kActingStream}),
-      recurrent_state_(EntryCount(spec) * recurrent_size()),
+      recurrent_state_(SlotCount(spec) * recurrent_size()),
       loss_(std::nanf("")),
       from_(MakeWindow()),
       to_(MakeWindow()),
       drawn_(batch()),
       taken_(batch() * agents() * kActionCount),
-      judged_(batch() * agents() * kActionCount),
+      critic_actions_(batch() * agents() * kActionCount),
       rewards_(batch() * agents()),
       discounts_(batch() * agents()),
       weights_(batch() * agents()),
       noise_(batch() * agents() * kActionCount),
       agent_rewards_(agents()) {
   Follow(actor_target_, actor_.parameters(), 1.0);
-  Follow(judge_target_, judge_.parameters(), 1.0);
+  Follow(target_critic_parameters_, critic_optimizer_.parameters(), 1.0);
 }
 
 Window MaddpgLearner::MakeWindow() const {
@@ -219,11 +220,11 @@ TransitionIndex MaddpgLearner::DrawMoment(std::size_t i) {
   const TransitionIndex drawn = sampler_.Draw(rng_, i);
   for (std::size_t back = 0; back <= drawn.age; ++back) {
     if (back + 1 == window()) return drawn;
-    if (replay_.started(replay_.Row(drawn.age - back, drawn.entry))) return drawn;
+    if (replay_.is_first(replay_.Row(drawn.age - back, drawn.slot))) return drawn;
   }
   const auto steps = static_cast<std::size_t>(options_.n_step);
   for (std::size_t age = window() - 1; age + steps < replay_.size(); ++age) {
-    if (replay_.BeginsForAny(age, drawn.entry, steps)) return {age, drawn.entry};
+    if (replay_.BeginsForAny(age, drawn.slot, steps)) return {age, drawn.slot};
   }
   return drawn;
 }
@@ -232,7 +233,7 @@ void MaddpgLearner::Draw() {
   const auto scale = static_cast<float>(options_.reward_scale);
   for (std::size_t i = 0; i < batch(); ++i) {
     const TransitionIndex moment = DrawMoment(i);
-    const std::size_t first = moment.entry;
+    const std::size_t first = moment.slot;
     drawn_[i] = moment;
     const JointTransition all =
         replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
@@ -245,7 +246,7 @@ void MaddpgLearner::Draw() {
       const std::size_t k = i * agents() + agent;
       const bool present = from_.present[k] > 0.0F;
       const std::uint8_t action = present ? replay_.action(row + agent) : std::uint8_t{0};
-      MarkOne(action, 1.0F, judged_.data() + k * kActionCount);
+      MarkOne(action, 1.0F, critic_actions_.data() + k * kActionCount);
       MarkOne(action, from_.present[k], taken_.data() + k * kActionCount);
       all_done = all_done && IsTerminated(replay_.reason(all.to + agent));
     }
@@ -273,7 +274,7 @@ void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
       ((errors * learnt).sum(1) / learnt.sum(1).clamp_min(1)).cpu().contiguous();
   const float* error = means.data_ptr<float>();
   for (std::size_t i = 0; i < batch(); ++i) {
-    sampler_.UpdatePriority(replay_.Row(drawn_[i].age, drawn_[i].entry), error[i]);
+    sampler_.UpdatePriority(replay_.Row(drawn_[i].age, drawn_[i].slot), error[i]);
   }
 }
 
@@ -281,14 +282,14 @@ void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
 // reset after the padding.
 void MaddpgLearner::Fill(std::size_t i, std::size_t age, std::size_t first, Window& to) {
   std::size_t back = 0;
-  while (back + 1 < window() && back < age && !replay_.started(replay_.Row(age - back, first))) {
+  while (back + 1 < window() && back < age && !replay_.is_first(replay_.Row(age - back, first))) {
     ++back;
   }
   const std::size_t rows = batch() * agents();
   for (std::size_t t = 0; t < window(); ++t) {
     const std::size_t ago = std::min(window() - 1 - t, back);
     const std::size_t row = replay_.Row(age - ago, first);
-    const bool keeps = window() - 1 - t <= back && !replay_.started(row);
+    const bool keeps = window() - 1 - t <= back && !replay_.is_first(row);
     std::copy_n(replay_.observation(row), agents() * features(),
                 to.observations.data() + (t * rows + i * agents()) * features());
     std::fill_n(to.keeps.data() + t * rows + i * agents(), agents(), keeps ? 1.0F : 0.0F);
@@ -332,11 +333,11 @@ void MaddpgLearner::Update() {
   const torch::Tensor observations = Observations(from_)[options_.window - 1];
   const torch::Tensor loss = UpdateCritic(observations);
   Check(std::isfinite(loss.item<float>()), "loss of the critic", position);
-  Check(judge_.Step(loss, options_.critic_rate.At(progress_), options_.max_grad_norm),
+  Check(critic_optimizer_.Step(loss, options_.critic_rate.At(progress_), options_.max_grad_norm),
         "gradient of the critic's loss", position);
   UpdateActors(observations, position);
   Follow(actor_target_, actor_.parameters(), options_.tau);
-  Follow(judge_target_, judge_.parameters(), options_.tau);
+  Follow(target_critic_parameters_, critic_optimizer_.parameters(), options_.tau);
   ++updates_;
 }
 
@@ -362,7 +363,7 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
   }
   const torch::Tensor taken = ToDevice(taken_, joint);
   const torch::Tensor predicted =
-      (critic_.Forward(observations, taken) * ToDevice(judged_, joint)).sum(2);
+      (critic_.Forward(observations, taken) * ToDevice(critic_actions_, joint)).sum(2);
   const torch::Tensor weights = ToDevice(weights_, each) / std::max(1.0F, Sum(weights_));
   const double scale = options_.reward_scale * options_.reward_scale;
   const auto error = static_cast<float>(
@@ -424,9 +425,9 @@ void MaddpgLearner::VisitNumbers(Self& self, const Visit& visit) {
 
 void MaddpgLearner::SaveOwn(Checkpoint& checkpoint) const {
   actor_.Save(checkpoint);
-  judge_.Save(checkpoint, "critic.");
+  critic_optimizer_.Save(checkpoint, "critic.");
   checkpoint.SetArray("target.actors", actor_target_.ToVector());
-  checkpoint.SetArray("target.critic", judge_target_.ToVector());
+  checkpoint.SetArray("target.critic", target_critic_parameters_.ToVector());
   checkpoint.SetArray("carry", recurrent_state_);
   SaveNumbers(checkpoint, "maddpg.counters",
               [this](const auto& visit) { VisitCounters(*this, visit); });
@@ -439,22 +440,23 @@ void MaddpgLearner::LoadOwn(const Checkpoint& checkpoint) {
   std::vector<float> critic;
   std::vector<float> recurrent_state;
   checkpoint.GetArray("target.actors", static_cast<std::size_t>(actor_target_.size()), actors);
-  checkpoint.GetArray("target.critic", static_cast<std::size_t>(judge_target_.size()), critic);
+  checkpoint.GetArray("target.critic", static_cast<std::size_t>(target_critic_parameters_.size()),
+                      critic);
   checkpoint.GetArray("carry", recurrent_state_.size(), recurrent_state);
   LoadNumbers<std::uint64_t>(checkpoint, "maddpg.counters", "chance",
                              [this](const auto& visit) { VisitCounters(*this, visit); });
   LoadNumbers<double>(checkpoint, "maddpg.learning", "numbers",
                       [this](const auto& visit) { VisitNumbers(*this, visit); });
   actor_.Load(checkpoint);
-  judge_.Load(checkpoint, "critic.");
+  critic_optimizer_.Load(checkpoint, "critic.");
   actor_target_.FromVector(actors);
-  judge_target_.FromVector(critic);
+  target_critic_parameters_.FromVector(critic);
   recurrent_state_ = std::move(recurrent_state);
 }
 
 }  // namespace
 
-std::uint8_t MaddpgEncodings(const std::string& options) {
+std::uint8_t MaddpgObservationTypes(const std::string& options) {
   std::string resolved;
   MaddpgOptions::Parse(options, resolved);
   return kFeaturesBit;

@@ -20,7 +20,7 @@ class MaddpgPolicy final : public Policy {
         parameters_(actors_, device_) {
     parameters_.FromVector(weights);
   }
-  std::uint8_t encodings() const override { return kFeaturesBit; }
+  std::uint8_t observation_types() const override { return kFeaturesBit; }
   void Begin(std::uint64_t, std::int32_t farms) override {
     recurrent_state_.assign(
         static_cast<std::size_t>(farms * spec_.agents * actors_.recurrent_size()), 0.0F);
@@ -52,8 +52,8 @@ class MaddpgPolicy final : public Policy {
 
 void ClearStarted(const StepResults& results, std::size_t size_of_farm,
                   std::vector<float>& recurrent_state) {
-  for (std::size_t farm = 0; farm < results.started.size() && !recurrent_state.empty(); ++farm) {
-    if (results.started[farm] == 0) continue;
+  for (std::size_t farm = 0; farm < results.is_first.size() && !recurrent_state.empty(); ++farm) {
+    if (results.is_first[farm] == 0) continue;
     std::fill_n(recurrent_state.begin() + static_cast<std::ptrdiff_t>(farm * size_of_farm),
                 size_of_farm, 0.0F);
   }
@@ -61,8 +61,8 @@ void ClearStarted(const StepResults& results, std::size_t size_of_farm,
 
 torch::Tensor StepActors(ActorTeam& actors, const StepResults& results, const EnvironmentSpec& spec,
                          std::vector<float>& recurrent_state, torch::Device device) {
-  const auto entries = static_cast<std::int64_t>(results.legal.size());
-  const std::int64_t farms = entries / spec.agents;
+  const auto slots = static_cast<std::int64_t>(results.legal.size());
+  const std::int64_t farms = slots / spec.agents;
   const torch::Tensor observations =
       torch::from_blob(const_cast<float*>(results.features.data()),
                        {1, farms, spec.agents, spec.feature_count}, torch::kFloat)
@@ -79,7 +79,7 @@ torch::Tensor StepActors(ActorTeam& actors, const StepResults& results, const En
     const torch::Tensor after = held.cpu().contiguous();
     std::copy_n(after.data_ptr<float>(), recurrent_state.size(), recurrent_state.data());
   }
-  return logits.reshape({entries, kActionCount}).cpu().contiguous();
+  return logits.reshape({slots, kActionCount}).cpu().contiguous();
 }
 
 std::unique_ptr<Policy> MakeActorsPolicy(const EnvironmentSpec& spec, const MaddpgOptions& options,

@@ -24,7 +24,7 @@ void ClearStarted(const StepResults& results, std::size_t size_of_farm,
                   std::vector<float>& recurrent_state);
 
 /// Runs all actors for one step. @param recurrent_state as above; advanced by one step
-/// @returns logits [entries, kActionCount], on the CPU
+/// @returns logits [slots, kActionCount], on the CPU
 torch::Tensor StepActors(ActorTeam& actors, const StepResults& results, const EnvironmentSpec& spec,
                          std::vector<float>& recurrent_state, torch::Device device);
 

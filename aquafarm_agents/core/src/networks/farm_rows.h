@@ -16,10 +16,6 @@
 
 namespace aquafarm::agents {
 
-inline std::size_t EntryCount(const EnvironmentSpec& spec) {
-  return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
-}
-
 /// Mask of the allowed actions for planes. DeepOptions rejects mask_blocked with planes, which lack
 /// the required features.
 inline ActionMask LegalMask(ActionMask legal, const std::uint8_t*, const DeepOptions& options) {
@@ -29,7 +25,7 @@ inline ActionMask LegalMask(ActionMask legal, const std::uint8_t*, const DeepOpt
 /// Number of farms that took a step; the others began an episode.
 inline std::uint64_t FarmSteps(const StepResults& results) {
   return static_cast<std::uint64_t>(
-      std::count(results.started.begin(), results.started.end(), std::uint8_t{0}));
+      std::count(results.is_first.begin(), results.is_first.end(), std::uint8_t{0}));
 }
 
 /// Checks that a policy fits farms of `spec`.

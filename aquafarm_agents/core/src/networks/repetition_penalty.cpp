@@ -36,8 +36,8 @@ RepetitionPenalty::RepetitionPenalty(const EnvironmentSpec& spec, double penalty
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (TellsSituations(names[i], has_cell)) telling_.push_back(i);
   }
-  turn_.resize(EntryCount(spec));
-  done_.resize(turn_.size() * kRemembered);
+  steps_.resize(SlotCount(spec));
+  done_.resize(steps_.size() * kRemembered);
 }
 
 // Hash of the situation, above the bits of an action.
@@ -48,18 +48,18 @@ std::uint64_t RepetitionPenalty::SituationOf(const float* features) const {
 }
 
 void RepetitionPenalty::Begin(const StepResults& results) {
-  for (std::size_t entry = 0; entry < turn_.size(); ++entry) {
-    if (results.started[entry / agents_] != 0) turn_[entry] = 0;
+  for (std::size_t slot = 0; slot < steps_.size(); ++slot) {
+    if (results.is_first[slot / agents_] != 0) steps_[slot] = 0;
   }
 }
 
 const float* RepetitionPenalty::Penalize(const float* values, const float* features,
-                                         std::size_t entry) {
-  if (turn_.empty()) return values;
+                                         std::size_t slot) {
+  if (steps_.empty()) return values;
   situation_ = SituationOf(features);
   std::copy_n(values, kActionCount, values_.begin());
-  const std::uint64_t* const done = done_.data() + entry * kRemembered;
-  const std::size_t count = std::min<std::size_t>(turn_[entry], kRemembered);
+  const std::uint64_t* const done = done_.data() + slot * kRemembered;
+  const std::size_t count = std::min<std::size_t>(steps_[slot], kRemembered);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint64_t action = done[i] ^ situation_;
     if (action < kActionCount) values_[action] -= penalty_;
@@ -67,21 +67,21 @@ const float* RepetitionPenalty::Penalize(const float* values, const float* featu
   return values_.data();
 }
 
-void RepetitionPenalty::Add(std::uint8_t action, std::size_t entry) {
-  if (turn_.empty()) return;
-  done_[entry * kRemembered + turn_[entry]++ % kRemembered] = situation_ | action;
+void RepetitionPenalty::Add(std::uint8_t action, std::size_t slot) {
+  if (steps_.empty()) return;
+  done_[slot * kRemembered + steps_[slot]++ % kRemembered] = situation_ | action;
 }
 
 void RepetitionPenalty::Save(Checkpoint& checkpoint) const {
-  if (turn_.empty()) return;
+  if (steps_.empty()) return;
   checkpoint.SetArray("repetitions", done_);
-  checkpoint.SetArray("repetition_turns", turn_);
+  checkpoint.SetArray("repetition_turns", steps_);
 }
 
 void RepetitionPenalty::Load(const Checkpoint& checkpoint) {
-  if (turn_.empty()) return;
+  if (steps_.empty()) return;
   checkpoint.GetArray("repetitions", done_.size(), done_);
-  checkpoint.GetArray("repetition_turns", turn_.size(), turn_);
+  checkpoint.GetArray("repetition_turns", steps_.size(), steps_);
 }
 
 }  // namespace aquafarm::agents

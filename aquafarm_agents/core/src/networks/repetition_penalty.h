@@ -26,11 +26,11 @@ class RepetitionPenalty {
   /// @param values [kActionCount]
   /// @param features of the agent, a row of StepResults::features
   /// @returns penalized values [kActionCount], valid until the next call
-  const float* Penalize(const float* values, const float* features, std::size_t entry);
+  const float* Penalize(const float* values, const float* features, std::size_t slot);
   /// Planes do not identify a situation; DeepOptions rejects a penalty with them.
   const float* Penalize(const float* values, const std::uint8_t*, std::size_t) { return values; }
   /// Records the action chosen after the last Penalize.
-  void Add(std::uint8_t action, std::size_t entry);
+  void Add(std::uint8_t action, std::size_t slot);
 
   void Save(Checkpoint& checkpoint) const;
   /// @throws InputError if the number of slots differs
@@ -45,7 +45,7 @@ class RepetitionPenalty {
   float penalty_;
   std::vector<std::size_t> telling_;  // features that identify a situation
   std::vector<std::uint64_t> done_;   // [slots, kRemembered] situation and action
-  std::vector<std::uint64_t> turn_;   // [slots] steps since the episode began
+  std::vector<std::uint64_t> steps_;  // [slots] steps since the episode began
   std::uint64_t situation_{};         // situation of the last Penalize
   std::array<float, kActionCount> values_{};
 };

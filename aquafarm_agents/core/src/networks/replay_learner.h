@@ -64,7 +64,7 @@ class ReplayLearner : public Learner {
         seed_(seed),
         resolved_(std::move(resolved)),
         device_(device),
-        explorer_(options.exploration, seed, EntryCount(spec), options.value_scale),
+        explorer_(options.exploration, seed, SlotCount(spec), options.value_scale),
         rng_({seed, 0, RngStream::kLearner, 1}),
         replay_(options.replay),
         sampler_(replay_, options.sampling, options.steps, options.group) {}
@@ -78,7 +78,7 @@ class ReplayLearner : public Learner {
   virtual bool CanSample() const { return true; }
   /// Samples a batch and learns from it.
   virtual void Update() = 0;
-  /// @param actions [entries]
+  /// @param actions [slots]
   virtual void Choose(const StepResults& results, std::vector<std::uint8_t>& actions) = 0;
   /// Saves the state of the derived class.
   virtual void SaveOwn(Checkpoint& checkpoint) const = 0;

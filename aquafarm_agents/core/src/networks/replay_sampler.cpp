@@ -27,11 +27,11 @@ ReplaySampler<Scalar>::ReplaySampler(const Replay<Scalar>& replay, const DeepOpt
 
 template <typename Scalar>
 void ReplaySampler<Scalar>::Add() {
-  for (std::size_t entry = 0; entry < replay_.entries(); entry += group_) {
-    Mark(replay_.Row(replay_.size() - 1, entry), false);  // clears the overwritten time step
+  for (std::size_t slot = 0; slot < replay_.slots(); slot += group_) {
+    Mark(replay_.Row(replay_.size() - 1, slot), false);  // clears the overwritten time step
     if (replay_.size() <= steps_) continue;
     const std::size_t age = replay_.size() - 1 - steps_;
-    Mark(replay_.Row(age, entry), Begins(age, entry));
+    Mark(replay_.Row(age, slot), Begins(age, slot));
   }
 }
 
@@ -54,14 +54,14 @@ TransitionIndex ReplaySampler<Scalar>::Draw(RandomStream& rng, std::size_t i) {
     const float part = (static_cast<float>(i) + rng.Unit()) / static_cast<float>(weights_.size());
     const std::size_t row = priorities_->Find(part * total);
     weights_[i] = priorities_->Get(row) / total;
-    return {replay_.Age(row), row % replay_.entries()};
+    return {replay_.Age(row), row % replay_.slots()};
   }
   const auto moments = static_cast<std::uint32_t>(replay_.size() - steps_);
   for (;;) {  // terminates: IsReady holds, and most time steps begin a transition
     const std::size_t age = rng.Below(moments);
-    const std::size_t entry =
-        group_ * rng.Below(static_cast<std::uint32_t>(replay_.entries() / group_));
-    if (Begins(age, entry)) return {age, entry};
+    const std::size_t slot =
+        group_ * rng.Below(static_cast<std::uint32_t>(replay_.slots() / group_));
+    if (Begins(age, slot)) return {age, slot};
   }
 }
 
@@ -102,8 +102,8 @@ void ReplaySampler<Scalar>::Load(const Checkpoint& checkpoint) {
   std::fill(beginnings_.begin(), beginnings_.end(), std::uint8_t{0});
   beginning_count_ = 0;
   for (std::size_t age = 0; age < replay_.size(); ++age) {
-    for (std::size_t entry = 0; entry < replay_.entries(); entry += group_) {
-      Mark(replay_.Row(age, entry), Begins(age, entry));
+    for (std::size_t slot = 0; slot < replay_.slots(); slot += group_) {
+      Mark(replay_.Row(age, slot), Begins(age, slot));
     }
   }
   if (!priorities_) return;

@@ -18,7 +18,7 @@ namespace aquafarm::agents {
 /// Index of a time step of one agent, or of a whole farm, in a replay.
 struct TransitionIndex {
   std::size_t age{};
-  std::size_t entry{};
+  std::size_t slot{};
 };
 
 template <typename Scalar>
@@ -26,7 +26,7 @@ class ReplaySampler {
  public:
   /// @param replay must outlive the sampler
   /// @param steps number of later time steps that a drawn time step must have
-  /// @param group 1, or the number of agents of a farm to draw whole farms. The entry is then that
+  /// @param group 1, or the number of agents of a farm to draw whole farms. The slot is then that
   ///        of the farm's first agent, which may be done
   ReplaySampler(const Replay<Scalar>& replay, const DeepOptions& options, std::size_t steps,
                 std::size_t group = 1);
@@ -49,9 +49,9 @@ class ReplaySampler {
 
  private:
   void Mark(std::size_t row, bool begins);
-  bool Begins(std::size_t age, std::size_t entry) const {
-    return group_ == 1 ? replay_.Begins(age, entry, steps_)
-                       : replay_.BeginsForAny(age, entry, steps_);
+  bool Begins(std::size_t age, std::size_t slot) const {
+    return group_ == 1 ? replay_.Begins(age, slot, steps_)
+                       : replay_.BeginsForAny(age, slot, steps_);
   }
 
   const Replay<Scalar>& replay_;

@@ -102,7 +102,7 @@ void FetchByValue::Choose(const Farm& farm, std::int32_t id) {
 std::uint8_t FetchByValue::ActOf(const Farm& farm, std::int32_t id) {
   const Ship& ship = farm.ships()[static_cast<std::size_t>(id)];
   Errand& errand = errands_[static_cast<std::size_t>(id)];
-  if (!ship.in_play) return kHoldCode;
+  if (!ship.active) return kHoldCode;
   const ActionMask legal = farm.LegalActions(id);
   if ((legal & MaskOf(Action::kDropOff)) != 0) return static_cast<std::uint8_t>(Action::kDropOff);
   const bool fetches = ship.own_device == kNone && ship.aboard < farm.scenario().ships.capacity;
@@ -124,7 +124,7 @@ std::int32_t FetchByValue::Blocker(const Farm& farm, std::int32_t id, Cell cell)
   if ((farm.layout().bits(cell) & kPortBit) != 0) return kNone;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const auto other = static_cast<std::int32_t>(i);
-    if (other != id && farm.ships()[i].in_play && cells_[i] == cell) return other;
+    if (other != id && farm.ships()[i].active && cells_[i] == cell) return other;
   }
   return kNone;
 }

@@ -12,15 +12,15 @@ PlannerPolicy::PlannerPolicy(const EnvironmentSpec& spec, Foresight foresight)
       planner_(*scenario_) {}
 
 void PlannerPolicy::Begin(std::uint64_t, std::int32_t farms) {
-  courses_.assign(static_cast<std::size_t>(farms), {});
+  plans_.assign(static_cast<std::size_t>(farms), {});
 }
 
 void PlannerPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
-  AQUAFARM_CHECK_EQ(results.states.size(), courses_.size());
-  actions.resize(courses_.size());
-  for (std::size_t i = 0; i < courses_.size(); ++i) {
+  AQUAFARM_CHECK_EQ(results.states.size(), plans_.size());
+  actions.resize(plans_.size());
+  for (std::size_t i = 0; i < plans_.size(); ++i) {
     const Farm& farm = *results.states[i];
-    actions[i] = farm.over() ? 0 : Follow(farm, courses_[i]);
+    actions[i] = farm.over() ? 0 : Follow(farm, plans_[i]);
   }
 }
 

@@ -9,17 +9,17 @@
 
 namespace aquafarm::agents {
 
-std::size_t PlannerSolver::With(std::size_t set, std::size_t device, Fate fate) const {
+std::size_t PlannerSolver::With(std::size_t set, std::size_t device, PickupPlan pickup) const {
   const std::uint32_t bits =
-      (sets_[set] & ~(3U << (2 * device))) | (static_cast<std::uint32_t>(fate) << (2 * device));
+      (sets_[set] & ~(3U << (2 * device))) | (static_cast<std::uint32_t>(pickup) << (2 * device));
   const std::int32_t found = set_of_bits_[bits];
   return found == kNone ? sets_.size() : static_cast<std::size_t>(found);
 }
 
 std::size_t PlannerSolver::Delivered(std::size_t set) const {
   for (std::size_t d = 0; d < devices_; ++d) {
-    const Fate fate = FateOf(set, d);
-    if (fate == kPaid || fate == kUnpaid) set = With(set, d, kGone);
+    const PickupPlan pickup = PickupPlanOf(set, d);
+    if (pickup == kPaid || pickup == kUnpaid) set = With(set, d, kGone);
   }
   return set;
 }
@@ -63,7 +63,7 @@ void PlannerSolver::Prepare(const Farm& farm) {
 double PlannerSolver::Loss(std::size_t set, float share) const {
   double loss = 0.0;
   for (std::size_t d = 0; d < devices_ && share > 0.0F; ++d) {
-    if (FateOf(set, d) == kPaid) {
+    if (PickupPlanOf(set, d) == kPaid) {
       loss += static_cast<double>(share) * static_cast<double>(value_[d]);
     }
   }
@@ -75,7 +75,7 @@ double PlannerSolver::Wear(std::size_t set, std::size_t cell) const {
   const float exposure = scenario_.damage.exposure_damage;
   double loss = 0.0;
   for (std::size_t d = 0; d < task_->devices.size() && exposure > 0.0F; ++d) {
-    if (FateOf(set, d) != kPaid) continue;
+    if (PickupPlanOf(set, d) != kPaid) continue;
     const float share = -exposure * damaging_[d][cell];
     loss += static_cast<double>(share) * static_cast<double>(value_[d]);
   }
@@ -131,13 +131,13 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   const float risk = layers_of_step_->risk.data()[cell];
   // The farm picks up the device with the lowest id in a cell.
   for (std::size_t d = 0; d < devices_; ++d) {
-    if (site_[d] != static_cast<std::int32_t>(cell) || FateOf(set, d) != kWaiting) continue;
-    for (const Fate fate : {kPaid, kUnpaid}) {
-      const std::size_t next = With(set, d, fate);
+    if (site_[d] != static_cast<std::int32_t>(cell) || PickupPlanOf(set, d) != kWaiting) continue;
+    for (const PickupPlan pickup : {kPaid, kUnpaid}) {
+      const std::size_t next = With(set, d, pickup);
       if (next == sets_.size()) continue;
       double reward = static_cast<double>(scenario_.rewards.pickup) + static_cast<double>(risk) -
                       Wear(next, cell) - idle_cost_;
-      if (fate == kPaid) {
+      if (pickup == kPaid) {
         reward += static_cast<double>(value_[d]) * static_cast<double>(health_[d]);
       }
       Reach(step, state(next, cell), so_far + reward, parent,
@@ -270,7 +270,7 @@ void PlannerSolver::EndOfTime() {
     const Node& node = layers_.back()[index];
     bool broken = false;
     for (std::size_t d = 0; d < task_->devices.size(); ++d) {
-      broken = broken || FateOf(node.state / cells_, d) == kPaid;
+      broken = broken || PickupPlanOf(node.state / cells_, d) == kPaid;
     }
     if (!broken) Complete(node.parent, node.action, next_values_[index]);
   }

@@ -19,7 +19,7 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t slots)
     : scenario_(scenario),
       cells_(static_cast<std::size_t>(scenario.CellCount())),
       devices_(static_cast<std::size_t>(slots > 0 ? slots : scenario.devices.Total())) {
-  constexpr std::size_t kMostDevices = 12;
+  constexpr std::size_t kMaxDevices = 12;
   for (const auto& [name, value] :
        {std::pair{"step", scenario.rewards.step}, std::pair{"illegal", scenario.rewards.illegal}}) {
     if (value <= 0.0F) continue;
@@ -27,10 +27,10 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t slots)
                      ": got more than 0, expected at most 0, since a ship earns without end by "
                      "waiting; evaluate a learner instead");
   }
-  if (devices_ > kMostDevices) {
+  if (devices_ > kMaxDevices) {
     throw InputError(
         "planner: got " + std::to_string(devices_) + " devices, expected at most " +
-        std::to_string(kMostDevices) +
+        std::to_string(kMaxDevices) +
         "; give another policy, such as policy:=fetch_by_value, or policy:=none to hold "
         "the ships");
   }
@@ -39,8 +39,8 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t slots)
   for (std::size_t bits = 0; bits < codes; ++bits) {
     std::int32_t aboard = 0;
     for (std::size_t d = 0; d < devices_; ++d) {
-      const std::size_t fate = (bits >> (2 * d)) & 3U;
-      aboard += fate == kPaid || fate == kUnpaid ? 1 : 0;
+      const std::size_t pickup = (bits >> (2 * d)) & 3U;
+      aboard += pickup == kPaid || pickup == kUnpaid ? 1 : 0;
     }
     if (aboard > scenario.ships.capacity) continue;
     set_of_bits_[bits] = static_cast<std::int32_t>(sets_.size());
@@ -122,7 +122,7 @@ bool PlannerSolver::IsPrepared(const Farm& farm) const {
 // Unused slots of a task count as gone from the start.
 bool PlannerSolver::IsOfTask(std::size_t set) const {
   for (std::size_t d = task_->devices.size(); d < devices_; ++d) {
-    if (FateOf(set, d) != kGone) return false;
+    if (PickupPlanOf(set, d) != kGone) return false;
   }
   return true;
 }
@@ -141,8 +141,8 @@ void PlannerSolver::PriceEnergy(const Farm& farm) {
   rough_sea_ = figures.rough_sea / static_cast<double>(kWorstRisk);
   for (std::size_t set = 0; set < sets_.size() && is_ship; ++set) {
     for (std::size_t d = 0; d < devices_; ++d) {
-      const Fate fate = FateOf(set, d);
-      if (fate == kPaid || fate == kUnpaid) load_[set] += figures.per_device;
+      const PickupPlan pickup = PickupPlanOf(set, d);
+      if (pickup == kPaid || pickup == kUnpaid) load_[set] += figures.per_device;
     }
   }
 }
@@ -155,7 +155,7 @@ void PlannerSolver::SeedMoves(std::size_t set) {
   };
   sources_.clear();
   for (std::size_t d = 0; d < devices_; ++d) {
-    if (FateOf(set, d) != kWaiting) continue;
+    if (PickupPlanOf(set, d) != kWaiting) continue;
     const std::size_t next = With(set, d, kPaid);
     if (next != sets_.size()) add(next, static_cast<std::size_t>(site_[d]));
   }
@@ -215,7 +215,7 @@ void PlannerSolver::SeedRewards(std::size_t set, std::vector<double>& best) cons
     best[cell] = std::max(best[cell], static_cast<double>(reward) - idle_cost_ + further);
   };
   for (std::size_t d = 0; d < devices_; ++d) {
-    if (FateOf(set, d) != kWaiting) continue;
+    if (PickupPlanOf(set, d) != kWaiting) continue;
     const std::size_t next = With(set, d, kPaid);
     if (next != sets_.size()) {
       raise(next, static_cast<std::size_t>(site_[d]), scenario_.rewards.pickup);
@@ -266,12 +266,12 @@ PlannerSolver::Gains PlannerSolver::GainsOf(std::size_t set) const {
   Gains gains;
   std::int32_t carried = 0;
   for (std::size_t d = 0; d < devices_; ++d) {
-    const Fate fate = FateOf(set, d);
-    if (fate == kGone) continue;
+    const PickupPlan plan = PickupPlanOf(set, d);
+    if (plan == kGone) continue;
     ++carried;
     gains.actions += drop_off;
     gains.if_not += std::max(0.0, drop_off) + action;
-    if (fate != kWaiting) continue;
+    if (plan != kWaiting) continue;
     const double value = static_cast<double>(value_[d]) * static_cast<double>(health_[d]);
     gains.value += value;
     gains.actions += pickup;

@@ -14,7 +14,7 @@
 namespace aquafarm::agents {
 
 /// Status of a device in a plan.
-enum Fate : std::uint8_t { kWaiting, kPaid, kUnpaid, kGone };
+enum PickupPlan : std::uint8_t { kWaiting, kPaid, kUnpaid, kGone };
 constexpr std::int32_t kFates = 4;
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
@@ -61,10 +61,10 @@ class PlannerSolver {
     std::int32_t steps{};  // min pickups and drop-offs until all devices are delivered
   };
 
-  Fate FateOf(std::size_t set, std::size_t device) const {
-    return static_cast<Fate>((sets_[set] >> (2 * device)) & 3U);
+  PickupPlan PickupPlanOf(std::size_t set, std::size_t device) const {
+    return static_cast<PickupPlan>((sets_[set] >> (2 * device)) & 3U);
   }
-  std::size_t With(std::size_t set, std::size_t device, Fate fate) const;
+  std::size_t With(std::size_t set, std::size_t device, PickupPlan pickup) const;
   std::size_t Delivered(std::size_t set) const;
 
   void Prepare(const Farm& farm);

@@ -69,16 +69,16 @@ class Trip {
   bool IsOver() const {
     // A risk that is milder than a step replaces its cost.
     const double move = shares_way_ ? 0.0 : std::max(move_, kMildestRisk);
-    double most = kNever;
+    double best_case = kNever;
     for (std::size_t cell = 0; cell < laden_.size(); ++cell) {
       const double held = std::max(laden_[cell], bare_[cell]);
-      most = std::max(most, held + drop_off() + move * to_port_[cell]);
+      best_case = std::max(best_case, held + drop_off() + move * to_port_[cell]);
     }
     if (!device_.self_propelled) {
       const double pickup = static_cast<double>(scenario_.rewards.pickup);
-      most = std::max(most, pickup + value() + drop_off() + 2.0 * move * to_port_[site_]);
+      best_case = std::max(best_case, pickup + value() + drop_off() + 2.0 * move * to_port_[site_]);
     }
-    return most <= best_;
+    return best_case <= best_;
   }
 
  private:
@@ -96,12 +96,12 @@ class Trip {
         std::max({rewards.step, rewards.illegal, has_others ? rewards.collision : rewards.illegal});
     for (std::int32_t y = 0; y < scenario_.height; ++y) {
       for (std::int32_t x = 0; x < scenario_.width; ++x) {
-        float most = anywhere;
+        float best_case = anywhere;
         ForEachNeighbour({x, y}, [&](Cell to) {
           if ((layout_.bits(to) & kBlockedBits) == 0) return;
-          most = std::max(most, layout_.crash_reward(to.y, to.x));
+          best_case = std::max(best_case, layout_.crash_reward(to.y, to.x));
         });
-        wait_[Index({x, y})] = shares_way_ ? 0.0 : static_cast<double>(most);
+        wait_[Index({x, y})] = shares_way_ ? 0.0 : static_cast<double>(best_case);
       }
     }
   }

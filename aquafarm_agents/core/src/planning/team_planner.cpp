@@ -137,11 +137,11 @@ class TeamPlanner::Impl {
   Impl(const Scenario& scenario, Foresight foresight)
       : scenario_(scenario), foresight_(foresight), planner_(scenario, Slots(scenario)) {}
 
-  void Act(const Farm& farm, PlanState& course, std::uint8_t* actions) {
-    if (!IsOnCourse(farm, course)) MakeCourse(farm, course);
-    const auto at = static_cast<std::size_t>(farm.step() - course.start);
-    for (std::size_t id = 0; id < course.actions.size(); ++id) {
-      actions[id] = at < course.actions[id].size() ? course.actions[id][at] : 0;
+  void Act(const Farm& farm, PlanState& plan, std::uint8_t* actions) {
+    if (!FollowsPlan(farm, plan)) MakePlan(farm, plan);
+    const auto at = static_cast<std::size_t>(farm.step() - plan.start);
+    for (std::size_t id = 0; id < plan.actions.size(); ++id) {
+      actions[id] = at < plan.actions[id].size() ? plan.actions[id][at] : 0;
     }
   }
 
@@ -176,7 +176,7 @@ class TeamPlanner::Impl {
     }
     for (std::size_t id = shares.size(); id < farm.ships().size(); ++id) {
       const Ship& ship = farm.ships()[id];
-      shares.push_back(ship.in_play ? std::vector{ship.own_device} : std::vector<std::int32_t>{});
+      shares.push_back(ship.active ? std::vector{ship.own_device} : std::vector<std::int32_t>{});
     }
     return shares;
   }
@@ -198,35 +198,35 @@ class TeamPlanner::Impl {
     if (best != shares.size()) shares[best].push_back(device);
   }
 
-  bool IsOnCourse(const Farm& farm, PlanState& course) const {
-    if (course.actions.empty() || course.seed != farm.seed() || course.episode != farm.episode() ||
-        farm.step() < course.start) {
+  bool FollowsPlan(const Farm& farm, PlanState& plan) const {
+    if (plan.actions.empty() || plan.seed != farm.seed() || plan.episode != farm.episode() ||
+        farm.step() < plan.start) {
       return false;
     }
-    const auto at = static_cast<std::size_t>(farm.step() - course.start);
+    const auto at = static_cast<std::size_t>(farm.step() - plan.start);
     for (std::size_t id = 0; id < farm.ships().size(); ++id) {
       const Ship& ship = farm.ships()[id];
-      if (!ship.in_play) continue;
-      if (at >= course.actions[id].size()) return false;
-      if (course.path[id][at] != LinearIndex(ship.cell, scenario_.width)) return false;
+      if (!ship.active) continue;
+      if (at >= plan.actions[id].size()) return false;
+      if (plan.path[id][at] != LinearIndex(ship.cell, scenario_.width)) return false;
     }
-    return AreAsForeseen(farm, course);
+    return AreAsForeseen(farm, plan);
   }
 
   // Returns false after a bulletin, or after a turn that is not in the forecast.
-  bool AreAsForeseen(const Farm& farm, PlanState& course) const {
-    if (farm.disasters().size() != course.disasters.size()) return false;
-    for (; course.foreseen < farm.step(); ++course.foreseen) {
-      for (std::size_t id = 0; id < course.disasters.size(); ++id) {
+  bool AreAsForeseen(const Farm& farm, PlanState& plan) const {
+    if (farm.disasters().size() != plan.disasters.size()) return false;
+    for (; plan.foreseen < farm.step(); ++plan.foreseen) {
+      for (std::size_t id = 0; id < plan.disasters.size(); ++id) {
         const StreamKey key{farm.seed(), farm.episode(), RngStream::kDisasterTurn,
                             static_cast<std::uint32_t>(id)};
-        MoveDisaster(course.disasters[id], course.tracks[id], key, course.foreseen + 1,
-                     scenario_.width, scenario_.height);
+        MoveDisaster(plan.disasters[id], plan.tracks[id], key, plan.foreseen + 1, scenario_.width,
+                     scenario_.height);
       }
     }
-    for (std::size_t id = 0; id < course.disasters.size(); ++id) {
+    for (std::size_t id = 0; id < plan.disasters.size(); ++id) {
       const Disaster& real = farm.disasters()[id];
-      const Disaster& foreseen = course.disasters[id];
+      const Disaster& foreseen = plan.disasters[id];
       const bool alike = real.x == foreseen.x && real.y == foreseen.y && real.dx == foreseen.dx &&
                          real.dy == foreseen.dy && real.radius == foreseen.radius &&
                          real.quadrant == foreseen.quadrant && real.risk == foreseen.risk &&
@@ -236,42 +236,42 @@ class TeamPlanner::Impl {
     return true;
   }
 
-  void MakeCourse(const Farm& farm, PlanState& course) {
+  void MakePlan(const Farm& farm, PlanState& plan) {
     const Shares shares = Assign(farm);
     const std::size_t agents = farm.ships().size();
-    course.seed = farm.seed();
-    course.episode = farm.episode();
-    course.start = farm.step();
-    course.actions.assign(agents, {});
-    course.path.assign(agents, {});
-    course.disasters = farm.disasters();
-    course.foreseen = farm.step();
-    course.tracks = Foresee(farm, foresight_, course.disasters);
+    plan.seed = farm.seed();
+    plan.episode = farm.episode();
+    plan.start = farm.step();
+    plan.actions.assign(agents, {});
+    plan.path.assign(agents, {});
+    plan.disasters = farm.disasters();
+    plan.foreseen = farm.step();
+    plan.tracks = Foresee(farm, foresight_, plan.disasters);
     reserved_.Clear();
     for (std::size_t id = 0; id < agents; ++id) {
       const Ship& ship = farm.ships()[id];
-      if (!ship.in_play) continue;
+      if (!ship.active) continue;
       reserved_.Add(static_cast<std::int32_t>(id), farm.step(),
                     {LinearIndex(ship.cell, scenario_.width)});
     }
     DisasterRisk risks(farm, foresight_);
     for (const bool idle : {false, true}) {  // ships without work plan last and avoid the others
       for (std::size_t id = 0; id < agents; ++id) {
-        if (!farm.ships()[id].in_play || shares[id].empty() != idle) continue;
-        PlanOne(farm, risks, static_cast<std::int32_t>(id), shares[id], course);
+        if (!farm.ships()[id].active || shares[id].empty() != idle) continue;
+        PlanOne(farm, risks, static_cast<std::int32_t>(id), shares[id], plan);
       }
     }
   }
 
   void PlanOne(const Farm& farm, RiskSource& risks, std::int32_t id,
-               const std::vector<std::int32_t>& share, PlanState& course) {
+               const std::vector<std::int32_t>& share, PlanState& plan) {
     Task task;
     task.ship = id;
     task.devices = share;
     task.until = share.empty() ? farm.step() + kIdleSteps : 0;
     task.others = &reserved_;
-    auto& actions = course.actions[static_cast<std::size_t>(id)];
-    auto& path = course.path[static_cast<std::size_t>(id)];
+    auto& actions = plan.actions[static_cast<std::size_t>(id)];
+    auto& path = plan.path[static_cast<std::size_t>(id)];
     actions = planner_.Solve(farm, risks, task).actions;
     // The ship is enclosed: take any move and plan again.
     if (actions.empty()) actions = {static_cast<std::uint8_t>(farm.step() % kMoveCount)};
@@ -302,8 +302,8 @@ TeamPlanner::TeamPlanner(const Scenario& scenario, Foresight foresight)
 TeamPlanner::~TeamPlanner() = default;
 TeamPlanner::TeamPlanner(TeamPlanner&&) noexcept = default;
 
-void TeamPlanner::Act(const Farm& farm, PlanState& course, std::uint8_t* actions) {
-  impl_->Act(farm, course, actions);
+void TeamPlanner::Act(const Farm& farm, PlanState& plan, std::uint8_t* actions) {
+  impl_->Act(farm, plan, actions);
 }
 
 std::vector<std::vector<std::int32_t>> TeamPlanner::Assign(const Farm& farm) const {
@@ -316,16 +316,16 @@ TeamPlannerPolicy::TeamPlannerPolicy(const EnvironmentSpec& spec, Foresight fore
       planner_(*scenario_, foresight) {}
 
 void TeamPlannerPolicy::Begin(std::uint64_t, std::int32_t farms) {
-  courses_.assign(static_cast<std::size_t>(farms), {});
+  plans_.assign(static_cast<std::size_t>(farms), {});
 }
 
 void TeamPlannerPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
-  AQUAFARM_CHECK_EQ(results.states.size(), courses_.size());
+  AQUAFARM_CHECK_EQ(results.states.size(), plans_.size());
   const auto agents = static_cast<std::size_t>(scenario_->AgentCount());
-  actions.assign(courses_.size() * agents, 0);
-  for (std::size_t i = 0; i < courses_.size(); ++i) {
+  actions.assign(plans_.size() * agents, 0);
+  for (std::size_t i = 0; i < plans_.size(); ++i) {
     const Farm& farm = *results.states[i];
-    if (!farm.over()) planner_.Act(farm, courses_[i], actions.data() + i * agents);
+    if (!farm.over()) planner_.Act(farm, plans_[i], actions.data() + i * agents);
   }
 }
 

@@ -20,33 +20,33 @@ Actor::Actor(const EnvironmentSpec& spec, const PpoOptions& options, std::size_t
 }
 
 void Actor::Begin(std::size_t farms) {
-  const std::size_t entries = farms * agents_;
-  masks_.assign(entries, kAllActions);
-  values_.assign(entries, 0.0F);
-  started_.assign(entries, 0);
-  state_.assign(entries * state_size_, 0.0F);
+  const std::size_t slots = farms * agents_;
+  masks_.assign(slots, kAllActions);
+  values_.assign(slots, 0.0F);
+  is_first_.assign(slots, 0);
+  state_.assign(slots * state_size_, 0.0F);
   state_before_ = state_;
 }
 
 void Actor::Observe(ActorCritic& network, const StepResults& results) {
   const float* seen = results.features.data();
-  for (std::size_t i = 0; i < entries(); ++i, seen += features_) {
-    masks_[i] = results.in_play[i] == 0 ? kDoneMask : LegalMask(results.legal[i], seen, options_);
-    started_[i] = results.started[i / agents_];
+  for (std::size_t i = 0; i < slots(); ++i, seen += features_) {
+    masks_[i] = results.active[i] == 0 ? kDoneMask : LegalMask(results.legal[i], seen, options_);
+    is_first_[i] = results.is_first[i / agents_];
   }
   state_before_ = state_;
   SequenceRows rows;
-  rows.sequences = entries();
+  rows.sequences = slots();
   rows.features = results.features.data();
   rows.state = state_before_.data();
-  rows.started = started_.data();
+  rows.is_first = is_first_.data();
   if (network.joint_agents() > 0) Join(network.joint_agents(), results.features);
   rows.joint = joint_.data();
   const float* const outputs =
       symmetries_.empty() ? network.Forward(rows, state_size_ == 0 ? nullptr : state_.data())
                           : MeanOutputs(network, rows);
-  distribution_.Compute(outputs, masks_.data(), entries());
-  for (std::size_t i = 0; i < entries(); ++i) {
+  distribution_.Compute(outputs, masks_.data(), slots());
+  for (std::size_t i = 0; i < slots(); ++i) {
     values_[i] = outputs[i * kActorCriticOutputs + kActionCount];
   }
 }
@@ -55,15 +55,15 @@ const float* Actor::MeanOutputs(ActorCritic& network, SequenceRows rows) {
   constexpr auto kWidth = static_cast<std::size_t>(kActorCriticOutputs);
   constexpr float kShare = 1.0F / static_cast<float>(kSymmetries);
   const float* const plain = rows.features;
-  turned_.resize(entries() * features_);
-  mean_outputs_.assign(entries() * kWidth, 0.0F);
+  turned_.resize(slots() * features_);
+  mean_outputs_.assign(slots() * kWidth, 0.0F);
   rows.features = turned_.data();
   for (const TokenSymmetry& symmetry : symmetries_) {
-    for (std::size_t i = 0; i < entries(); ++i) {
+    for (std::size_t i = 0; i < slots(); ++i) {
       symmetry.Turn(plain + i * features_, turned_.data() + i * features_);
     }
     const float* outputs = network.Forward(rows, nullptr);
-    for (std::size_t i = 0; i < entries(); ++i, outputs += kWidth) {
+    for (std::size_t i = 0; i < slots(); ++i, outputs += kWidth) {
       float* const mean = mean_outputs_.data() + i * kWidth;
       for (std::uint8_t a = 0; a < kActionCount; ++a) mean[a] += kShare * outputs[symmetry.Turn(a)];
       mean[kActionCount] += kShare * outputs[kActionCount];
@@ -74,8 +74,8 @@ const float* Actor::MeanOutputs(ActorCritic& network, SequenceRows rows) {
 
 void Actor::Join(std::size_t joint_agents, const std::vector<float>& features) {
   const std::size_t size = joint_agents * features_;
-  joint_.resize(entries() * size);
-  for (std::size_t i = 0; i < entries(); ++i) {
+  joint_.resize(slots() * size);
+  for (std::size_t i = 0; i < slots(); ++i) {
     const std::size_t agent = i % agents_;
     JoinObservations(features.data() + (i - agent) * features_, agents_, features_, agent,
                      joint_.data() + i * size);
@@ -83,8 +83,8 @@ void Actor::Join(std::size_t joint_agents, const std::vector<float>& features) {
 }
 
 void Actor::Sample(AgentRng& rng, std::vector<std::uint8_t>& actions) const {
-  actions.resize(entries());
-  for (std::size_t i = 0; i < entries(); ++i) {
+  actions.resize(slots());
+  for (std::size_t i = 0; i < slots(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     float left = rng[i].Unit();
     for (std::uint8_t a = 0; a < kActionCount; ++a) {
@@ -98,8 +98,8 @@ void Actor::Sample(AgentRng& rng, std::vector<std::uint8_t>& actions) const {
 }
 
 void Actor::TakeBest(std::vector<std::uint8_t>& actions) const {
-  actions.resize(entries());
-  for (std::size_t i = 0; i < entries(); ++i) {
+  actions.resize(slots());
+  for (std::size_t i = 0; i < slots(); ++i) {
     Eigen::Index best = 0;
     distribution_.probs.row(static_cast<Eigen::Index>(i)).maxCoeff(&best);
     actions[i] = static_cast<std::uint8_t>(best);

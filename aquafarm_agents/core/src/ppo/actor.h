@@ -33,7 +33,7 @@ class Actor {
   /// Takes the most probable actions; the action with the lowest index among equals.
   void TakeBest(std::vector<std::uint8_t>& actions) const;
 
-  std::size_t entries() const { return masks_.size(); }
+  std::size_t slots() const { return masks_.size(); }
   const std::vector<ActionMask>& masks() const { return masks_; }  ///< [N, S]
   const std::vector<float>& values() const { return values_; }     ///< [N, S]
   const ActionDistribution& distribution() const { return distribution_; }
@@ -56,7 +56,7 @@ class Actor {
   std::vector<TokenSymmetry> symmetries_;  // to average over; empty: only the plain tokens
   std::vector<float> turned_;              // [N, S, F]
   std::vector<float> mean_outputs_;        // [N, S, kActorCriticOutputs]
-  std::vector<std::uint8_t> started_;
+  std::vector<std::uint8_t> is_first_;
   std::vector<float> state_;
   std::vector<float> state_before_;
   ActionDistribution distribution_;

@@ -19,10 +19,10 @@ namespace aquafarm::agents {
 struct SequenceRows {
   std::size_t steps{1};
   std::size_t sequences{};
-  const float* features{};        ///< [steps, sequences, F]
-  const float* state{};           ///< [sequences, state_size] before the first step
-  const std::uint8_t* started{};  ///< [steps, sequences] 1: the state is cleared before this step
-  const float* joint{};           ///< [steps, sequences, joint_agents, F] by JoinObservations
+  const float* features{};         ///< [steps, sequences, F]
+  const float* state{};            ///< [sequences, state_size] before the first step
+  const std::uint8_t* is_first{};  ///< [steps, sequences] 1: the state is cleared before this step
+  const float* joint{};            ///< [steps, sequences, joint_agents, F] by JoinObservations
   std::size_t rows() const { return steps * sequences; }
 };
 

@@ -9,7 +9,7 @@
 ///   kContinues      both terms as above
 ///   kTruncated      A_{t+1} = 0; V(s_{t+1}) is the value of the episode's last observation
 ///   kTerminated     A_{t+1} = 0 and V(s_{t+1}) = 0
-///   kNoTransition   A_t = 0; the slot is excluded from training
+///   kNoTransition   A_t = 0; the sample is excluded from training
 
 #include <cstddef>
 #include <cstdint>
@@ -21,13 +21,13 @@ namespace aquafarm::agents {
 enum class StepEnd : std::uint8_t { kContinues, kTruncated, kTerminated, kNoTransition };
 inline constexpr int kStepEndCount = 4;
 
-/// Computes the advantages of `ends.size() / entries` steps. All arrays are time-major.
-/// @param rewards [T, E] after the action of a slot
+/// Computes the advantages of `ends.size() / slots` steps. All arrays are time-major.
+/// @param rewards [T, E] after the action of a sample
 /// @param values [T + 1, E] of the observations; the last row is the bootstrap
 /// @param ends [T, E]
 /// @param advantages [T, E], resized
 void EstimateAdvantages(const std::vector<float>& rewards, const std::vector<float>& values,
-                        const std::vector<StepEnd>& ends, std::size_t entries, float gamma,
+                        const std::vector<StepEnd>& ends, std::size_t slots, float gamma,
                         float lambda, std::vector<float>& advantages);
 
 }  // namespace aquafarm::agents

@@ -14,8 +14,8 @@ bool EndsWith(const std::string& name, const std::string& end) {
 
 }  // namespace
 
-LoopGuard::LoopGuard(const EnvironmentSpec& spec, std::size_t entries, std::int32_t max_visits)
-    : max_visits_(max_visits), teacher_(LayoutOfTokens(spec.feature_names)), episodes_(entries) {
+LoopGuard::LoopGuard(const EnvironmentSpec& spec, std::size_t slots, std::int32_t max_visits)
+    : max_visits_(max_visits), teacher_(LayoutOfTokens(spec.feature_names)), episodes_(slots) {
   for (std::size_t i = 0; i < spec.feature_names.size(); ++i) {
     const std::string& name = spec.feature_names[i];
     const bool is_device = name.rfind("device", 0) == 0;
@@ -29,14 +29,14 @@ LoopGuard::LoopGuard(const EnvironmentSpec& spec, std::size_t entries, std::int3
   }
 }
 
-std::optional<std::uint8_t> LoopGuard::ActionOf(std::size_t entry, const float* tokens,
-                                                bool started, ActionMask allowed) {
-  Episode& episode = episodes_[entry];
+std::optional<std::uint8_t> LoopGuard::ActionOf(std::size_t slot, const float* tokens,
+                                                bool is_first, ActionMask allowed) {
+  Episode& episode = episodes_[slot];
   Hasher hasher;
   for (const std::size_t i : task_features_) hasher.Add(tokens[i], 0.0F);
   const std::uint64_t task = hasher.value();
   for (const std::size_t i : cell_features_) hasher.Add(tokens[i], 0.0F);
-  if (started || task != episode.task) {
+  if (is_first || task != episode.task) {
     episode.visits.clear();
     episode.task = task;
     episode.is_loop = false;

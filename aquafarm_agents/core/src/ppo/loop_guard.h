@@ -23,13 +23,13 @@ namespace aquafarm::agents {
 
 class LoopGuard {
  public:
-  /// @param entries farms × agents @param max_visits at least 1
+  /// @param slots farms × agents @param max_visits at least 1
   /// @throws InputError if the features are not entity tokens
-  LoopGuard(const EnvironmentSpec& spec, std::size_t entries, std::int32_t max_visits);
+  LoopGuard(const EnvironmentSpec& spec, std::size_t slots, std::int32_t max_visits);
 
   /// Records an observation and returns the action that leads out of a loop, if the ship is in one.
-  /// @param tokens one row of features @param started an episode begins with this observation
-  std::optional<std::uint8_t> ActionOf(std::size_t entry, const float* tokens, bool started,
+  /// @param tokens one row of features @param is_first an episode begins with this observation
+  std::optional<std::uint8_t> ActionOf(std::size_t slot, const float* tokens, bool is_first,
                                        ActionMask allowed);
 
  private:
@@ -43,7 +43,7 @@ class LoopGuard {
   std::vector<std::size_t> cell_features_;
   const std::int32_t max_visits_;
   Teacher teacher_;
-  std::vector<Episode> episodes_;  // of each entry
+  std::vector<Episode> episodes_;  // of each slot
 };
 
 }  // namespace aquafarm::agents

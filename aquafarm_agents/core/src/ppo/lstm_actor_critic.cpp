@@ -63,7 +63,7 @@ void LstmActorCritic::LoadState(const SequenceRows& rows) {
 void LstmActorCritic::StepForward(const SequenceRows& rows, std::size_t step) {
   const std::size_t first = step * rows.sequences;
   for (std::size_t s = 0; s < rows.sequences; ++s) {
-    if (rows.started[first + s] == 0) continue;
+    if (rows.is_first[first + s] == 0) continue;
     At(hidden_now_, s * hidden_, hidden_) = 0.0F;
     At(cell_now_, s * hidden_, hidden_) = 0.0F;
   }
@@ -114,7 +114,7 @@ void LstmActorCritic::StepBackward(const SequenceRows& rows, std::size_t step) {
            gate_slopes_.data() + first * kGates * hidden_, recurrent_transposed_.data(), 0.0F,
            hidden_slopes_.data());
   for (std::size_t s = 0; s < rows.sequences; ++s) {
-    if (rows.started[first + s] == 0) continue;
+    if (rows.is_first[first + s] == 0) continue;
     At(hidden_slopes_, s * hidden_, hidden_) = 0.0F;
     At(cell_slopes_, s * hidden_, hidden_) = 0.0F;
   }

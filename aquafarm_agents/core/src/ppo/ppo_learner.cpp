@@ -45,11 +45,11 @@ ShardRange LocalShards(const PpoOptions& options, std::int32_t farms, const Proc
   return {static_cast<std::size_t>(count * rank), static_cast<std::size_t>(count), farms / count};
 }
 
-/// @param total number of entries of the training
+/// @param total number of slots of the training
 Rollout::Shape RolloutShape(const EnvironmentSpec& shard, const PpoOptions& options,
                             std::size_t state_size, std::size_t total) {
   Rollout::Shape shape;
-  shape.entries = EntryCount(shard);
+  shape.slots = SlotCount(shard);
   shape.steps = static_cast<std::size_t>(options.Horizon(total));
   shape.agents = static_cast<std::size_t>(shard.agents);
   shape.features = static_cast<std::size_t>(shard.feature_count);
@@ -83,7 +83,7 @@ std::vector<float> PolicyWeights(const ActorCritic& network) {
 
 /// Copies the results of `count` farms from `first` on.
 void CopyFarms(const StepResults& all, std::size_t first, std::size_t count, StepResults& part) {
-  const std::size_t farms = all.started.size();
+  const std::size_t farms = all.is_first.size();
   VisitStepFields(
       [&](const StepField&, const auto& from, auto& to) {
         const auto each = static_cast<std::ptrdiff_t>(from.size() / farms);
@@ -100,7 +100,7 @@ struct Shard {
         const Rollout::Shape& shape, std::size_t index)
       : actor(spec, options, shape.state_size),
         rollout(shape),
-        exploration(seed, shape.entries, index * shape.entries),
+        exploration(seed, shape.slots, index * shape.slots),
         order(
             {seed, 0, RngStream::kLearner, kFirstOrderStream + static_cast<std::uint32_t>(index)}) {
     if (options.shards > 1) prefix = "shard" + std::to_string(index) + ".";
@@ -125,7 +125,7 @@ struct Shard {
   StepResults results;                    // a copy, if the process has several shards
   const StepResults* seen{};              // since the last Observe
   std::vector<TokenSymmetry> symmetries;  // that episodes are turned by; empty: none
-  std::vector<std::uint8_t> symmetry;     // of each entry's episode
+  std::vector<std::uint8_t> symmetry;     // of each slot's episode
   StepResults turned;                     // the results with turned tokens
   std::vector<std::uint8_t> actions;
   std::vector<float> log_probs;
@@ -139,7 +139,7 @@ void Shard::Observe(const StepResults& observed) {
   const std::size_t agents = rollout.shape().agents;
   const std::size_t features = rollout.shape().features;
   for (std::size_t i = 0; i < symmetry.size(); ++i) {
-    if (observed.started[i / agents] != 0) {
+    if (observed.is_first[i / agents] != 0) {
       symmetry[i] = static_cast<std::uint8_t>(exploration[i].Below(kSymmetries));
     }
     const TokenSymmetry& by = symmetries[symmetry[i]];
@@ -221,7 +221,7 @@ class PpoLearner final : public ShardedLearner, public WarmStart {
         entropy_(options.shards > 1 ? updater_.entropy() : 0.0F) {
     EnvironmentSpec one = spec;
     one.farms = local_.farms;
-    const std::size_t total = EntryCount(one) * static_cast<std::size_t>(options.shards);
+    const std::size_t total = SlotCount(one) * static_cast<std::size_t>(options.shards);
     const Rollout::Shape shape = RolloutShape(one, options, network_->state_size(), total);
     shards_.reserve(local_.count);
     for (std::size_t i = 0; i < local_.count; ++i) {
@@ -231,12 +231,12 @@ class PpoLearner final : public ShardedLearner, public WarmStart {
     for (Shard& shard : shards_) {
       if (!options.augment) break;
       shard.symmetries = AllSymmetries(LayoutOfTokens(spec.feature_names));
-      shard.symmetry.resize(shape.entries);
+      shard.symmetry.resize(shape.slots);
     }
     updater_.SetTeacher(std::make_unique<const Teacher>(LayoutOfTokens(spec.feature_names)));
   }
 
-  std::uint8_t encodings() const override { return kFeaturesBit; }
+  std::uint8_t observation_types() const override { return kFeaturesBit; }
   std::string options() const override { return resolved_; }
   std::uint32_t sync_interval() const override {
     return options_.shards == 1 ? 1
@@ -331,7 +331,7 @@ void PpoLearner::Load(const Checkpoint& checkpoint) {
   updater_.set_entropy(entropy_);
 }
 
-std::uint8_t EncodingsOf(const std::string& options, bool central) {
+std::uint8_t ObservationTypesOf(const std::string& options, bool central) {
   std::string resolved;
   PpoOptions::Parse(options, resolved, central);
   return kFeaturesBit;
@@ -354,8 +354,12 @@ std::unique_ptr<PpoLearner> MakeLearner(const EnvironmentSpec& spec, std::uint64
 
 }  // namespace
 
-std::uint8_t PpoEncodings(const std::string& options) { return EncodingsOf(options, false); }
-std::uint8_t MappoEncodings(const std::string& options) { return EncodingsOf(options, true); }
+std::uint8_t PpoObservationTypes(const std::string& options) {
+  return ObservationTypesOf(options, false);
+}
+std::uint8_t MappoObservationTypes(const std::string& options) {
+  return ObservationTypesOf(options, true);
+}
 
 std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options) {

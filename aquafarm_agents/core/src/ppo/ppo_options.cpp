@@ -36,8 +36,8 @@ std::string_view ToString(PolicyMode value) {
   return kPolicyModes[static_cast<std::size_t>(value)];
 }
 
-std::int32_t PpoOptions::Horizon(std::size_t entries) const {
-  const auto steps = static_cast<std::int32_t>(static_cast<std::size_t>(rollout_size) / entries);
+std::int32_t PpoOptions::Horizon(std::size_t slots) const {
+  const auto steps = static_cast<std::int32_t>(static_cast<std::size_t>(rollout_size) / slots);
   const std::int32_t horizon = std::max(kMinHorizon, steps);
   if (!recurrent) return horizon;
   // Only complete sequences, so that each begins with a stored state.

@@ -36,17 +36,17 @@ PpoPolicy::PpoPolicy(const EnvironmentSpec& spec, const PpoOptions& options,
                      " for this network: damaged, use another checkpoint");
   }
   network_->weights() = weights;
-  if (options.max_visits > 0) loops_.emplace(spec, actor_.entries(), options.max_visits);
+  if (options.max_visits > 0) loops_.emplace(spec, actor_.slots(), options.max_visits);
   if (options.symmetric) actor_.AverageSymmetries(LayoutOfTokens(spec.feature_names));
 }
 
 void PpoPolicy::Begin(std::uint64_t seed, std::int32_t farms) {
   actor_.Begin(static_cast<std::size_t>(farms));
-  rng_ = AgentRng(seed, actor_.entries());
+  rng_ = AgentRng(seed, actor_.slots());
   EnvironmentSpec played = spec_;
   played.farms = farms;
   repetitions_ = RepetitionPenalty(played, options_.repetition_penalty);
-  if (options_.max_visits > 0) loops_.emplace(spec_, actor_.entries(), options_.max_visits);
+  if (options_.max_visits > 0) loops_.emplace(spec_, actor_.slots(), options_.max_visits);
 }
 
 void PpoPolicy::LeaveLoops(const StepResults& results, std::vector<std::uint8_t>& actions) {
@@ -54,7 +54,7 @@ void PpoPolicy::LeaveLoops(const StepResults& results, std::vector<std::uint8_t>
   const auto agents = static_cast<std::size_t>(spec_.agents);
   for (std::size_t i = 0; i < actions.size(); ++i) {
     const auto action = loops_->ActionOf(i, results.features.data() + i * features,
-                                         results.started[i / agents] != 0, actor_.masks()[i]);
+                                         results.is_first[i / agents] != 0, actor_.masks()[i]);
     if (action) actions[i] = *action;
   }
 }
@@ -64,7 +64,7 @@ void PpoPolicy::TakeBest(const StepResults& results, std::vector<std::uint8_t>& 
   const ActionDistribution& distribution = actor_.distribution();
   const auto features = static_cast<std::size_t>(spec_.feature_count);
   repetitions_.Begin(results);
-  actions.resize(actor_.entries());
+  actions.resize(actor_.slots());
   for (std::size_t i = 0; i < actions.size(); ++i) {
     std::array<float, kActionCount> logits{};
     for (std::uint8_t a = 0; a < kActionCount; ++a) {
@@ -88,12 +88,12 @@ void PpoPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actio
     if (loops_) LeaveLoops(results, actions);
   }
   for (std::size_t i = 0; i < actions.size(); ++i) {
-    if (results.in_play[i] == 0) actions[i] = 0;
+    if (results.active[i] == 0) actions[i] = 0;
   }
   if (options_.central) return;
   values_.resize(actions.size());
   for (std::size_t i = 0; i < actions.size(); ++i) {
-    const bool is_active = results.in_play[i] != 0;
+    const bool is_active = results.active[i] != 0;
     values_[i] = is_active ? actor_.values()[i] / static_cast<float>(options_.reward_scale) : 0.0F;
   }
 }

@@ -24,7 +24,7 @@ class PpoPolicy final : public Policy {
   PpoPolicy(const EnvironmentSpec& spec, const PpoOptions& options,
             const std::vector<float>& weights);
 
-  std::uint8_t encodings() const override { return kFeaturesBit; }
+  std::uint8_t observation_types() const override { return kFeaturesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 

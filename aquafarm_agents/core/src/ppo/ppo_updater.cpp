@@ -45,14 +45,14 @@ PpoUpdater::PpoUpdater(const PpoOptions& options, ActorCritic& network, std::siz
 
 // Returns the sequences with at least one transition.
 void PpoUpdater::Collect(const Rollout& rollout, std::size_t shard) {
-  const std::size_t entries = rollout.shape().entries;
+  const std::size_t slots = rollout.shape().slots;
   std::vector<std::uint32_t>& sequences = sequences_[shard];
   sequences.clear();
-  for (std::size_t begin = 0; begin < rollout.slots(); begin += length_ * entries) {
-    for (std::size_t slot = begin; slot < begin + entries; ++slot) {
+  for (std::size_t begin = 0; begin < rollout.samples(); begin += length_ * slots) {
+    for (std::size_t sample = begin; sample < begin + slots; ++sample) {
       bool is_valid = false;
-      for (std::size_t t = 0; t < length_; ++t) is_valid |= rollout.IsValid(slot + t * entries);
-      if (is_valid) sequences.push_back(static_cast<std::uint32_t>(slot));
+      for (std::size_t t = 0; t < length_; ++t) is_valid |= rollout.IsValid(sample + t * slots);
+      if (is_valid) sequences.push_back(static_cast<std::uint32_t>(sample));
     }
   }
 }
@@ -129,16 +129,16 @@ void PpoUpdater::Fail(const std::string& what, const Context& context) const {
 void PpoUpdater::SumAdvantages(const std::vector<Input>& inputs) {
   for (std::size_t shard = 0; shard < inputs.size(); ++shard) {
     const Rollout& rollout = *inputs[shard].rollout;
-    const std::size_t entries = rollout.shape().entries;
+    const std::size_t slots = rollout.shape().slots;
     advantage_sums_[shard].assign(batches_ * kSums, 0.0);
     for (std::size_t batch = 0; batch < batches_; ++batch) {
       double* const sums = advantage_sums_[shard].data() + batch * kSums;
       const Range part = Part(shard, batch);
       for (std::size_t i = part.first; i < part.first + part.count; ++i) {
         for (std::size_t t = 0; t < length_; ++t) {
-          const std::size_t slot = sequences_[shard][i] + t * entries;
-          if (!rollout.IsValid(slot)) continue;
-          const auto advantage = static_cast<double>(rollout.advantage(slot));
+          const std::size_t sample = sequences_[shard][i] + t * slots;
+          if (!rollout.IsValid(sample)) continue;
+          const auto advantage = static_cast<double>(rollout.advantage(sample));
           sums[kSum] += advantage;
           sums[kSquares] += advantage * advantage;
           sums[kRows] += 1.0;
@@ -192,7 +192,7 @@ PpoLoss PpoUpdater::LearnChunk(const Rollout& rollout, const std::uint32_t* sequ
   rows.sequences = count;
   rows.features = features_.data();
   rows.state = state_.data();
-  rows.started = started_.data();
+  rows.is_first = is_first_.data();
   rows.joint = joint_.data();
   const float* const outputs = network_.Forward(rows, nullptr);
   const PpoRows recorded{masks_.data(),      actions_.data(), log_probs_.data(), values_.data(),
@@ -215,7 +215,7 @@ void PpoUpdater::Gather(const Rollout& rollout, const std::uint32_t* sequences, 
   features_.resize(rows * width);
   joint_.resize(rows * joint_size);
   state_.resize(count * state_size);
-  started_.resize(rows);
+  is_first_.resize(rows);
   masks_.resize(rows);
   actions_.resize(rows);
   slopes_.resize(rows * kActorCriticOutputs);
@@ -229,22 +229,22 @@ void PpoUpdater::Gather(const Rollout& rollout, const std::uint32_t* sequences, 
       std::copy_n(rollout.state(begin), state_size, state_.data() + i * state_size);
     }
     for (std::size_t t = 0; t < length_; ++t) {
-      const std::size_t slot = begin + t * rollout.shape().entries;
+      const std::size_t sample = begin + t * rollout.shape().slots;
       const std::size_t row = t * count + i;
-      std::copy_n(rollout.features(slot), width, features_.data() + row * width);
+      std::copy_n(rollout.features(sample), width, features_.data() + row * width);
       if (joint_size > 0) {
-        const std::size_t agent = slot % rollout.shape().agents;
-        JoinObservations(rollout.features(slot - agent), rollout.shape().agents, width, agent,
+        const std::size_t agent = sample % rollout.shape().agents;
+        JoinObservations(rollout.features(sample - agent), rollout.shape().agents, width, agent,
                          joint_.data() + row * joint_size);
       }
-      started_[row] = rollout.started(slot) ? 1 : 0;
-      masks_[row] = rollout.mask(slot);
-      actions_[row] = rollout.action(slot);
-      log_probs_[row] = rollout.log_prob(slot);
-      values_[row] = rollout.value(slot);
-      advantages_[row] = (rollout.advantage(slot) - mean_) * inverse_deviation_;
-      targets_[row] = rollout.target(slot);
-      weights_[row] = rollout.IsValid(slot) ? weight_ : 0.0F;
+      is_first_[row] = rollout.is_first(sample) ? 1 : 0;
+      masks_[row] = rollout.mask(sample);
+      actions_[row] = rollout.action(sample);
+      log_probs_[row] = rollout.log_prob(sample);
+      values_[row] = rollout.value(sample);
+      advantages_[row] = (rollout.advantage(sample) - mean_) * inverse_deviation_;
+      targets_[row] = rollout.target(sample);
+      weights_[row] = rollout.IsValid(sample) ? weight_ : 0.0F;
     }
   }
 }

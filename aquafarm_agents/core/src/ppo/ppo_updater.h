@@ -92,7 +92,7 @@ class PpoUpdater {
   ProcessGroup* const group_;
 
   // Scratch. By shard of this process:
-  std::vector<std::vector<std::uint32_t>> sequences_;  // first slots of those with transitions
+  std::vector<std::vector<std::uint32_t>> sequences_;  // first samples of those with transitions
   std::vector<std::vector<float>> gradients_;          // of a minibatch
   std::vector<std::vector<double>> losses_;            // of a minibatch, as PpoLoss
   std::vector<std::vector<double>> advantage_sums_;  // of an epoch's minibatches: Σ A, Σ A², rows
@@ -105,7 +105,7 @@ class PpoUpdater {
   std::vector<float> features_;
   std::vector<float> joint_;
   std::vector<float> state_;
-  std::vector<std::uint8_t> started_;
+  std::vector<std::uint8_t> is_first_;
   std::vector<ActionMask> masks_;
   std::vector<std::uint8_t> actions_;
   std::vector<float> log_probs_;

@@ -26,35 +26,34 @@ float Blend(float own, float team, float share) {
 
 Rollout::Rollout(const Shape& shape)
     : shape_(shape),
-      features_(slots() * shape.features),
-      states_((shape.steps + shape.sequence_length - 1) / shape.sequence_length * shape.entries *
+      features_(samples() * shape.features),
+      states_((shape.steps + shape.sequence_length - 1) / shape.sequence_length * shape.slots *
               shape.state_size),
-      masks_(slots()),
-      actions_(slots()),
-      started_(slots()),
-      log_probs_(slots()),
-      values_(slots() + shape.entries),
-      rewards_(slots()),
-      ends_(slots(), StepEnd::kNoTransition) {}
+      masks_(samples()),
+      actions_(samples()),
+      is_first_(samples()),
+      log_probs_(samples()),
+      values_(samples() + shape.slots),
+      rewards_(samples()),
+      ends_(samples(), StepEnd::kNoTransition) {}
 
 void Rollout::Complete(const StepResults& results, const Rewards& rewards) {
   if (!is_open_) return;
   is_open_ = false;
   float team = 0.0F;
-  const std::size_t first = (steps_ - 1) * shape_.entries;
-  for (std::size_t entry = 0; entry < shape_.entries; ++entry) {
-    const std::size_t farm = entry / shape_.agents;
-    StepEnd& end = ends_[first + entry];
-    if (entry % shape_.agents == 0) team = TeamReward(results, entry, shape_.agents);
-    rewards_[first + entry] =
-        rewards.scale * Blend(results.rewards[entry], team, rewards.team_share);
+  const std::size_t first = (steps_ - 1) * shape_.slots;
+  for (std::size_t slot = 0; slot < shape_.slots; ++slot) {
+    const std::size_t farm = slot / shape_.agents;
+    StepEnd& end = ends_[first + slot];
+    if (slot % shape_.agents == 0) team = TeamReward(results, slot, shape_.agents);
+    rewards_[first + slot] = rewards.scale * Blend(results.rewards[slot], team, rewards.team_share);
     if (end == StepEnd::kNoTransition) continue;
-    if (results.started[farm] != 0) {
+    if (results.is_first[farm] != 0) {
       end = StepEnd::kNoTransition;  // the farm was lost and replaced by a new one
-    } else if (shape_.is_team ? IsTerminated(static_cast<EndReason>(results.reasons[farm]))
-                              : results.IsDone(entry, farm)) {
+    } else if (shape_.is_team ? IsTerminated(static_cast<EndReason>(results.end_reasons[farm]))
+                              : results.IsDone(slot, farm)) {
       end = StepEnd::kTerminated;
-    } else if (static_cast<EndReason>(results.reasons[farm]) != EndReason::kNone) {
+    } else if (static_cast<EndReason>(results.end_reasons[farm]) != EndReason::kNone) {
       end = StepEnd::kTruncated;
     }
   }
@@ -64,9 +63,9 @@ void Rollout::Add(const StepResults& results, const std::vector<ActionMask>& mas
                   const std::vector<std::uint8_t>& actions, const std::vector<float>& log_probs,
                   const std::vector<float>& values, const std::vector<float>& state) {
   AQUAFARM_CHECK_LT(steps_, shape_.steps);
-  const std::size_t first = steps_ * shape_.entries;
+  const std::size_t first = steps_ * shape_.slots;
   const auto at = static_cast<std::ptrdiff_t>(first);
-  std::copy_n(results.features.begin(), shape_.entries * shape_.features,
+  std::copy_n(results.features.begin(), shape_.slots * shape_.features,
               features_.begin() + at * static_cast<std::ptrdiff_t>(shape_.features));
   std::copy(masks.begin(), masks.end(), masks_.begin() + at);
   std::copy(actions.begin(), actions.end(), actions_.begin() + at);
@@ -76,28 +75,28 @@ void Rollout::Add(const StepResults& results, const std::vector<ActionMask>& mas
     const std::size_t block = steps_ / shape_.sequence_length * state.size();
     std::copy(state.begin(), state.end(), states_.begin() + static_cast<std::ptrdiff_t>(block));
   }
-  for (std::size_t entry = 0; entry < shape_.entries; ++entry) {
-    const std::size_t farm = entry / shape_.agents;
-    const bool is_active = (shape_.is_team || results.in_play[entry] != 0) &&
-                           static_cast<EndReason>(results.reasons[farm]) == EndReason::kNone;
-    ends_[first + entry] = is_active ? StepEnd::kContinues : StepEnd::kNoTransition;
-    started_[first + entry] = results.started[farm];
+  for (std::size_t slot = 0; slot < shape_.slots; ++slot) {
+    const std::size_t farm = slot / shape_.agents;
+    const bool is_active = (shape_.is_team || results.active[slot] != 0) &&
+                           static_cast<EndReason>(results.end_reasons[farm]) == EndReason::kNone;
+    ends_[first + slot] = is_active ? StepEnd::kContinues : StepEnd::kNoTransition;
+    is_first_[first + slot] = results.is_first[farm];
   }
   ++steps_;
   is_open_ = true;
 }
 
 void Rollout::Finish(const std::vector<float>& last_values, float gamma, float lambda) {
-  AQUAFARM_CHECK_EQ(last_values.size(), shape_.entries);
+  AQUAFARM_CHECK_EQ(last_values.size(), shape_.slots);
   std::copy(last_values.begin(), last_values.end(),
-            values_.begin() + static_cast<std::ptrdiff_t>(slots()));
-  EstimateAdvantages(rewards_, values_, ends_, shape_.entries, gamma, lambda, advantages_);
+            values_.begin() + static_cast<std::ptrdiff_t>(samples()));
+  EstimateAdvantages(rewards_, values_, ends_, shape_.slots, gamma, lambda, advantages_);
 }
 
-const float* Rollout::state(std::size_t slot) const {
-  const std::size_t step = slot / shape_.entries;
+const float* Rollout::state(std::size_t sample) const {
+  const std::size_t step = sample / shape_.slots;
   AQUAFARM_CHECK_EQ(step % shape_.sequence_length, 0U);
-  const std::size_t block = step / shape_.sequence_length * shape_.entries + slot % shape_.entries;
+  const std::size_t block = step / shape_.sequence_length * shape_.slots + sample % shape_.slots;
   return states_.data() + block * shape_.state_size;
 }
 
@@ -108,7 +107,7 @@ void Rollout::VisitNumbers(Self& self, const Visit& visit) {
 }
 
 void Rollout::Save(Checkpoint& checkpoint) const {
-  const std::size_t used = steps_ * shape_.entries;
+  const std::size_t used = steps_ * shape_.slots;
   const auto save = [&](const char* name, const auto& values, std::size_t each) {
     const auto count = static_cast<std::ptrdiff_t>(used * each);
     checkpoint.SetArray(std::string("rollout.") + name,
@@ -119,7 +118,7 @@ void Rollout::Save(Checkpoint& checkpoint) const {
   save("features", features_, shape_.features);
   save("masks", masks_, 1);
   save("actions", actions_, 1);
-  save("started", started_, 1);
+  save("started", is_first_, 1);
   save("log_probs", log_probs_, 1);
   save("values", values_, 1);
   save("rewards", rewards_, 1);
@@ -135,7 +134,7 @@ void Rollout::Load(const Checkpoint& checkpoint) {
     throw InputError("rollout: got " + std::to_string(loaded.steps_) + " steps, expected at most " +
                      std::to_string(shape_.steps) + ": damaged, resume from another checkpoint");
   }
-  const std::size_t used = loaded.steps_ * shape_.entries;
+  const std::size_t used = loaded.steps_ * shape_.slots;
   const auto load = [&](const char* name, auto& values, std::size_t each) {
     std::remove_reference_t<decltype(values)> got;
     checkpoint.GetArray(std::string("rollout.") + name, used * each, got);
@@ -144,7 +143,7 @@ void Rollout::Load(const Checkpoint& checkpoint) {
   load("features", loaded.features_, shape_.features);
   load("masks", loaded.masks_, 1);
   load("actions", loaded.actions_, 1);
-  load("started", loaded.started_, 1);
+  load("started", loaded.is_first_, 1);
   load("log_probs", loaded.log_probs_, 1);
   load("values", loaded.values_, 1);
   load("rewards", loaded.rewards_, 1);

@@ -17,8 +17,8 @@ class Rollout {
  public:
   struct Shape {
     std::size_t steps{};
-    std::size_t entries{};  ///< E
-    std::size_t agents{};   ///< agents of one farm
+    std::size_t slots{};   ///< E
+    std::size_t agents{};  ///< agents of one farm
     std::size_t features{};
     std::size_t state_size{};
     std::size_t sequence_length{
@@ -34,7 +34,7 @@ class Rollout {
   explicit Rollout(const Shape& shape);
 
   const Shape& shape() const { return shape_; }
-  std::size_t slots() const { return shape_.steps * shape_.entries; }
+  std::size_t samples() const { return shape_.steps * shape_.slots; }
   bool IsFull() const { return steps_ == shape_.steps && !is_open_; }
 
   /// Records the results of the last decisions; does nothing if there are none.
@@ -48,19 +48,19 @@ class Rollout {
   void Finish(const std::vector<float>& last_values, float gamma, float lambda);
   void Clear() { steps_ = 0; }
 
-  bool IsValid(std::size_t slot) const { return ends_[slot] != StepEnd::kNoTransition; }
-  const float* features(std::size_t slot) const {
-    return features_.data() + slot * shape_.features;
+  bool IsValid(std::size_t sample) const { return ends_[sample] != StepEnd::kNoTransition; }
+  const float* features(std::size_t sample) const {
+    return features_.data() + sample * shape_.features;
   }
-  /// @param slot at a step that is a multiple of sequence_length
-  const float* state(std::size_t slot) const;
-  bool started(std::size_t slot) const { return started_[slot] != 0; }
-  ActionMask mask(std::size_t slot) const { return masks_[slot]; }
-  std::uint8_t action(std::size_t slot) const { return actions_[slot]; }
-  float log_prob(std::size_t slot) const { return log_probs_[slot]; }
-  float value(std::size_t slot) const { return values_[slot]; }
-  float advantage(std::size_t slot) const { return advantages_[slot]; }
-  float target(std::size_t slot) const { return advantages_[slot] + values_[slot]; }
+  /// @param sample at a step that is a multiple of sequence_length
+  const float* state(std::size_t sample) const;
+  bool is_first(std::size_t sample) const { return is_first_[sample] != 0; }
+  ActionMask mask(std::size_t sample) const { return masks_[sample]; }
+  std::uint8_t action(std::size_t sample) const { return actions_[sample]; }
+  float log_prob(std::size_t sample) const { return log_probs_[sample]; }
+  float value(std::size_t sample) const { return values_[sample]; }
+  float advantage(std::size_t sample) const { return advantages_[sample]; }
+  float target(std::size_t sample) const { return advantages_[sample] + values_[sample]; }
 
   void Save(Checkpoint& checkpoint) const;
   /// @throws InputError if sections are missing or have another size
@@ -77,7 +77,7 @@ class Rollout {
   std::vector<float> states_;  // [T / sequence_length, E, state_size]
   std::vector<ActionMask> masks_;
   std::vector<std::uint8_t> actions_;
-  std::vector<std::uint8_t> started_;
+  std::vector<std::uint8_t> is_first_;
   std::vector<float> log_probs_;
   std::vector<float> values_;  // [T + 1, E]
   std::vector<float> rewards_;

@@ -55,14 +55,14 @@ std::uint8_t Teacher::MoveTo(const float* tokens, const Target& target, ActionMa
     if (target.token[next_ + move] != 0.0F) wanted = kOctantOf[move];
   }
   std::uint8_t best = 0;
-  float least = std::numeric_limits<float>::infinity();
+  float lowest = std::numeric_limits<float>::infinity();
   for (std::uint8_t move = 0; move < kMoveCount; ++move) {
     if ((allowed & MaskOf(static_cast<Action>(move))) == 0) continue;
     const int apart = std::abs(kOctantOf[move] - wanted);
     const int octants = wanted == kNone ? 0 : std::min(apart, kOctants - apart);
     const float cost = static_cast<float>(octants) + tokens[risk_ + move] * kUnitRisk;
-    if (cost >= least) continue;
-    least = cost;
+    if (cost >= lowest) continue;
+    lowest = cost;
     best = move;
   }
   return best;

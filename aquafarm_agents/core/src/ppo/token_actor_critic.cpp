@@ -82,13 +82,13 @@ void TokenActorCritic::Reserve(std::size_t rows) {
     one->resize(rows * hidden_);
   }
   for (Tokens& tokens : kinds_) {
-    const std::size_t most = rows * tokens.group.slots;
+    const std::size_t capacity = rows * tokens.group.slots;
     tokens.begin.resize(rows + 1);
-    tokens.features.resize(most * tokens.first.inputs);
+    tokens.features.resize(capacity * tokens.first.inputs);
     for (auto* one : {&tokens.middle, &tokens.embedding, &tokens.middle_slopes, &tokens.slopes}) {
-      one->resize(most * kE);
+      one->resize(capacity * kE);
     }
-    tokens.scores.resize(most * kHeads);
+    tokens.scores.resize(capacity * kHeads);
     tokens.best.resize(rows * kE);
   }
 }

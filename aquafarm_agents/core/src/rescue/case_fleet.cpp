@@ -25,13 +25,13 @@ std::string Where(GeoPoint place) {
 // Returns the water cell nearest to a cell.
 Cell NearestWater(const Grid<std::uint8_t>& water, Cell from) {
   Cell nearest = from;
-  std::int64_t least = std::numeric_limits<std::int64_t>::max();
+  std::int64_t min_squared = std::numeric_limits<std::int64_t>::max();
   for (std::int32_t y = 0; y < water.rows(); ++y) {
     for (std::int32_t x = 0; x < water.cols(); ++x) {
       const std::int64_t dx = x - from.x;
       const std::int64_t dy = y - from.y;
-      if (water(y, x) == 0 || dx * dx + dy * dy >= least) continue;
-      least = dx * dx + dy * dy;
+      if (water(y, x) == 0 || dx * dx + dy * dy >= min_squared) continue;
+      min_squared = dx * dx + dy * dy;
       nearest = {x, y};
     }
   }

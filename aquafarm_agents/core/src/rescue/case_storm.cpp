@@ -26,9 +26,9 @@ StormTrack TrackOf(const RescueRequest& request, const std::string& path, Rescue
   if (request.storm_name.empty()) {
     if (file.tracks.size() == 1) return file.tracks[0];
     std::vector<std::string> names;
-    constexpr std::size_t kMostNamed = 60;
+    constexpr std::size_t kMaxNamed = 60;
     for (const StormTrack& track : file.tracks) {
-      if (names.size() < kMostNamed) {
+      if (names.size() < kMaxNamed) {
         names.push_back(track.id + (track.name.empty() ? "" : " " + track.name));
       }
     }
@@ -201,17 +201,17 @@ void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase&
                      ", expected one that is known after " + FormatUtc(rescue.start) +
                      ", the start of the plan; get a newer bulletin");
   }
-  constexpr double kMostHours = 96.0;
-  constexpr double kMostSteps = 600.0;
+  constexpr double kMaxHours = 96.0;
+  constexpr double kMaxSteps = 600.0;
   constexpr double kMinStep_s = 120.0;
   const Scenario& scenario = *rescue.scenario;
   const double known_s =
-      std::min(static_cast<double>(*storm.known_until - rescue.start), kMostHours * kHour_s);
+      std::min(static_cast<double>(*storm.known_until - rescue.start), kMaxHours * kHour_s);
   EnsembleOptions& options = rescue.ensemble;
   options.width = scenario.width;
   options.height = scenario.height;
   options.cell_size_km = scenario.cell_size_m / 1000.0;
-  options.step_s = std::max({kMinStep_s, std::ceil(known_s / kMostSteps)});
+  options.step_s = std::max({kMinStep_s, std::ceil(known_s / kMaxSteps)});
   options.steps = static_cast<std::int32_t>(known_s / options.step_s) + 1;
   options.members = request.members;
   options.seed = request.seed;

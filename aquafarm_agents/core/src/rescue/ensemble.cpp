@@ -156,7 +156,7 @@ class EnsembleBuilder {
     if (east < 0.0F && west < 0.0F) return {0, -1};
     const float from = west < 0.0F ? storm.x : storm.x - west;
     const float to = east < 0.0F ? storm.x : storm.x + east;
-    const auto limit = [](float value, float most) { return std::clamp(value, -1.0F, most); };
+    const auto limit = [](float value, float max) { return std::clamp(value, -1.0F, max); };
     const auto edge = static_cast<float>(width_);
     return {std::max(0, static_cast<std::int32_t>(std::ceil(limit(from, edge)))),
             std::min(width_ - 1, static_cast<std::int32_t>(std::floor(limit(to, edge))))};
@@ -258,10 +258,9 @@ Ensemble::Ensemble(const CentralForecast& forecast, const EnsembleOptions& optio
   require("members", options.members, 1, 60000);
   require("steps of the plan", options.steps, 1, 4000);
   require("rings of the storm", rings_, 1, static_cast<std::int64_t>(kMaxStormRings));
-  constexpr std::int64_t kMostArrivals = 400'000'000;
+  constexpr std::int64_t kMaxArrivals = 400'000'000;
   require("members times cells times rings",
-          std::int64_t{options.members} * options.width * options.height * rings_, 1,
-          kMostArrivals);
+          std::int64_t{options.members} * options.width * options.height * rings_, 1, kMaxArrivals);
   AQUAFARM_CHECK_LE(std::size_t{1}, forecast.path.points.size());
   EnsembleBuilder(forecast, sites, *this).Run();
 }

@@ -216,13 +216,13 @@ class SimpleRule {
   // Returns the position in `waiting_` of the next device; their number if none is in reach.
   std::size_t Choose(const Ship& ship) const {
     std::size_t best = waiting_.size();
-    double most = -std::numeric_limits<double>::infinity();
+    double best_score = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < waiting_.size(); ++i) {
       const double length = model_.routes().Length(ship.place, model_.PlaceOfDevice(waiting_[i]));
       const double score =
           rule_ == FetchRule::kValue ? model_.problem().devices[waiting_[i]].value : -length;
-      if (length == std::numeric_limits<double>::infinity() || score <= most) continue;
-      most = score;
+      if (length == std::numeric_limits<double>::infinity() || score <= best_score) continue;
+      best_score = score;
       best = i;
     }
     return best;

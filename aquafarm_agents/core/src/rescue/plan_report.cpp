@@ -78,7 +78,7 @@ bool HasEnded(const RescueCase& rescue) {
          present_s > static_cast<double>(*storm.known_until);
 }
 
-void JudgeEnded(RescueCase& rescue, PlanReport& report) {
+void SetEndedResult(RescueCase& rescue, PlanReport& report) {
   report.result = PlanResult::kStormUnknown;
   report.text =
       "It is unknown whether the storm reaches the devices: the bulletin's forecast "
@@ -88,7 +88,7 @@ void JudgeEnded(RescueCase& rescue, PlanReport& report) {
        report, rescue);
 }
 
-void JudgeUnknown(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
+void SetUnknownResult(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
   report.result = PlanResult::kStormUnknown;
   report.text = std::string("It is unknown ") +
                 (IsReached(rescue, ensemble, report.plan) ? "when" : "whether") +
@@ -97,7 +97,7 @@ void JudgeUnknown(RescueCase& rescue, const Ensemble& ensemble, PlanReport& repo
   Warn("storm_unknown", "stop", "Get the next bulletin.", report, rescue);
 }
 
-void JudgeNothingSaved(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
+void SetNothingSavedResult(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
   report.result = PlanResult::kNothingSaved;
   const RescueProblem& problem = rescue.problem;
   const std::string advice = report.plan.routes.empty()
@@ -120,10 +120,10 @@ void JudgeNothingSaved(RescueCase& rescue, const Ensemble& ensemble, PlanReport&
   Warn("nothing_can_be_saved", "stop", advice, report, rescue);
 }
 
-void Judge(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
-  if (AreWindsUnknown(rescue, ensemble)) return JudgeUnknown(rescue, ensemble, report);
+void SetResult(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
+  if (AreWindsUnknown(rescue, ensemble)) return SetUnknownResult(rescue, ensemble, report);
   if (!IsReached(rescue, ensemble, report.plan)) {
-    if (HasEnded(rescue)) return JudgeEnded(rescue, report);
+    if (HasEnded(rescue)) return SetEndedResult(rescue, report);
     const std::string until =
         FormatUtc(rescue.start +
                   static_cast<std::int64_t>((ensemble.steps() - 1) * ensemble.options().step_s));
@@ -133,7 +133,7 @@ void Judge(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
                   ". What follows is unknown: plan again with the next bulletin.";
     return Warn("storm_stays_away", "warning", "Get the next bulletin.", report, rescue);
   }
-  if (report.plan.saved <= 0.0) return JudgeNothingSaved(rescue, ensemble, report);
+  if (report.plan.saved <= 0.0) return SetNothingSavedResult(rescue, ensemble, report);
   report.result = PlanResult::kPlan;
   report.text = std::to_string(report.plan.routes.size()) + " of " +
                 std::to_string(rescue.problem.ships.size()) + " ships leave and save " +
@@ -258,7 +258,7 @@ PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble) {
   report.plan = PlanRescue(problem, ensemble);
   report.deadlines = Deadlines(problem, ensemble, {kDeadlineShares.begin(), kDeadlineShares.end()});
   report.what_if = CompareChanges(problem, ensemble, report.plan);
-  Judge(rescue, ensemble, report);
+  SetResult(rescue, ensemble, report);
   report.is_old = rescue.storm.age_h >= kOldBulletin_h;
   if (report.result != PlanResult::kStormUnknown) WarnOfWaysHome(rescue, report);
   const auto rank = [](const RescueWarning& one) {

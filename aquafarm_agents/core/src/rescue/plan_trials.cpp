@@ -137,12 +137,12 @@ AverseResult PlanTrials::CompareAverse(const TrialStorm& storm, std::int32_t mem
   EnsembleOptions others = rescue.ensemble;
   others.members = members;
   others.seed ^= 0x5eed5eedULL;
-  const Ensemble judge(rescue.forecast, others, rescue.Sites());
+  const Ensemble scoring(rescue.forecast, others, rescue.Sites());
   constexpr double kShare = 0.05;
   const auto worst = [&](double risk_averse) {
     rescue.problem.risk_averse = risk_averse;
     const RescuePlan plan = PlanRescue(rescue.problem, ensemble);
-    return MeanOfWorst(PlayRescue(rescue.problem, judge, plan).loss, kShare);
+    return MeanOfWorst(PlayRescue(rescue.problem, scoring, plan).loss, kShare);
   };
   return {storm.track, worst(0.0), worst(kShare)};
 }

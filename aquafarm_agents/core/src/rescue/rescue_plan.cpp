@@ -18,7 +18,7 @@ namespace aquafarm::agents {
 namespace {
 
 // Sets of trips of several ships that the combination keeps.
-constexpr std::size_t kMostTeams = 3000;
+constexpr std::size_t kMaxTeams = 3000;
 // Plans per set of devices among which a risk-averse plan is chosen.
 constexpr std::size_t kAlternatives = 8;
 
@@ -74,8 +74,8 @@ bool Narrow(std::vector<Team>& teams, std::size_t alternatives) {
   std::map<DeviceSet, std::size_t> count;
   const auto is_spare = [&](const Team& team) { return ++count[team.devices] > alternatives; };
   teams.erase(std::remove_if(teams.begin(), teams.end(), is_spare), teams.end());
-  if (teams.size() <= kMostTeams) return false;
-  teams.resize(kMostTeams);
+  if (teams.size() <= kMaxTeams) return false;
+  teams.resize(kMaxTeams);
   return true;
 }
 
@@ -133,7 +133,7 @@ class AverseSearch {
   AverseSearch(const TripModel& model, const TeamSearch& by_mean, RescuePlan best, int rounds)
       : model_(model), best_(std::move(best)), last_(best_) {
     is_exhaustive_ = by_mean.is_exhaustive();
-    Judge(by_mean, kJudgedByMean);
+    Consider(by_mean, kConsideredByMean);
     std::vector<double> sum(best_.loss.size(), 0.0);
     for (int round = 1; round <= rounds && !IsEnough(); ++round) {
       AddTail(last_.loss, sum);
@@ -151,7 +151,7 @@ class AverseSearch {
       }
       bound_ = std::max(bound_, loss);
       is_exhaustive_ = is_exhaustive_ && search.is_exhaustive();
-      Judge(search, kJudged);
+      Consider(search, kConsidered);
     }
   }
 
@@ -162,8 +162,8 @@ class AverseSearch {
   }
 
  private:
-  static constexpr std::size_t kJudgedByMean = 300;  // plans whose worst members are looked at
-  static constexpr std::size_t kJudged = 40;
+  static constexpr std::size_t kConsideredByMean = 300;  // plans whose worst members are looked at
+  static constexpr std::size_t kConsidered = 40;
   static constexpr double kEnough = 1e-4;
   static constexpr double kOthers = 1e-4;  // sum of the weights that all members share alike
 
@@ -178,7 +178,7 @@ class AverseSearch {
     return a.saved - a.cost > b.saved - b.cost + same;
   }
 
-  void Judge(const TeamSearch& search, std::size_t limit) {
+  void Consider(const TeamSearch& search, std::size_t limit) {
     for (std::size_t i = 0; i < std::min(limit, search.teams().size()); ++i) {
       RescuePlan other = PlanOf(model_, search.teams()[i]);
       if (IsBetter(other, best_)) best_ = std::move(other);

@@ -60,7 +60,7 @@ std::uint8_t Tabular(const std::string& options) {
   return kIndexBit;
 }
 
-using Encodings = std::uint8_t (*)(const std::string&);
+using ObservationTypes = std::uint8_t (*)(const std::string&);
 using MakeLearner = std::unique_ptr<Learner> (*)(const EnvironmentSpec&, std::uint64_t,
                                                  const std::string&);
 
@@ -70,9 +70,9 @@ ExplorationOptions ExplorationIn(const std::string& options) {
                           ExplorationOf::kAny);
 }
 
-template <Encodings encodings>
+template <ObservationTypes observation_types>
 std::uint8_t WithCuriosityToo(const std::string& options) {
-  const std::uint8_t bits = encodings(options);
+  const std::uint8_t bits = observation_types(options);
   return ExplorationIn(options).is_curious() ? bits | kFeaturesBit : bits;
 }
 
@@ -115,30 +115,31 @@ std::string DescribeDeciders(std::int32_t ships, std::int32_t devices, bool netw
 std::vector<Algorithm> OwnAlgorithms() {
   return {
       {"random", "draws among all or reachable actions; the baseline (§4.2)", false, 100000,
-       RandomEncodings, Make<RandomLearner>, MakeRandomPolicy},
+       RandomObservationTypes, Make<RandomLearner>, MakeRandomPolicy},
       {"q_learning", "tabular Q-learning (Eq. 12)", true, 4000000, WithCuriosityToo<Tabular>,
        MakeExplorer<Make<TabularLearner<QLearningRule>>>, MakeTabularPolicy},
       {"sarsa", "tabular SARSA (Eq. 14)", true, 8000000, WithCuriosityToo<Tabular>,
        MakeExplorer<Make<TabularLearner<SarsaRule>>>, MakeTabularPolicy},
       {"dqn", "deep Q-network on features or planes (Eq. 15)", true, 200000,
-       WithCuriosityToo<DqnEncodings>, MakeExplorer<MakeDqn>, MakeDqnPolicy},
+       WithCuriosityToo<DqnObservationTypes>, MakeExplorer<MakeDqn>, MakeDqnPolicy},
       {"lstm_dqn", "deep Q-network with a memory (Algorithm 2)", true, 150000,
-       WithCuriosityToo<RecurrentDqnEncodings>, MakeExplorer<MakeRecurrentDqn>,
+       WithCuriosityToo<RecurrentDqnObservationTypes>, MakeExplorer<MakeRecurrentDqn>,
        MakeRecurrentDqnPolicy},
-      {"independent_dqn", "a DQN for each agent", true, 400000, WithCuriosityToo<DqnEncodings>,
-       MakeEach<MakeExplorer<MakeDqn>>, MakeEachPolicy<MakeDqnPolicy>},
+      {"independent_dqn", "a DQN for each agent", true, 400000,
+       WithCuriosityToo<DqnObservationTypes>, MakeEach<MakeExplorer<MakeDqn>>,
+       MakeEachPolicy<MakeDqnPolicy>},
       {"independent_lstm_dqn", "an LSTM-DQN for each agent", true, 400000,
-       WithCuriosityToo<RecurrentDqnEncodings>, MakeEach<MakeExplorer<MakeRecurrentDqn>>,
+       WithCuriosityToo<RecurrentDqnObservationTypes>, MakeEach<MakeExplorer<MakeRecurrentDqn>>,
        MakeEachPolicy<MakeRecurrentDqnPolicy>},
       {"vdn", "value decomposition: one DQN plays all agents, their values add up", true, 400000,
-       WithCuriosityToo<DqnEncodings>, MakeExplorer<MakeVdn>, MakeDqnPolicy},
+       WithCuriosityToo<DqnObservationTypes>, MakeExplorer<MakeVdn>, MakeDqnPolicy},
       {"maddpg", "an actor for each agent, a critic that sees all of them (§3.3)", true, 800000,
-       WithCuriosityToo<MaddpgEncodings>, MakeExplorer<MakeMaddpg>, MakeMaddpgPolicy},
+       WithCuriosityToo<MaddpgObservationTypes>, MakeExplorer<MakeMaddpg>, MakeMaddpgPolicy},
       {"ppo", "proximal policy optimization: an actor-critic that learns from its own steps", true,
-       2500000, WithCuriosityToo<PpoEncodings>, MakeExplorer<MakePpo>, MakePpoPolicy,
+       2500000, WithCuriosityToo<PpoObservationTypes>, MakeExplorer<MakePpo>, MakePpoPolicy,
        /*default_farms=*/256, MakePpoOfRanks},
       {"mappo", "PPO for several agents: one policy, a value that sees all of them", true, 10000000,
-       WithCuriosityToo<MappoEncodings>, MakeExplorer<MakeMappo>, MakePpoPolicy,
+       WithCuriosityToo<MappoObservationTypes>, MakeExplorer<MakeMappo>, MakePpoPolicy,
        /*default_farms=*/256, MakeMappoOfRanks},
       {"planner",
        "plans on the issued forecast, or else on the present headings; several agents cooperate",
@@ -188,7 +189,7 @@ const Algorithm& FindAlgorithm(const std::string& name) {
 
 std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options) {
-  if ((algorithm.encodings(options) & kIndexBit) == 0) return algorithm.default_steps;
+  if ((algorithm.observation_types(options) & kIndexBit) == 0) return algorithm.default_steps;
   // Measured on a ranch with 17.9 million states (docs/data.md): half as many steps are not enough.
   constexpr std::uint64_t kStepsPerState = 8;
   constexpr std::uint64_t kMillion = 1'000'000;
@@ -200,7 +201,7 @@ std::string LargeTableNote(const Algorithm& algorithm, const EnvironmentSpec& sp
                            const std::string& options) {
   constexpr std::uint64_t kMegabyte = 1'000'000;
   constexpr std::uint64_t kLarge = 256 * kMegabyte;
-  if ((algorithm.encodings(options) & kIndexBit) == 0) return "";
+  if ((algorithm.observation_types(options) & kIndexBit) == 0) return "";
   const std::uint64_t bytes = QTable::BytesOf(spec);
   if (bytes < kLarge) return "";
   return std::string("algorithm ") + algorithm.name + ": the table of " +

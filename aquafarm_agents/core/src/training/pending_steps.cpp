@@ -42,7 +42,7 @@ void PendingSteps::Add(const StepResults& results) {
     finished_.push_back(episode);
   }
   steps_.push_back(static_cast<std::uint64_t>(
-      std::count(results.started.begin(), results.started.end(), std::uint8_t{0})));
+      std::count(results.is_first.begin(), results.is_first.end(), std::uint8_t{0})));
 }
 
 void PendingSteps::Clear() {

@@ -53,13 +53,13 @@ struct Observations {
   std::array<std::uint32_t, 3> shape{1, 1, 1};
 };
 
-Observations ObservationsOf(std::uint8_t encodings, const EnvironmentSpec& spec,
+Observations ObservationsOf(std::uint8_t observation_types, const EnvironmentSpec& spec,
                             const StepResults& results) {
   const auto count = [](std::int32_t value) { return static_cast<std::uint32_t>(value); };
-  if (encodings == kIndexBit) {
+  if (observation_types == kIndexBit) {
     return {results.index.data(), results.index.size() * sizeof(std::uint32_t)};
   }
-  if (encodings == kPlanesBit) {
+  if (observation_types == kPlanesBit) {
     return {results.planes.data(),
             results.planes.size(),
             {count(spec.plane_count), count(spec.height), count(spec.width)}};
@@ -73,7 +73,7 @@ class PythonPolicy final : public Policy {
  public:
   PythonPolicy(std::shared_ptr<PolicyProcess> process, EnvironmentSpec spec)
       : process_(std::move(process)), spec_(std::move(spec)) {}
-  std::uint8_t encodings() const override { return process_->encodings(); }
+  std::uint8_t observation_types() const override { return process_->observation_types(); }
   void Begin(std::uint64_t, std::int32_t) override {}
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
     process_->Act(spec_, results, actions);
@@ -107,9 +107,10 @@ PolicyProcess::PolicyProcess(const std::string& where, int answer_limit_s)
   const bool is_default = chosen == nullptr && venv == nullptr;
   Start({python, ServerPath(), std::to_string(kChildSocket), where_}, is_default);
   try {
-    encodings_ = KindOf(ReadLine({kStartLimit_s,
-                                  "expected the kind of its observations: make its import faster, "
-                                  "or start it on a less busy machine"}));
+    observation_types_ =
+        KindOf(ReadLine({kStartLimit_s,
+                         "expected the kind of its observations: make its import faster, "
+                         "or start it on a less busy machine"}));
   } catch (...) {
     Stop();
     throw;
@@ -235,7 +236,7 @@ void PolicyProcess::Act(const EnvironmentSpec& spec, const StepResults& results,
 // Returns an error that the process reports, or an empty text after the actions.
 std::string PolicyProcess::Ask(const EnvironmentSpec& spec, const StepResults& results,
                                std::vector<std::uint8_t>& actions) {
-  const Observations seen = ObservationsOf(encodings_, spec, results);
+  const Observations seen = ObservationsOf(observation_types_, spec, results);
   const auto rows = static_cast<std::uint32_t>(results.legal.size());
   const std::array<std::uint32_t, 4> header{rows, seen.shape[0], seen.shape[1], seen.shape[2]};
   Send(header.data(), sizeof(header), answer_limit_);

@@ -102,11 +102,12 @@ void Run::All(const MakeEnvironment& make_environment) {
   if (!options_.init.empty() && !has_checkpoint) {
     options_.options = WithSizeOf(FindPolicy(options_.init).checkpoint.options, options_.options);
   }
-  const auto encodings =
-      static_cast<std::uint8_t>(algorithm.encodings(LearnerOptionsOf(options_)) |
+  const auto observation_types =
+      static_cast<std::uint8_t>(algorithm.observation_types(LearnerOptionsOf(options_)) |
                                 (options_.credit == kCredits[0] ? int{kOwnRewardsBit} : 0));
-  std::unique_ptr<Environment> environment =
-      ranked_ == nullptr ? make_environment(encodings) : ranked_->make_share(encodings);
+  std::unique_ptr<Environment> environment = ranked_ == nullptr
+                                                 ? make_environment(observation_types)
+                                                 : ranked_->make_share(observation_types);
   const EnvironmentSpec whole = WholeSpec(environment->spec(), group());
   report_.farms = whole.farms;
   SetDefaultLimit(algorithm, whole);
@@ -122,7 +123,7 @@ void Run::All(const MakeEnvironment& make_environment) {
   if (report_.code != ExitCode::kOk || !folder) return;
   SavePolicy(whole, *learner, *folder);
   if (options_.evaluation_episodes > 0) {
-    if (ranked_ != nullptr) environment = make_environment(encodings);
+    if (ranked_ != nullptr) environment = make_environment(observation_types);
     Evaluate(*environment, *learner, *folder);
   }
   if (report_.code == ExitCode::kOk) report_.status.message.clear();
@@ -430,7 +431,7 @@ void CheckAlgorithm(const RunOptions& options) {
     throw InputError(options.algorithm +
                      " does not learn; evaluate it with policy:=" + options.algorithm);
   }
-  algorithm.encodings(LearnerOptionsOf(options));  // throws on wrong options
+  algorithm.observation_types(LearnerOptionsOf(options));  // throws on wrong options
 }
 
 }  // namespace

@@ -24,8 +24,9 @@ std::string GeneralistPath() {
                                         : AQUAFARM_POLICY_DIR "/generalist.ckpt";
 }
 
-std::uint8_t EncodingsOf(const Checkpoint& checkpoint) {
-  const std::uint8_t bits = FindAlgorithm(checkpoint.algorithm).encodings(checkpoint.options);
+std::uint8_t ObservationTypesOf(const Checkpoint& checkpoint) {
+  const std::uint8_t bits =
+      FindAlgorithm(checkpoint.algorithm).observation_types(checkpoint.options);
   // On farms with other features a policy of tokens reads the states instead.
   return ReadsTokens(checkpoint) ? bits | kStatesBit : bits;
 }
@@ -39,7 +40,7 @@ SavedPolicy FindPolicy(const std::string& where) {
   saved.path = where;
   if (where == kGeneralist) {
     saved.checkpoint = ReadCheckpoint(GeneralistPath());
-    saved.encodings = EncodingsOf(saved.checkpoint);
+    saved.observation_types = ObservationTypesOf(saved.checkpoint);
     // Its tokens are checked by name, so it plays in every version that has them.
     saved.checkpoint.version.clear();
     return saved;
@@ -47,13 +48,13 @@ SavedPolicy FindPolicy(const std::string& where) {
   if (IsPythonPolicy(where)) {
     saved.process = std::make_shared<PolicyProcess>(where);
     saved.checkpoint.algorithm = "python";
-    saved.encodings = saved.process->encodings();
+    saved.observation_types = saved.process->observation_types();
     return saved;
   }
   for (const Algorithm& algorithm : Algorithms()) {
     if (algorithm.learns || where != algorithm.name) continue;
     saved.checkpoint.algorithm = where;
-    saved.encodings = algorithm.encodings("");
+    saved.observation_types = algorithm.observation_types("");
     return saved;
   }
   std::error_code ignored;
@@ -72,7 +73,7 @@ SavedPolicy FindPolicy(const std::string& where) {
     }
   }
   saved.checkpoint = ReadCheckpoint(saved.path);
-  saved.encodings = EncodingsOf(saved.checkpoint);
+  saved.observation_types = ObservationTypesOf(saved.checkpoint);
   return saved;
 }
 

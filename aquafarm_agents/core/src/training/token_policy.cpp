@@ -21,7 +21,7 @@ std::unique_ptr<LocalEnvironment> MakeFarms(const std::shared_ptr<const Scenario
                                             std::int32_t farms) {
   EnvironmentOptions options;
   options.farms = farms;
-  options.encodings = kFeaturesBit;
+  options.observation_types = kFeaturesBit;
   return std::make_unique<LocalEnvironment>(scenario, options);
 }
 

@@ -19,7 +19,7 @@ class TokenPolicy final : public Policy {
   TokenPolicy(const EnvironmentSpec& spec,
               const std::function<std::unique_ptr<Policy>(const EnvironmentSpec&)>& make);
 
-  std::uint8_t encodings() const override { return kStatesBit; }
+  std::uint8_t observation_types() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 

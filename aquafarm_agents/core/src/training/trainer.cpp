@@ -181,9 +181,9 @@ bool Trainer::IsDue(Clock::time_point last, double period_s) {
 }
 
 void Trainer::Count(const StepResults& results) {
-  std::uint32_t started = 0;
-  for (const std::uint8_t flag : results.started) started += flag;
-  progress_.steps += results.started.size() - started;
+  std::uint32_t starts = 0;
+  for (const std::uint8_t flag : results.is_first) starts += flag;
+  progress_.steps += results.is_first.size() - starts;
   for (const EpisodeSummary& result : results.finished) CountEpisode(result);
   CountRestarts();
 }

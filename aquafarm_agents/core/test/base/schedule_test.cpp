@@ -57,9 +57,9 @@ TEST(Schedule, RefusalsSayWhatIsAllowed) {
   EXPECT_CONTAINS(refuse("fast"), "rate: got 'fast', expected a number");
   EXPECT_CONTAINS(refuse("2"), "rate: got 2, expected [0, 1]");
   EXPECT_CONTAINS(refuse("nan"), "expected a number");
-  EXPECT_CONTAINS(refuse("linear:1:0"), "expected a number or kind:start:end:share");
+  EXPECT_CONTAINS(refuse("linear:1:0"), "expected a number or kind:start:end:fraction");
   EXPECT_CONTAINS(refuse("constant:1:0:1"), "kind is linear, exponential or harmonic");
-  EXPECT_CONTAINS(refuse("linear:1:0:0"), "rate: share: got 0, expected (0, 1]");
+  EXPECT_CONTAINS(refuse("linear:1:0:0"), "rate: fraction: got 0, expected (0, 1]");
   EXPECT_CONTAINS(refuse("exponential:1:0:1"), "above 0 when exponential");
   EXPECT_CONTAINS(refuse("harmonic:0:1:1"), "above 0 when harmonic");
 }

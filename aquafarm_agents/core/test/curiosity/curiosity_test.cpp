@@ -64,7 +64,7 @@ TEST(Curiosity, TheForwardModelDoesNotTeachWhatIsSeen) {
 class Purse final : public Learner {
  public:
   explicit Purse(std::vector<float>& rewards) : rewards_(rewards) {}
-  std::uint8_t encodings() const override { return kIndexBit; }
+  std::uint8_t observation_types() const override { return kIndexBit; }
   std::string options() const override { return ""; }
   void Step(const StepResults& results, double, std::vector<std::uint8_t>& actions) override {
     rewards_ = results.rewards;
@@ -82,10 +82,10 @@ class Purse final : public Learner {
 
 TEST(Curiosity, PaysForTransitionsAloneAndNothingOnceItsWeightIsGone) {
   LocalEnvironment environment(TinyFarm(4), {3, kIndexBit | kFeaturesBit, false, 1});
-  std::vector<float> paid;
-  const auto learner = WithCuriosity(std::make_unique<Purse>(paid), environment.spec(), 1,
+  std::vector<float> intrinsic;
+  const auto learner = WithCuriosity(std::make_unique<Purse>(intrinsic), environment.spec(), 1,
                                      ParseExploration("icm:linear:2:0:0.5"));
-  EXPECT_EQ(learner->encodings(), kIndexBit | kFeaturesBit);
+  EXPECT_EQ(learner->observation_types(), kIndexBit | kFeaturesBit);
   std::vector<std::uint8_t> actions;
   const StepResults* results = &environment.Reset(1);
   int starts = 0;
@@ -93,9 +93,9 @@ TEST(Curiosity, PaysForTransitionsAloneAndNothingOnceItsWeightIsGone) {
     const double progress = i < 20 ? 0.1 : 0.5;
     learner->Step(*results, progress, actions);
     for (std::size_t farm = 0; farm < 3; ++farm) {
-      const bool is_transition = results->started[farm] == 0;
+      const bool is_transition = results->is_first[farm] == 0;
       starts += is_transition ? 0 : 1;
-      const float extra = paid[farm] - results->rewards[farm];
+      const float extra = intrinsic[farm] - results->rewards[farm];
       if (is_transition && progress < 0.5) {
         EXPECT_GT(extra, 0.0F);
         EXPECT_LE(extra, 5.0F * 2.0F);
@@ -110,8 +110,8 @@ TEST(Curiosity, PaysForTransitionsAloneAndNothingOnceItsWeightIsGone) {
 
 TEST(Curiosity, ALossThatIsNoNumberNamesTheStepAndTheSeed) {
   LocalEnvironment environment(TinyFarm(), {3, kIndexBit | kFeaturesBit, false, 1});
-  std::vector<float> paid;
-  const auto learner = WithCuriosity(std::make_unique<Purse>(paid), environment.spec(), 7,
+  std::vector<float> intrinsic;
+  const auto learner = WithCuriosity(std::make_unique<Purse>(intrinsic), environment.spec(), 7,
                                      ParseExploration("icm:1"));
   Checkpoint checkpoint;
   learner->Save(checkpoint);
@@ -123,7 +123,7 @@ TEST(Curiosity, ALossThatIsNoNumberNamesTheStepAndTheSeed) {
   std::int64_t steps = 1000;
   std::string message;
   for (int i = 0; i < 100 && message.empty(); ++i) {
-    steps += std::count(results->started.begin(), results->started.end(), std::uint8_t{0});
+    steps += std::count(results->is_first.begin(), results->is_first.end(), std::uint8_t{0});
     message = MessageOf<LearnerFailed>([&] { learner->Step(*results, 0.1, actions); });
     results = &environment.Step(actions);
   }

@@ -35,7 +35,7 @@ struct Progress {
 Progress Learn(const std::string& algorithm, const std::string& options, std::uint64_t steps,
                std::uint64_t seed) {
   const Algorithm& entry = FindAlgorithm(algorithm);
-  LocalEnvironment environment(TinyFarm(), {8, entry.encodings(options), false, 1});
+  LocalEnvironment environment(TinyFarm(), {8, entry.observation_types(options), false, 1});
   const auto learner = entry.make(environment.spec(), seed, options);
   Progress progress;
   progress.before = Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
@@ -132,7 +132,7 @@ std::shared_ptr<const Scenario> OneWayFarm() {
 float GapOf(std::uint64_t seed, const std::string& algorithm, const std::string& options,
             std::uint64_t steps) {
   const Algorithm& entry = FindAlgorithm(algorithm);
-  LocalEnvironment environment(OneWayFarm(), {8, entry.encodings(options), false, 1});
+  LocalEnvironment environment(OneWayFarm(), {8, entry.observation_types(options), false, 1});
   const auto learner = entry.make(environment.spec(), seed, options);
   TrainerOptions trainer;
   trainer.algorithm = algorithm;
@@ -203,7 +203,7 @@ struct Crashes {
 /// Crashes in `steps` steps of an untrained learner, and in as many steps of its greedy policy.
 Crashes CrashesIn(const std::string& algorithm, const std::string& options, int steps) {
   const Algorithm& entry = FindAlgorithm(algorithm);
-  LocalEnvironment environment(TinyFarm(), {4, entry.encodings(options), false, 1});
+  LocalEnvironment environment(TinyFarm(), {4, entry.observation_types(options), false, 1});
   const auto learner = entry.make(environment.spec(), 1, options);
   const auto policy = learner->GreedyPolicy();
   policy->Begin(1, 4);
@@ -301,15 +301,15 @@ TEST(Dqn, WrongOptionsAreAnsweredWithWhatIsAllowed) {
         std::pair{"loss=l1", "loss: got 'l1', expected one of: huber, mse"},
         std::pair{"sequence_length=8", "options: got 'sequence_length'"},
         std::pair{"device=gpu", "device: got 'gpu', expected one of: auto, cpu, cuda"}}) {
-    EXPECT_CONTAINS(MessageOf<InputError>([o = options] { DqnEncodings(o); }), words);
+    EXPECT_CONTAINS(MessageOf<InputError>([o = options] { DqnObservationTypes(o); }), words);
   }
 }
 
 TEST(RecurrentDqn, WarmsUpForLessThanItLearnsFrom) {
   EXPECT_CONTAINS(
-      MessageOf<InputError>([] { RecurrentDqnEncodings("sequence_length=4 burn_in=4"); }),
+      MessageOf<InputError>([] { RecurrentDqnObservationTypes("sequence_length=4 burn_in=4"); }),
       "burn_in: got 4, expected less than sequence_length, which is 4");
-  RecurrentDqnEncodings("sequence_length=1 burn_in=0");
+  RecurrentDqnObservationTypes("sequence_length=1 burn_in=0");
 }
 
 TEST(RecurrentDqn, ReplaysThePapersTuplesByName) {
@@ -321,17 +321,17 @@ TEST(RecurrentDqn, ReplaysThePapersTuplesByName) {
   }
   EXPECT_CONTAINS(
       MessageOf<InputError>(
-          [] { RecurrentDqnEncodings("replayed=paper_tuple sequence_length=8"); }),
+          [] { RecurrentDqnObservationTypes("replayed=paper_tuple sequence_length=8"); }),
       "paper_tuple with sequence_length=8 burn_in=0, expected 1 and 0, or replayed=sequences");
-  EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnEncodings("replayed=tuples"); }),
+  EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnObservationTypes("replayed=tuples"); }),
                   "replayed: got 'tuples', expected one of: sequences, paper_tuple");
 }
 
 TEST(RecurrentDqn, SumsRewardsOverNoMoreStepsThanItLearnsFrom) {
   EXPECT_CONTAINS(
-      MessageOf<InputError>([] { RecurrentDqnEncodings("sequence_length=4 n_step=5"); }),
+      MessageOf<InputError>([] { RecurrentDqnObservationTypes("sequence_length=4 n_step=5"); }),
       "n_step: got 5, expected at most sequence_length, which is 4");
-  RecurrentDqnEncodings("sequence_length=4 n_step=4");
+  RecurrentDqnObservationTypes("sequence_length=4 n_step=4");
 }
 
 TEST(Dqn, ALossThatIsNoNumberEndsTheTraining) {
@@ -386,7 +386,7 @@ std::vector<std::vector<std::uint8_t>> ActionsIn(Environment& environment, Polic
   const StepResults* results = &environment.Reset(3, first);
   while (true) {
     policy.Act(*results, actions);
-    if (results->reasons[0] == 0) episodes.back().push_back(actions[0]);
+    if (results->end_reasons[0] == 0) episodes.back().push_back(actions[0]);
     results = &environment.Step(actions);
     if (results->finished.empty()) continue;
     if (episodes.size() == count) return episodes;

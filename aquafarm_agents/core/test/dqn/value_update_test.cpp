@@ -47,19 +47,19 @@ struct Update {
   double progress{0.25};
 
   std::size_t agents() const { return static_cast<std::size_t>(spec.agents); }
-  Values Seen(std::size_t moment, std::size_t entry) const {
+  Values Seen(std::size_t moment, std::size_t slot) const {
     const auto features = static_cast<std::size_t>(spec.feature_count);
-    const auto begin = log[moment].features.begin() + static_cast<std::ptrdiff_t>(entry * features);
+    const auto begin = log[moment].features.begin() + static_cast<std::ptrdiff_t>(slot * features);
     return {begin, begin + static_cast<std::ptrdiff_t>(features)};
   }
-  bool IsStarted(std::size_t moment, std::size_t entry) const {
-    return log[moment].started[entry / agents()] != 0;
+  bool IsStarted(std::size_t moment, std::size_t slot) const {
+    return log[moment].is_first[slot / agents()] != 0;
   }
-  EndReason Reason(std::size_t moment, std::size_t entry) const {
-    return static_cast<EndReason>(log[moment].reasons[entry / agents()]);
+  EndReason Reason(std::size_t moment, std::size_t slot) const {
+    return static_cast<EndReason>(log[moment].end_reasons[slot / agents()]);
   }
-  double Reward(std::size_t moment, std::size_t entry) const {
-    return static_cast<double>(log[moment].rewards[entry]);
+  double Reward(std::size_t moment, std::size_t slot) const {
+    return static_cast<double>(log[moment].rewards[slot]);
   }
 };
 
@@ -95,7 +95,7 @@ Update MakeUpdate(const std::string& algorithm, const std::string& options,
                   std::shared_ptr<const Scenario> scenario) {
   const std::string text = kCommon + options;
   const Algorithm& entry = FindAlgorithm(algorithm);
-  LocalEnvironment environment(std::move(scenario), {2, entry.encodings(text), false, 1});
+  LocalEnvironment environment(std::move(scenario), {2, entry.observation_types(text), false, 1});
   const auto learner = entry.make(environment.spec(), 3, text);
   Update update;
   update.recurrent = algorithm == "lstm_dqn";
@@ -133,7 +133,7 @@ Batch Draw(const Update& update, std::size_t steps, std::size_t group) {
   ReplaySampler<float> sampler(replay, update.options, steps, group);
   replay.Load(update.before);
   sampler.Load(update.before);
-  const std::vector<float> no_state(recurrent_state * replay.entries());
+  const std::vector<float> no_state(recurrent_state * replay.slots());
   replay.Add(update.log.back(), update.log.back().features.data(), no_state.data());
   sampler.Add();
   std::vector<std::uint64_t> position;
@@ -162,10 +162,10 @@ double LossOf(LossKind kind, double error) {
 }
 
 std::size_t BestOf(const Update& update, const Values& values, std::size_t moment,
-                   std::size_t entry) {
+                   std::size_t slot) {
   std::size_t best = kActionCount;
   for (std::size_t a = 0; a < kActionCount; ++a) {
-    const bool legal = ((update.log[moment].legal[entry] >> a) & 1U) != 0;
+    const bool legal = ((update.log[moment].legal[slot] >> a) & 1U) != 0;
     if (update.options.mask_illegal && !legal) continue;
     if (best == kActionCount || values[a] > values[best]) best = a;
   }
@@ -179,14 +179,14 @@ struct Return {
   std::size_t to{};
 };
 
-Return SumRewards(const Update& update, std::size_t moment, std::size_t entry, std::size_t steps) {
+Return SumRewards(const Update& update, std::size_t moment, std::size_t slot, std::size_t steps) {
   Return sum;
   for (std::size_t k = 1; k <= steps; ++k) {
     sum.to = moment + k;
-    sum.reward += sum.discount * update.Reward(sum.to, entry);
+    sum.reward += sum.discount * update.Reward(sum.to, slot);
     sum.discount *= update.options.gamma;
-    if (update.Reason(sum.to, entry) == EndReason::kNone) continue;
-    if (update.Reason(sum.to, entry) != EndReason::kStepLimit) sum.discount = 0.0;
+    if (update.Reason(sum.to, slot) == EndReason::kNone) continue;
+    if (update.Reason(sum.to, slot) != EndReason::kStepLimit) sum.discount = 0.0;
     break;
   }
   sum.reward *= update.options.reward_scale;
@@ -243,7 +243,7 @@ void ExpectUpdate(const Update& update, const std::vector<Term>& terms,
 void ExpectEnds(const Update& update, const Batch& batch, bool truncates) {
   int ended = 0;
   for (const TransitionIndex& moment : batch.moments) {
-    const EndReason reason = update.Reason(moment.age + 1, moment.entry);
+    const EndReason reason = update.Reason(moment.age + 1, moment.slot);
     if (reason == EndReason::kNone) continue;
     EXPECT_EQ(reason == EndReason::kStepLimit, truncates);
     ++ended;
@@ -262,19 +262,19 @@ void ExpectDqn(const std::string& options, bool truncates) {
   std::vector<Term> terms;
   for (std::size_t i = 0; i < batch.moments.size(); ++i) {
     const TransitionIndex& moment = batch.moments[i];
-    const Return sum = SumRewards(update, moment.age, moment.entry, steps);
-    const Values seen = update.Seen(sum.to, moment.entry);
+    const Return sum = SumRewards(update, moment.age, moment.slot, steps);
+    const Values seen = update.Seen(sum.to, moment.slot);
     const Values values = MlpOracle(target, seen, kHidden);
     const Values chooses = update.options.double_dqn ? MlpOracle(online, seen, kHidden) : values;
-    const double next = values[BestOf(update, chooses, sum.to, moment.entry)];
+    const double next = values[BestOf(update, chooses, sum.to, moment.slot)];
     terms.push_back({sum.reward + sum.discount * next,
                      batch.weights[i] / static_cast<double>(batch.moments.size())});
   }
   ExpectUpdate(update, terms, [&](const Values& parameters) {
     Values predicted;
-    for (const auto& [age, entry] : batch.moments) {
+    for (const auto& [age, slot] : batch.moments) {
       predicted.push_back(
-          MlpOracle(parameters, update.Seen(age, entry), kHidden)[update.actions[age][entry]]);
+          MlpOracle(parameters, update.Seen(age, slot), kHidden)[update.actions[age][slot]]);
     }
     return predicted;
   });
@@ -341,12 +341,12 @@ Memory Empty() { return {Values(kHidden), Values(kHidden)}; }
 // Returns the recurrent state of an agent before a time step, computed from the start of its
 // episode with the acting network.
 Memory CarriedInto(const Update& update, const Values& parameters, std::size_t moment,
-                   std::size_t entry) {
+                   std::size_t slot) {
   std::size_t first = moment;
-  while (!update.IsStarted(first, entry)) --first;
+  while (!update.IsStarted(first, slot)) --first;
   Memory memory = Empty();
   for (std::size_t m = first; m < moment; ++m) {
-    LstmOracle(parameters, update.Seen(m, entry), kHidden, update.options.skip_connection, memory);
+    LstmOracle(parameters, update.Seen(m, slot), kHidden, update.options.skip_connection, memory);
   }
   return memory;
 }
@@ -360,26 +360,25 @@ TEST(LstmDqnUpdate, IsAlgorithm2) {
     const Values online = Doubles(update.before, "weights");
     const Values target = Doubles(update.before, "target_weights");
     std::vector<Term> terms;
-    for (const auto& [age, entry] : batch.moments) {
-      const Return sum = SumRewards(update, age, entry, 1);
+    for (const auto& [age, slot] : batch.moments) {
+      const Return sum = SumRewards(update, age, slot, 1);
       // Q of the target network at s_{j+1} with the stored c_j and h_j of the agent (line 20).
-      Memory carried = CarriedInto(update, online, age + 1, entry);
-      const Values values =
-          LstmOracle(target, update.Seen(age + 1, entry), kHidden, false, carried);
+      Memory carried = CarriedInto(update, online, age + 1, slot);
+      const Values values = LstmOracle(target, update.Seen(age + 1, slot), kHidden, false, carried);
       terms.push_back({sum.reward + sum.discount * *std::max_element(values.begin(), values.end()),
                        1.0 / static_cast<double>(batch.moments.size())});
     }
     std::vector<Memory> stored;
-    for (const auto& [age, entry] : batch.moments) {
-      stored.push_back(CarriedInto(update, online, age, entry));
+    for (const auto& [age, slot] : batch.moments) {
+      stored.push_back(CarriedInto(update, online, age, slot));
     }
     ExpectUpdate(update, terms, [&](const Values& parameters) {
       Values predicted;
       for (std::size_t i = 0; i < terms.size(); ++i) {
-        const auto& [age, entry] = batch.moments[i];
+        const auto& [age, slot] = batch.moments[i];
         Memory memory = stored[i];
-        predicted.push_back(LstmOracle(parameters, update.Seen(age, entry), kHidden, false,
-                                       memory)[update.actions[age][entry]]);
+        predicted.push_back(LstmOracle(parameters, update.Seen(age, slot), kHidden, false,
+                                       memory)[update.actions[age][slot]]);
       }
       return predicted;
     });
@@ -388,7 +387,7 @@ TEST(LstmDqnUpdate, IsAlgorithm2) {
 
 /// A sequence of steps that LSTM-DQN is trained with.
 struct Run {
-  std::size_t entry{};
+  std::size_t slot{};
   std::size_t warm_from{};  // first time step of the burn-in; `first` without a burn-in
   std::size_t first{};
   std::size_t last{};  // time step after the last one used for training
@@ -396,15 +395,15 @@ struct Run {
 
 Run RunOf(const Update& update, const TransitionIndex& moment) {
   const auto burn_in = static_cast<std::size_t>(update.options.burn_in);
-  Run run{moment.entry, moment.age, moment.age, moment.age};
-  while (moment.age - run.warm_from < burn_in && !update.IsStarted(run.warm_from, run.entry)) {
+  Run run{moment.slot, moment.age, moment.age, moment.age};
+  while (moment.age - run.warm_from < burn_in && !update.IsStarted(run.warm_from, run.slot)) {
     --run.warm_from;
   }
   // Near the start of its episode a sequence begins there, with a zero state.
-  if (update.IsStarted(run.warm_from, run.entry)) run.first = run.warm_from;
+  if (update.IsStarted(run.warm_from, run.slot)) run.first = run.warm_from;
   run.last = run.first;
   while (run.last - run.first < static_cast<std::size_t>(update.options.sequence_length) &&
-         run.last + 1 < kMoments && update.Reason(run.last, run.entry) == EndReason::kNone) {
+         run.last + 1 < kMoments && update.Reason(run.last, run.slot) == EndReason::kNone) {
     ++run.last;
   }
   return run;
@@ -414,13 +413,13 @@ Run RunOf(const Update& update, const TransitionIndex& moment) {
 std::vector<Values> Along(const Update& update, const Run& run, const Values& acting,
                           const Values& warming, const Values& parameters) {
   const bool skip = update.options.skip_connection;
-  Memory memory = CarriedInto(update, acting, run.warm_from, run.entry);
+  Memory memory = CarriedInto(update, acting, run.warm_from, run.slot);
   for (std::size_t m = run.warm_from; m < run.first; ++m) {
-    LstmOracle(warming, update.Seen(m, run.entry), kHidden, skip, memory);
+    LstmOracle(warming, update.Seen(m, run.slot), kHidden, skip, memory);
   }
   std::vector<Values> values;
   for (std::size_t m = run.first; m <= run.last; ++m) {
-    values.push_back(LstmOracle(parameters, update.Seen(m, run.entry), kHidden, skip, memory));
+    values.push_back(LstmOracle(parameters, update.Seen(m, run.slot), kHidden, skip, memory));
   }
   return values;
 }
@@ -442,8 +441,8 @@ void ExpectSequences(const std::string& options, bool truncates) {
     for (std::size_t m = run.first; m < run.last; ++m) {
       const std::size_t reach =
           std::min(static_cast<std::size_t>(update.options.n_step), run.last - m);
-      const Return sum = SumRewards(update, m, run.entry, reach);
-      const std::size_t best = BestOf(update, chooses[sum.to - run.first], sum.to, run.entry);
+      const Return sum = SumRewards(update, m, run.slot, reach);
+      const std::size_t best = BestOf(update, chooses[sum.to - run.first], sum.to, run.slot);
       terms.push_back(
           {sum.reward + sum.discount * values[sum.to - run.first][best], batch.weights[i]});
       learnt += 1.0;
@@ -457,7 +456,7 @@ void ExpectSequences(const std::string& options, bool truncates) {
       // The burn-in has no gradient and uses the weights before the update.
       const auto values = Along(update, run, online, online, parameters);
       for (std::size_t m = run.first; m < run.last; ++m) {
-        predicted.push_back(values[m - run.first][update.actions[m][run.entry]]);
+        predicted.push_back(values[m - run.first][update.actions[m][run.slot]]);
       }
     }
     return predicted;

@@ -32,7 +32,7 @@ TEST(LocalEnvironment, ThreadsChangeNothing) {
   RandomActions random(3);
   ExpectSame(one.Reset(1), two.Reset(1));
   for (int i = 0; i < 300; ++i) {
-    const auto actions = random.Next(Entries(one.spec()));
+    const auto actions = random.Next(SlotCount(one.spec()));
     ExpectSame(one.Step(actions), two.Step(actions));
   }
 }
@@ -63,7 +63,7 @@ TEST(LocalEnvironment, TellsWhoseTheTeamsRewardIs) {
   each.Reset(1);
   bool differ = false;
   for (int i = 0; i < 300; ++i) {
-    const auto actions = random.Next(Entries(own.spec()));
+    const auto actions = random.Next(SlotCount(own.spec()));
     const StepResults& results = own.Step(actions);
     ASSERT_EQ(results.rewards, each.Step(actions).rewards);
     differ = differ || results.rewards != shared.Step(actions).rewards;

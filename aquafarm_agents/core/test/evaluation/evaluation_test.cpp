@@ -14,7 +14,7 @@ namespace {
 /// Moves north to the device and returns it south: solves the tiny farm in six steps.
 class Scripted final : public Policy {
  public:
-  std::uint8_t encodings() const override { return 0; }
+  std::uint8_t observation_types() const override { return 0; }
   void Begin(std::uint64_t, std::int32_t farms) override {
     step_.assign(static_cast<std::size_t>(farms), 0);
   }
@@ -22,7 +22,7 @@ class Scripted final : public Policy {
     constexpr std::array<std::uint8_t, 6> kPlan{0, 0, 8, 1, 1, 9};
     actions.assign(step_.size(), 0);
     for (std::size_t i = 0; i < step_.size(); ++i) {
-      if (results.started[i] != 0) step_[i] = 0;
+      if (results.is_first[i] != 0) step_[i] = 0;
       actions[i] = kPlan[step_[i]++ % kPlan.size()];
     }
   }
@@ -140,7 +140,7 @@ TEST(Evaluate, DoesNotDependOnTheNumberOfFarms) {
     LocalEnvironment environment(farm, {farms, 0, false, 1});
     class North final : public Policy {
      public:
-      std::uint8_t encodings() const override { return 0; }
+      std::uint8_t observation_types() const override { return 0; }
       void Begin(std::uint64_t, std::int32_t) override {}
       void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
         actions.assign(results.rewards.size(), 5);

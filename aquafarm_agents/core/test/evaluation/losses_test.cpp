@@ -154,7 +154,7 @@ std::shared_ptr<const Scenario> InsuredFarm() {
 
 Evaluation EvaluationOf(const char* name, std::shared_ptr<const Scenario> scenario) {
   const SavedPolicy saved = FindPolicy(name);
-  LocalEnvironment environment(std::move(scenario), {4, saved.encodings, false, 1});
+  LocalEnvironment environment(std::move(scenario), {4, saved.observation_types, false, 1});
   return Evaluate(environment, *MakePolicy(saved, environment.spec()), 3, 40, nullptr, {}, {},
                   [&environment](std::int32_t farm) {
                     return environment.batch().farm(farm).record().accounts;

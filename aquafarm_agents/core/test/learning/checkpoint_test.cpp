@@ -287,7 +287,7 @@ TEST_F(SavedPolicyFile, PlaysLikeTheLearnerThatSavedIt) {
   learner.SavePolicy(checkpoint);
   WriteCheckpoint(folder_ + "/policy.ckpt", checkpoint);
   const SavedPolicy saved = FindPolicy(folder_);
-  EXPECT_EQ(saved.encodings, kIndexBit);
+  EXPECT_EQ(saved.observation_types, kIndexBit);
   const auto policy = MakePolicy(saved, environment.spec());
   std::vector<std::uint8_t> expected;
   learner.GreedyPolicy()->Act(*results, expected);

@@ -86,7 +86,7 @@ TEST(Explorer, EachEntryHasAStreamOfItsOwnAndContinuesWhereItWas) {
   std::vector<int> of_entry_1;
   for (int i = 0; i < 50; ++i) of_entry_1.push_back(one.Choose(kValues, kAllActions, best, 1));
   for (int i = 0; i < 17; ++i) {
-    other.Choose(kValues, kAllActions, best, 0);  // draws of entry 0 do not affect entry 1
+    other.Choose(kValues, kAllActions, best, 0);  // draws of slot 0 do not affect slot 1
     EXPECT_EQ(other.Choose(kValues, kAllActions, best, 1), of_entry_1[static_cast<std::size_t>(i)]);
   }
   Checkpoint saved;

@@ -51,7 +51,8 @@ double SuccessAfter(const std::string& algorithm, const std::string& options, st
                     const Scenario& scenario, std::uint8_t credit = kOwnRewardsBit) {
   const Algorithm& entry = FindAlgorithm(algorithm);
   LocalEnvironment environment(
-      Share(scenario), {8, static_cast<std::uint8_t>(entry.encodings(options) | credit), false, 1});
+      Share(scenario),
+      {8, static_cast<std::uint8_t>(entry.observation_types(options) | credit), false, 1});
   const auto learner = entry.make(environment.spec(), 1, options);
   const double before = Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
   EXPECT_LT(before, 0.5) << algorithm;
@@ -193,12 +194,12 @@ TEST(DoneAgents, LearnNothingMoreFromATable) {
                                         "learning_rate=0.5 gamma=0.9 exploration=epsilon_greedy:0");
   StepResults results;
   results.legal = {kAllActions, kAllActions};
-  results.reasons = {0};
+  results.end_reasons = {0};
   std::vector<std::uint8_t> actions;
-  const auto step = [&](bool started, std::uint8_t in_play, float reward) {
-    results.started = {started ? std::uint8_t{1} : std::uint8_t{0}};
+  const auto step = [&](bool is_first, std::uint8_t active, float reward) {
+    results.is_first = {is_first ? std::uint8_t{1} : std::uint8_t{0}};
     results.index = {0, 1};
-    results.in_play = {1, in_play};
+    results.active = {1, active};
     results.rewards = {0.0F, reward};
     learner.Step(results, 0.0, actions);
   };
@@ -218,9 +219,9 @@ TEST(DoneAgents, EndTheirTransitionsInAReplayWhileTheOthersGoOn) {
   const float observations[] = {0.0F, 0.0F};
   for (int t = 0; t < 6; ++t) {
     results.rewards = {1.0F, 2.0F};
-    results.reasons = {0};
-    results.started = {t == 0 ? std::uint8_t{1} : std::uint8_t{0}};
-    results.in_play = {1, t < 2 ? std::uint8_t{1} : std::uint8_t{0}};
+    results.end_reasons = {0};
+    results.is_first = {t == 0 ? std::uint8_t{1} : std::uint8_t{0}};
+    results.active = {1, t < 2 ? std::uint8_t{1} : std::uint8_t{0}};
     replay.Add(results, observations);
     replay.SetActions({0, 0});
   }
@@ -257,7 +258,8 @@ TEST_P(Saved, LearnersOfSeveralAgentsGoOnBitForBit) {
                                   ? "hidden_size=8 rollout_size=300 batch_size=32 team_share=0.5"
                                   : "hidden_size=8 batch_size=8 learning_starts=50 buffer_size=500";
   const Algorithm& entry = FindAlgorithm(GetParam());
-  LocalEnvironment environment(Share(SmartDevices()), {2, entry.encodings(options), false, 1});
+  LocalEnvironment environment(Share(SmartDevices()),
+                               {2, entry.observation_types(options), false, 1});
   const auto one = entry.make(environment.spec(), 1, options);
   const auto other = entry.make(environment.spec(), 1, options);
   std::vector<std::uint8_t> actions;
@@ -315,7 +317,7 @@ void ExpectTheOwnShareIsEnough(const std::string& algorithm, const std::string& 
   const StepResults* all = &environment.Reset(1, 0);
   for (int step = 0; step < 20; ++step) {
     StepResults share = *all;
-    share.in_play[0] = 0;
+    share.active[0] = 0;
     std::fill_n(share.features.begin(), spec.feature_count, 0.0F);
     both->Act(*all, actions);
     own->Act(share, own_actions);
@@ -376,8 +378,8 @@ TEST(DoneAgents, AreNeitherAskedNorValuedWhereverTheyStand) {
   policy->Act(results, actions);
   const std::vector<float> values = policy->values();
   for (std::size_t done = 0; done < 3; ++done) {
-    results.in_play = {1, 1, 1};
-    results.in_play[done] = 0;
+    results.active = {1, 1, 1};
+    results.active[done] = 0;
     policy->Act(results, actions);
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_NEAR(policy->values()[i], i == done ? 0.0F : values[i], 1e-4F) << done << ' ' << i;
@@ -385,8 +387,8 @@ TEST(DoneAgents, AreNeitherAskedNorValuedWhereverTheyStand) {
     EXPECT_EQ(actions[done], 0) << done;
   }
   for (std::size_t left = 0; left < 3; ++left) {
-    results.in_play = {0, 0, 0};
-    results.in_play[left] = 1;
+    results.active = {0, 0, 0};
+    results.active[left] = 1;
     policy->Act(results, actions);
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_NEAR(policy->values()[i], i == left ? values[i] : 0.0F, 1e-4F) << left << ' ' << i;

@@ -15,14 +15,14 @@ class TwoFarms {
       : replay_({moments * 2, 2, 1, 2, recurrent_state}) {}
 
   /// @param first, second end reasons of the two farms at this time step
-  void Add(EndReason first, EndReason second, bool started = false) {
+  void Add(EndReason first, EndReason second, bool is_first = false) {
     StepResults results;
     const auto t = static_cast<float>(moment_);
     results.rewards = {t, 10 * t};
-    results.in_play = {1, 1};
+    results.active = {1, 1};
     results.legal = {static_cast<ActionMask>(moment_), 1};
-    results.reasons = {static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(second)};
-    results.started = {started ? std::uint8_t{1} : std::uint8_t{0}, 0};
+    results.end_reasons = {static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(second)};
+    results.is_first = {is_first ? std::uint8_t{1} : std::uint8_t{0}, 0};
     const std::vector<float> observations{t, 0, t, 1};
     const std::vector<float> recurrent_state{t, -t};
     replay_.Add(results, observations.data(), recurrent_state.data());

@@ -49,7 +49,7 @@ TEST(Tabular, TheStartOfAnEpisodeIsNoTransition) {
   chain.Notify(learner, 0, 0.0F);
   chain.Notify(learner, 1, 5.0F, EndReason::kAllRetrieved);
   const std::vector<float> before = learner.table().values;
-  chain.results.started[0] = 1;
+  chain.results.is_first[0] = 1;
   chain.Notify(learner, 2, 0.0F);
   EXPECT_EQ(learner.table().values, before);
 }
@@ -89,11 +89,11 @@ void ExpectLikeOracle(bool sarsa) {
     learner.Step(results, 0.0, actions);
     std::size_t k = 0;
     for (std::size_t farm = 0; farm < 3; ++farm) {
-      const bool terminated = IsTerminated(static_cast<EndReason>(results.reasons[farm]));
+      const bool terminated = IsTerminated(static_cast<EndReason>(results.end_reasons[farm]));
       for (std::int32_t agent = 0; agent < spec.agents; ++agent, ++k) {
-        if (results.started[farm] != 0 || before.in_play[k] == 0) continue;
+        if (results.is_first[farm] != 0 || before.active[k] == 0) continue;
         oracle.Learn(learner.table().Row(agent, before.index[k]), taken[k], results.rewards[k],
-                     terminated || results.in_play[k] == 0,
+                     terminated || results.active[k] == 0,
                      learner.table().Row(agent, results.index[k]), actions[k]);
       }
     }
@@ -179,7 +179,7 @@ class TruncationTerminates final : public Environment {
  private:
   const StepResults& Change(const StepResults& results) {
     results_ = results;
-    for (std::uint8_t& reason : results_.reasons) {
+    for (std::uint8_t& reason : results_.end_reasons) {
       if (!IsTruncated(static_cast<EndReason>(reason))) continue;
       reason = static_cast<std::uint8_t>(EndReason::kDisasterEnded);
       ++truncated_;

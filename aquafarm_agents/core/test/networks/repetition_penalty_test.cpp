@@ -32,24 +32,24 @@ EnvironmentSpec Spec(std::int32_t farms, std::int32_t agents) {
 
 const EnvironmentSpec kTwoFarmsOfTwo = Spec(2, 2);
 
-Values Discouraged(RepetitionPenalty& repetitions, const Features& features, std::size_t entry) {
+Values Discouraged(RepetitionPenalty& repetitions, const Features& features, std::size_t slot) {
   const Values plain{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
   Values values{};
-  std::copy_n(repetitions.Penalize(plain.data(), features.data(), entry), kActionCount,
+  std::copy_n(repetitions.Penalize(plain.data(), features.data(), slot), kActionCount,
               values.begin());
   for (std::size_t a = 0; a < kActionCount; ++a) values[a] -= plain[a];
   return values;
 }
 
 void Do(RepetitionPenalty& repetitions, const Features& features, std::uint8_t action,
-        std::size_t entry) {
-  Discouraged(repetitions, features, entry);
-  repetitions.Add(action, entry);
+        std::size_t slot) {
+  Discouraged(repetitions, features, slot);
+  repetitions.Add(action, slot);
 }
 
 StepResults Started(std::vector<std::uint8_t> farms) {
   StepResults results;
-  results.started = std::move(farms);
+  results.is_first = std::move(farms);
   return results;
 }
 
@@ -67,7 +67,7 @@ TEST(RepetitionPenalty, CountAnActionLessForEachTimeItWasTakenFromThere) {
 
 TEST(RepetitionPenalty, AreForgottenWithTheEpisode) {
   RepetitionPenalty repetitions(kTwoFarmsOfTwo, 0.5);
-  for (std::size_t entry = 0; entry < 4; ++entry) Do(repetitions, kHere, 3, entry);
+  for (std::size_t slot = 0; slot < 4; ++slot) Do(repetitions, kHere, 3, slot);
   repetitions.Begin(Started({0, 1}));
   EXPECT_EQ(Discouraged(repetitions, kHere, 1), (Values{0, 0, 0, -0.5F}));
   EXPECT_EQ(Discouraged(repetitions, kHere, 2), Values{});
@@ -151,7 +151,7 @@ TEST(RepetitionPenalty, KnowASituationOfTokensByThePorts) {
 
 TEST(RepetitionPenalty, NeedFeatures) {
   EXPECT_CONTAINS(
-      MessageOf<InputError>([] { DqnEncodings("network=cnn repetition_penalty=0.5"); }),
+      MessageOf<InputError>([] { DqnObservationTypes("network=cnn repetition_penalty=0.5"); }),
       "repetition_penalty: got 0.5, expected 0 with network=cnn, which reads no features");
 }
 

@@ -30,15 +30,15 @@ DeepOptions Options(std::int32_t n_step) {
 void FillReplay(Replay<float>& replay, int moments) {
   StepResults results;
   results.legal = {kAllActions};
-  results.in_play = {1};
+  results.active = {1};
   int moment = 0;
   for (int episode = 0; moment < moments; ++episode) {
     const int steps = 1 + (episode * 4) % 9;
     const bool is_lost = episode % 4 == 3;
     for (int step = 0; step <= steps && moment < moments; ++step, ++moment) {
       const bool is_over = step == steps && !is_lost;
-      results.started = {step == 0 ? std::uint8_t{1} : std::uint8_t{0}};
-      results.reasons = {
+      results.is_first = {step == 0 ? std::uint8_t{1} : std::uint8_t{0}};
+      results.end_reasons = {
           static_cast<std::uint8_t>(is_over ? EndReason::kAllRetrieved : EndReason::kNone)};
       results.rewards = {is_over ? kOver : 1.0F};
       const std::vector<float> seen{static_cast<float>(moment), static_cast<float>(episode)};
@@ -83,7 +83,7 @@ TEST(SequenceBatch, NeverCrossesAnEpisode) {
       for (std::size_t t = learnt; t < kSequence; ++t) EXPECT_EQ(batch.weights[t], 0.0F);
       if (batch.warms_up[0] == 0.0F) {  // starts from the state stored with its first time step
         ++cold;
-        const bool at_start = replay.started(batch.rows[0]);
+        const bool at_start = replay.is_first(batch.rows[0]);
         EXPECT_EQ(batch.recurrent_state[0], at_start ? 0.0F : first);
         EXPECT_TRUE(at_start || batch.rows[0] == replay.Row(0, 0));
       } else {
@@ -119,9 +119,9 @@ TEST(ReplaySampler, DrawsMomentsOfWholeFarmsWhileAnybodyIsAtWork) {
       const int step = moment % 6;
       const std::uint8_t working = step < 2 ? 1 : 0;
       const auto reason = step == 5 ? EndReason::kAllRetrieved : EndReason::kNone;
-      results.started = {step == 0 ? std::uint8_t{1} : std::uint8_t{0}, 0};
-      results.in_play = {working, 1, 1, 1};
-      results.reasons = {static_cast<std::uint8_t>(reason), 0};
+      results.is_first = {step == 0 ? std::uint8_t{1} : std::uint8_t{0}, 0};
+      results.active = {working, 1, 1, 1};
+      results.end_reasons = {static_cast<std::uint8_t>(reason), 0};
       replay.Add(results, results.features.data());
       replay.SetActions({0, 0, 0, 0});
       sampler.Add();
@@ -132,9 +132,9 @@ TEST(ReplaySampler, DrawsMomentsOfWholeFarmsWhileAnybodyIsAtWork) {
       std::set<std::size_t> drawn;
       for (int k = 0; k < 200; ++k) {
         const TransitionIndex one = sampler.Draw(rng, static_cast<std::size_t>(k) % 4);
-        EXPECT_EQ(one.entry % kAgents, 0U);
+        EXPECT_EQ(one.slot % kAgents, 0U);
         EXPECT_LT(one.age + 1, replay.size());
-        drawn.insert(replay.Row(one.age, one.entry));
+        drawn.insert(replay.Row(one.age, one.slot));
       }
       for (const std::size_t at : over) EXPECT_EQ(drawn.count(at), 0U) << "moment " << moment;
       const std::size_t begun = kFarms * (replay.size() - 1) - over.size() + over.count(row);

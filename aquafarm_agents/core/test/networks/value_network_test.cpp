@@ -190,7 +190,7 @@ int AllocationsOf(const std::string& algorithm, const std::string& more) {
       "learning_starts=100 buffer_size=2000 train_interval=1 hidden_size=24 " + more;
   const Algorithm& entry = FindAlgorithm(algorithm);
   LocalEnvironment environment(Share(aquafarm::test::TinyScenario()),
-                               {4, entry.encodings(text), false, 1});
+                               {4, entry.observation_types(text), false, 1});
   const auto learner = entry.make(environment.spec(), 3, text);
   std::vector<std::uint8_t> actions;
   const StepResults* results = &environment.Reset(1);

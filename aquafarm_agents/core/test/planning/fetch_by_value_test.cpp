@@ -162,7 +162,7 @@ TEST(FetchByValue, CrowdedTeamsNeitherCrashNorCollide) {
 
 Evaluation EvaluationOf(const char* name, const Scenario& scenario, std::int32_t farms) {
   const SavedPolicy saved = FindPolicy(name);
-  LocalEnvironment environment(Share(scenario), {farms, saved.encodings, false, 1});
+  LocalEnvironment environment(Share(scenario), {farms, saved.observation_types, false, 1});
   return Evaluate(environment, *MakePolicy(saved, environment.spec()), 3, 30);
 }
 

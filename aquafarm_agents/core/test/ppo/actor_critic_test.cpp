@@ -80,10 +80,10 @@ struct Batch {
   std::size_t sequences{};
   std::vector<float> features;
   std::vector<float> state;
-  std::vector<std::uint8_t> started;
+  std::vector<std::uint8_t> is_first;
   std::vector<float> slopes;  // the loss is Σ slopes · outputs
   SequenceRows rows() const {
-    return {steps, sequences, features.data(), state.data(), started.data()};
+    return {steps, sequences, features.data(), state.data(), is_first.data()};
   }
 };
 
@@ -96,8 +96,8 @@ Batch MakeBatch(std::size_t steps, std::size_t sequences, std::size_t state_size
   fill(batch.features, steps * sequences * kFeatures);
   fill(batch.state, sequences * state_size);
   fill(batch.slopes, steps * sequences * kWidth);
-  batch.started.resize(steps * sequences);
-  if (steps > 3) batch.started[2 * sequences] = 1;  // an episode starts in sequence 0
+  batch.is_first.resize(steps * sequences);
+  if (steps > 3) batch.is_first[2 * sequences] = 1;  // an episode starts in sequence 0
   return batch;
 }
 
@@ -114,7 +114,7 @@ Complex DefinedLoss(const Vector& weights, const Batch& batch, bool recurrent,
     }
     for (std::size_t t = 0; t < batch.steps; ++t) {
       const std::size_t row = t * batch.sequences + s;
-      if (batch.started[row] != 0) {
+      if (batch.is_first[row] != 0) {
         h.assign(kHidden, 0.0);
         c.assign(kHidden, 0.0);
       }
@@ -267,7 +267,7 @@ TEST(Lstm, StepByStepEqualsTheWholeSequence) {
     const std::size_t row = t * batch.sequences;
     const std::vector<float> before = state;
     const SequenceRows rows{1, batch.sequences, batch.features.data() + row * kFeatures,
-                            before.data(), batch.started.data() + row};
+                            before.data(), batch.is_first.data() + row};
     const float* const outputs = network->Forward(rows, state.data());
     for (std::size_t i = 0; i < batch.sequences * kWidth; ++i) {
       ASSERT_NEAR(outputs[i], expected[row * kWidth + i], 1e-5F) << "step " << t;

@@ -17,7 +17,7 @@ struct Steps {
   std::vector<StepEnd> ends;
 };
 
-// Returns the sum over future errors, in double precision, for one slot of one column (E = 1).
+// Returns the sum over future errors, in double precision, for one sample of one column (E = 1).
 double DefinedAdvantage(const Steps& steps, std::size_t t, double gamma, double lambda) {
   if (steps.ends[t] == StepEnd::kNoTransition) return 0.0;
   double sum = 0.0;
@@ -65,7 +65,7 @@ TEST(Gae, BootstrapsAtTruncationAndNotAtTermination) {
   EXPECT_FLOAT_EQ(advantages[1], 1.0F - 20.0F);
 }
 
-TEST(Gae, DoesNotMixEntries) {
+TEST(Gae, DoesNotMixSlots) {
   // Slot 0 gets no reward; slot 1 gets 8 in the second step.
   const std::vector<float> rewards{0, 0, 0, 8};
   const std::vector<float> values(6, 0.0F);
@@ -76,12 +76,12 @@ TEST(Gae, DoesNotMixEntries) {
 }
 
 // Returns the results of one step of a farm with two agents.
-StepResults Outcome(EndReason reason, bool started, std::vector<std::uint8_t> in_play) {
+StepResults Outcome(EndReason reason, bool is_first, std::vector<std::uint8_t> active) {
   StepResults results;
   results.rewards = {2.0F, 4.0F};
-  results.in_play = std::move(in_play);
-  results.reasons = {static_cast<std::uint8_t>(reason)};
-  results.started = {static_cast<std::uint8_t>(started)};
+  results.active = std::move(active);
+  results.end_reasons = {static_cast<std::uint8_t>(reason)};
+  results.is_first = {static_cast<std::uint8_t>(is_first)};
   results.features = {1.0F, 2.0F};
   return results;
 }

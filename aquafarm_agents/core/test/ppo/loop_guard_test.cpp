@@ -22,7 +22,7 @@ TEST(LoopGuard, ActsWhenASituationOccursForTheGivenTime) {
   LoopGuard guard(environment.spec(), 1, 3);
   const StepResults* results = &environment.Reset(1);
   const auto ask = [&] {
-    return guard.ActionOf(0, results->features.data(), results->started[0] != 0, kAllActions);
+    return guard.ActionOf(0, results->features.data(), results->is_first[0] != 0, kAllActions);
   };
   std::vector<std::uint8_t> actions{static_cast<std::uint8_t>(Action::kEast)};
   for (int visit = 1; visit < 6; ++visit) {  // to and fro

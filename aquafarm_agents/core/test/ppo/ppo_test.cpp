@@ -25,7 +25,7 @@ struct Progress {
 
 Progress Learn(const std::string& options, std::uint64_t steps,
                std::shared_ptr<const Scenario> scenario = TinyFarm()) {
-  LocalEnvironment environment(std::move(scenario), {16, PpoEncodings(options), false, 1});
+  LocalEnvironment environment(std::move(scenario), {16, PpoObservationTypes(options), false, 1});
   const auto learner = FindAlgorithm("ppo").make(environment.spec(), 1, options);
   Progress progress;
   progress.before = Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
@@ -78,7 +78,7 @@ TEST(Ppo, SamplesOnlyWhatTheMasksAllow) {
       learner->Step(*results, 0.0, actions);
       results = &environment.Step(actions);
       for (std::size_t i = 0; i < results->outcomes.size(); ++i) {
-        const bool is_step = results->started[i] == 0;
+        const bool is_step = results->is_first[i] == 0;
         refused += is_step && results->outcomes[i] != static_cast<std::uint8_t>(Outcome::kOk);
       }
     }
@@ -138,7 +138,7 @@ TEST(Ppo, PlaysAShipByItsOwnShareAsAmongAll) {
     const StepResults* all = &environment.Reset(1, 0);
     for (int step = 0; step < 20; ++step) {
       StepResults share = *all;
-      share.in_play[0] = 0;
+      share.active[0] = 0;
       std::fill_n(share.features.begin(), environment.spec().feature_count, 0.0F);
       both->Act(*all, actions);
       own->Act(share, own_actions);
@@ -221,7 +221,7 @@ TEST(Ppo, WrongOptionsAreAnsweredWithWhatIsAllowed) {
                   "exploration: got 'boltzmann:1', expected entropy for a learner that samples "
                   "its own policy"},
         std::pair{"exploration=icm+epsilon_greedy", "expected entropy for a learner"}}) {
-    EXPECT_CONTAINS(MessageOf<InputError>([o = options] { PpoEncodings(o); }), words);
+    EXPECT_CONTAINS(MessageOf<InputError>([o = options] { PpoObservationTypes(o); }), words);
   }
 }
 

@@ -222,12 +222,12 @@ TEST(Teacher, FetchesTheDeviceAndBringsItToAPort) {
   const StepResults* results = &environment.Reset(1);
   std::vector<std::uint8_t> actions(1);
   int steps = 0;
-  while (results->reasons[0] == 0 && steps < 20) {
+  while (results->end_reasons[0] == 0 && steps < 20) {
     actions[0] = teacher.ActionOf(results->features.data(), results->legal[0]);
     results = &environment.Step(actions);
     ++steps;
   }
-  EXPECT_EQ(static_cast<EndReason>(results->reasons[0]), EndReason::kAllRetrieved);
+  EXPECT_EQ(static_cast<EndReason>(results->end_reasons[0]), EndReason::kAllRetrieved);
   EXPECT_EQ(steps, 6);  // two moves, pickup, two moves, drop-off
 }
 

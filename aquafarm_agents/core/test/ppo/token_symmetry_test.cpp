@@ -75,9 +75,9 @@ StepResults ResultsOf(const std::vector<float>& tokens) {
   StepResults results;
   results.features = tokens;
   results.legal = {kAllActions};
-  results.in_play = {1};
-  results.started = {1};
-  results.reasons = {0};
+  results.active = {1};
+  results.is_first = {1};
+  results.end_reasons = {0};
   results.rewards = {0.0F};
   return results;
 }

@@ -19,9 +19,9 @@ TEST(Algorithms, AnUnknownNameIsAnsweredWithThoseThereAre) {
 TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
   for (const Algorithm& algorithm : Algorithms()) {
     if (algorithm.make == nullptr) continue;
-    LocalEnvironment environment(TinyFarm(), {2, algorithm.encodings(""), false, 1});
+    LocalEnvironment environment(TinyFarm(), {2, algorithm.observation_types(""), false, 1});
     const auto learner = algorithm.make(environment.spec(), 1, "");
-    EXPECT_EQ(learner->encodings(), algorithm.encodings("")) << algorithm.name;
+    EXPECT_EQ(learner->observation_types(), algorithm.observation_types("")) << algorithm.name;
     EXPECT_GT(algorithm.default_steps, 0U);
     // The resolved options create the same learner.
     EXPECT_EQ(algorithm.make(environment.spec(), 1, learner->options())->options(),
@@ -67,7 +67,7 @@ std::string Lively(const Algorithm& algorithm) {
 }
 
 void ExpectContinues(const Algorithm& algorithm, const std::string& options) {
-  LocalEnvironment environment(TinyFarm(), {3, algorithm.encodings(options), false, 1});
+  LocalEnvironment environment(TinyFarm(), {3, algorithm.observation_types(options), false, 1});
   const auto learner = algorithm.make(environment.spec(), 1, options);
   std::vector<std::uint8_t> actions;
   const StepResults* results = &environment.Reset(1);
@@ -185,8 +185,8 @@ TEST(RandomPolicy, TakesEveryActionAlikeAndReproduces) {
 TEST(RandomPolicy, DrawsEachReachableActionAlike) {
   const std::string options = "actions=reachable";
   const Algorithm& random = FindAlgorithm("random");
-  EXPECT_EQ(random.encodings(options), kFeaturesBit);
-  LocalEnvironment environment(TinyFarm(), {1, random.encodings(options), false, 1});
+  EXPECT_EQ(random.observation_types(options), kFeaturesBit);
+  LocalEnvironment environment(TinyFarm(), {1, random.observation_types(options), false, 1});
   const auto learner = random.make(environment.spec(), 1, options);
   EXPECT_EQ(learner->options(), options);
   Checkpoint checkpoint;

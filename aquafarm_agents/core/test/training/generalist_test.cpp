@@ -48,12 +48,12 @@ TEST(Generalist, PlaysRanchesThatItHasNeverMet) {
 
 TEST(Generalist, StatesAndTokensGiveTheSameActions) {
   const SavedPolicy saved = FindPolicy(kGeneralist);
-  EXPECT_NE(saved.encodings & kStatesBit, 0);
+  EXPECT_NE(saved.observation_types & kStatesBit, 0);
   LocalEnvironment with(Shipped("procedural", true), {3, kFeaturesBit, false, 1});
   LocalEnvironment without(Shipped("procedural", false), {3, kStatesBit, false, 1});
   const auto by_tokens = MakePolicy(saved, with.spec());
   const auto by_states = MakePolicy(saved, without.spec());
-  EXPECT_EQ(by_states->encodings(), kStatesBit);
+  EXPECT_EQ(by_states->observation_types(), kStatesBit);
   by_tokens->Begin(1, 3);
   by_states->Begin(1, 3);
   const StepResults* seen = &with.Reset(6);
@@ -87,7 +87,7 @@ TEST(Generalist, RefusesARanchWhoseTokensNeedTooMuchMemory) {
   Scenario large = LoadScenario(AQUAFARM_SCENARIO_DIR "/procedural.yaml");
   large.width = large.height = 1000;
   large.devices.count = 20;
-  large.view.waterways = false;
+  large.view.routes = false;
   LocalEnvironment environment(Shipped("procedural", false), {1, kStatesBit, false, 1});
   EnvironmentSpec spec = environment.spec();
   spec.scenario_yaml = ToYaml(large);
@@ -112,8 +112,8 @@ RunReport FineTune(const std::string& options, bool tokens, const std::string& a
   std::filesystem::remove_all(run.run_dir);
   const RunReport report = Train(
       run,
-      [&](std::uint8_t encodings) {
-        return MakeLocalFarms(Shipped("paper", tokens), {8, encodings, false, 1});
+      [&](std::uint8_t observation_types) {
+        return MakeLocalFarms(Shipped("paper", tokens), {8, observation_types, false, 1});
       },
       {}, nullptr);
   std::filesystem::remove_all(run.run_dir);
@@ -141,8 +141,8 @@ TEST(Generalist, AResumedTrainingDoesNotNeedItsInitialPolicy) {
     run.run_dir = (folder / name).string();
     return Train(
         run,
-        [](std::uint8_t encodings) {
-          return MakeLocalFarms(Shipped("paper", true), {8, encodings, false, 1});
+        [](std::uint8_t observation_types) {
+          return MakeLocalFarms(Shipped("paper", true), {8, observation_types, false, 1});
         },
         {}, nullptr);
   };

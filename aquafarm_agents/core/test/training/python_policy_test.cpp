@@ -34,8 +34,8 @@ class PythonPolicies : public FolderTest {
 template <typename Expected>
 void ExpectSame(const std::string& where, std::uint8_t kind, const Expected& expected) {
   const SavedPolicy saved = FindPolicy(where);
-  ASSERT_EQ(saved.encodings, kind);
-  LocalEnvironment environment(TinyFarm(), {3, saved.encodings, false, 1});
+  ASSERT_EQ(saved.observation_types, kind);
+  LocalEnvironment environment(TinyFarm(), {3, saved.observation_types, false, 1});
   const auto policy = MakePolicy(saved, environment.spec());
   const StepResults* results = &environment.Reset(5);
   std::vector<std::uint8_t> actions;
@@ -117,7 +117,7 @@ TEST_F(PythonPolicies, WhatCannotBePlayedIsNamedInOneLine) {
 TEST_F(PythonPolicies, AFunctionThatFailsIsNamedInOneLine) {
   const auto words = [this](const std::string& body) {
     const SavedPolicy saved = FindPolicy(Write("def act(observations, masks):\n    " + body));
-    LocalEnvironment environment(TinyFarm(), {2, saved.encodings, false, 1});
+    LocalEnvironment environment(TinyFarm(), {2, saved.observation_types, false, 1});
     const auto policy = MakePolicy(saved, environment.spec());
     std::vector<std::uint8_t> actions;
     return MessageOf<InputError>([&] { policy->Act(environment.Reset(1), actions); });
@@ -132,7 +132,8 @@ TEST_F(PythonPolicies, AFunctionThatFailsIsNamedInOneLine) {
 class TwoActs {
  public:
   explicit TwoActs(const std::string& where, int limit_s = PolicyProcess::kAnswerLimit_s)
-      : process_(where, limit_s), environment_(TinyFarm(), {2, process_.encodings(), false, 1}) {
+      : process_(where, limit_s),
+        environment_(TinyFarm(), {2, process_.observation_types(), false, 1}) {
     const StepResults& results = environment_.Reset(1);
     for (std::string& words : words_) {
       words = MessageOf<InputError>([&] { process_.Act(environment_.spec(), results, actions_); });
@@ -181,7 +182,7 @@ TEST_F(PythonPolicies, AProcessThatDoesNotReadIsNamedInTime) {
   ASSERT_GT(number, 1);
   ASSERT_EQ(0, kill(number, SIGSTOP));
   // More observations than the socket keeps.
-  LocalEnvironment environment(TinyFarm(), {8192, process->encodings(), false, 1});
+  LocalEnvironment environment(TinyFarm(), {8192, process->observation_types(), false, 1});
   const auto policy = MakePythonPolicy(process, environment.spec());
   const StepResults& results = environment.Reset(1);
   ASSERT_GT(results.planes.size(), 1U << 20U);

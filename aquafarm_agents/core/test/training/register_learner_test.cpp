@@ -94,7 +94,7 @@ float ValueBefore(const std::string& mask_illegal, ActionMask legal) {
   const std::size_t best = kActionCount + chain.Notify(*learner, 1, 0.0F);
   chain.Notify(*learner, 2, 8.0F, EndReason::kAllRetrieved);
   EXPECT_FLOAT_EQ(values.at(best), 4.0F);  // 0 + 0.5 (8 − 0)
-  chain.results.started = {1};
+  chain.results.is_first = {1};
   const std::size_t action = chain.Notify(*learner, 0, 0.0F);
   chain.results.legal = {legal};
   chain.Notify(*learner, 1, 2.0F);

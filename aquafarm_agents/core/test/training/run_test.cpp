@@ -30,9 +30,9 @@ class RunTest : public FolderTest {
         options_, make, [this](const RunStatus& status) { statuses_.push_back(status); }, nullptr);
   }
   RunReport Train() {
-    return Train([](std::uint8_t encodings) {
+    return Train([](std::uint8_t observation_types) {
       return std::make_unique<LocalEnvironment>(TinyFarm(),
-                                                EnvironmentOptions{4, encodings, false, 1});
+                                                EnvironmentOptions{4, observation_types, false, 1});
     });
   }
   RunOptions options_;
@@ -75,10 +75,10 @@ TEST_F(RunTest, AgentsLearnFromTheirOwnPartUnlessToldOtherwise) {
   options_.steps = 500;
   options_.evaluation_episodes = options_.random_episodes = 0;
   std::vector<int> asked;
-  const MakeEnvironment make = [&](std::uint8_t encodings) {
-    asked.push_back(encodings & kOwnRewardsBit);
+  const MakeEnvironment make = [&](std::uint8_t observation_types) {
+    asked.push_back(observation_types & kOwnRewardsBit);
     return std::make_unique<LocalEnvironment>(Share(team),
-                                              EnvironmentOptions{4, encodings, false, 1});
+                                              EnvironmentOptions{4, observation_types, false, 1});
   };
   ASSERT_EQ(Train(make).code, ExitCode::kOk);
   EXPECT_CONTAINS(ReadFile(options_.run_dir + "/run.json"), "\"credit\": \"own\"");
@@ -168,7 +168,7 @@ class FailingEnvironment final : public Environment {
       const StepResults& results = farms_.Step(actions);
       if (played_ != nullptr) {
         *played_ += static_cast<std::uint64_t>(
-            std::count(results.started.begin(), results.started.end(), std::uint8_t{0}));
+            std::count(results.is_first.begin(), results.is_first.end(), std::uint8_t{0}));
       }
       return results;
     }

@@ -26,9 +26,11 @@ struct AgentDriverOptions {
 class AgentDriver {
  public:
   /// Waits for the sim node.
-  /// @param encodings of the policy, without kStatesBit, which needs the complete farm state
+  /// @param observation_types of the policy, without kStatesBit, which needs the complete farm
+  /// state
   /// @throws InputError if there is no such ship; EnvironmentLost
-  AgentDriver(const ros::NodeHandle& node, std::uint8_t encodings, AgentDriverOptions options);
+  AgentDriver(const ros::NodeHandle& node, std::uint8_t observation_types,
+              AgentDriverOptions options);
   ~AgentDriver();
 
   const aquafarm::agents::EnvironmentSpec& spec() const;

@@ -27,7 +27,8 @@ struct ShipDriverOptions {
 class ShipDriver {
  public:
   /// Waits for the sim node. @throws InputError, EnvironmentLost
-  ShipDriver(const ros::NodeHandle& node, std::uint8_t encodings, ShipDriverOptions options);
+  ShipDriver(const ros::NodeHandle& node, std::uint8_t observation_types,
+             ShipDriverOptions options);
   ~ShipDriver();
 
   const aquafarm::agents::EnvironmentSpec& spec() const;

@@ -28,7 +28,7 @@ struct RosEnvironmentOptions {
   /// reads their part of a state that all farms saved. If its total is 0, this environment has all
   /// farms.
   aquafarm::agents::FarmShare share;
-  std::uint8_t encodings{aquafarm::agents::kIndexBit};
+  std::uint8_t observation_types{aquafarm::agents::kIndexBit};
   bool hashes{};
   double wait_limit_s{20.0};        ///< max wait for the sim node to start or to return
   double call_limit_s{30.0};        ///< max duration of one call
@@ -78,7 +78,7 @@ class RosEnvironment final : public aquafarm::agents::Environment {
 
   ros::NodeHandle node_;
   const RosEnvironmentOptions options_;
-  std::uint8_t encodings_;  // bits of StepResult
+  std::uint8_t observation_types_;  // bits of StepResult
   bool own_rewards_{};
   CallLimit limit_;
   ros::ServiceClient step_client_;
@@ -96,7 +96,8 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   bool restarted_{};
   int restarts_{};  // since the last end of an episode
 
-  std::uint64_t turn_{};  // of the last result; a different one means that the farms have changed
+  std::uint64_t
+      state_id_{};  // of the last result; a different one means that the farms have changed
   std::uint64_t seed_{};
   std::uint64_t next_episode_{};  // above all started episodes
   std::uint64_t offset_{};        // farm i of all plays episodes offset_ + i + k * share_.total

@@ -22,13 +22,13 @@ namespace {
 
 // Returns the max size of a file, by its format, which the first bytes show.
 std::streamoff SizeLimit(std::ifstream& file) {
-  constexpr std::streamoff kMostBytes = std::streamoff{512} << 20U;
-  constexpr std::streamoff kMostJsonBytes = std::streamoff{64} << 20U;
+  constexpr std::streamoff kMaxBytes = std::streamoff{512} << 20U;
+  constexpr std::streamoff kMaxJsonBytes = std::streamoff{64} << 20U;
   file.seekg(0);
   char first = '\0';
   const bool any = static_cast<bool>(file >> std::ws >> first);
   file.clear();
-  return any && (first == '{' || first == '[') ? kMostJsonBytes : kMostBytes;
+  return any && (first == '{' || first == '[') ? kMaxJsonBytes : kMaxBytes;
 }
 
 }  // namespace

@@ -117,12 +117,12 @@ void SplitFields(std::string_view text, std::vector<std::string_view>& fields) {
 }
 
 std::string Quoted(std::string_view text) {
-  constexpr std::size_t kMost = 40;
+  constexpr std::size_t kMax = 40;
   std::string quoted = "'";
-  for (const char c : text.substr(0, kMost)) {
+  for (const char c : text.substr(0, kMax)) {
     quoted += static_cast<unsigned char>(c) < 0x20U ? '?' : c;
   }
-  return quoted + (text.size() > kMost ? "…'" : "'");
+  return quoted + (text.size() > kMax ? "…'" : "'");
 }
 
 std::string Upper(std::string_view text) {

@@ -28,14 +28,14 @@ int DaysInMonth(int year, int month) {
 
 // Removes up to `most` leading digits from a text and returns their value; nullopt if there are
 // fewer than `least`.
-std::optional<int> TakeDigits(std::string_view& text, std::size_t most, std::size_t least = 1) {
+std::optional<int> TakeDigits(std::string_view& text, std::size_t max, std::size_t min = 1) {
   std::size_t count = 0;
   int value = 0;
-  while (count < most && count < text.size() && text[count] >= '0' && text[count] <= '9') {
+  while (count < max && count < text.size() && text[count] >= '0' && text[count] <= '9') {
     value = value * 10 + (text[count++] - '0');
   }
   text.remove_prefix(count);
-  if (count < least) return std::nullopt;
+  if (count < min) return std::nullopt;
   return value;
 }
 

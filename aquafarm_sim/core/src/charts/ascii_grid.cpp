@@ -65,14 +65,14 @@ struct Header {
   /// Checks that the centres of `count` cells starting at `first` lie in [-most, most] degrees. A
   /// tolerance of half a cell permits grids with a node on the edge of this range.
   void NeedDegrees(const std::string& center, const std::string& corner, double first,
-                   Eigen::Index count, double most, const AsciiGrid& grid,
+                   Eigen::Index count, double max, const AsciiGrid& grid,
                    const ParseContext& place) const {
     const double last = first + static_cast<double>(count - 1) * grid.cell_size;
-    const double limit = most + grid.cell_size * 0.501;
+    const double limit = max + grid.cell_size * 0.501;
     if (first >= -limit && last <= limit) return;
     Fail(Has(center) ? center : corner,
          ", cells from " + Format(first) + " to " + Format(last) + ", expected degrees in [" +
-             Format(-most) + ", " + Format(most) + "], as CELLSIZE is below 1",
+             Format(-max) + ", " + Format(max) + "], as CELLSIZE is below 1",
          place);
   }
 };
@@ -117,10 +117,10 @@ bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
 
 // Splits a line into words. The words of a huge line would take several times its memory.
 std::vector<std::string_view> WordsOf(std::string_view line, const ParseContext& place) {
-  constexpr std::size_t kMostBytes = std::size_t{16} << 20U;
-  if (line.size() <= kMostBytes) return internal::SplitWords(line);
+  constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;
+  if (line.size() <= kMaxBytes) return internal::SplitWords(line);
   place.Fail("got a line of " + std::to_string(line.size()) + " bytes, expected at most " +
-             std::to_string(kMostBytes) + ": a row of the grid in each line");
+             std::to_string(kMaxBytes) + ": a row of the grid in each line");
 }
 
 }  // namespace
@@ -155,9 +155,9 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
     if (!words.empty() && !ReadHeaderLine(words, header, place)) break;
   }
   if (place.line == 0) place.line = 1;
-  constexpr double kMost = internal::kMaxMapSide;
+  constexpr double kMax = internal::kMaxMapSide;
   const auto side = [&](const char* key) {
-    const double number = header.Get(key, 1.0, kMost, place);
+    const double number = header.Get(key, 1.0, kMax, place);
     if (number != std::floor(number)) header.Fail(key, ", expected a whole number", place);
     return static_cast<Eigen::Index>(number);
   };

@@ -145,9 +145,9 @@ std::vector<Cell> SpreadPorts(const Terrain& terrain, std::int32_t count) {
   if (shore.empty() || count < 1) return ports;
   ports.push_back(NearestShore(terrain, middle, {}));
   const auto to_nearest_port = [&ports](Cell cell) {
-    std::int64_t least = DistanceSquared(cell, ports[0]);
-    for (const Cell port : ports) least = std::min(least, DistanceSquared(cell, port));
-    return least;
+    std::int64_t nearest = DistanceSquared(cell, ports[0]);
+    for (const Cell port : ports) nearest = std::min(nearest, DistanceSquared(cell, port));
+    return nearest;
   };
   while (static_cast<std::int32_t>(ports.size()) < count) {
     const Cell farthest = *std::max_element(shore.begin(), shore.end(), [&](Cell a, Cell b) {

@@ -18,8 +18,8 @@ using internal::Join;
 using internal::ParseContext;
 using Json = nlohmann::json;
 
-constexpr std::size_t kMostPoints = 20U << 20U;
-constexpr int kMostNested = 16;  // nesting depth of collections
+constexpr std::size_t kMaxPoints = 20U << 20U;
+constexpr int kMaxNested = 16;  // nesting depth of collections
 
 double Cross(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c) {
   return (b.longitude - a.longitude) * (c.latitude - a.latitude) -
@@ -43,7 +43,7 @@ bool Doubles(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c, const GeoP
          std::min(overlap(&GeoPoint::longitude), overlap(&GeoPoint::latitude)) >= 0.0;
 }
 
-constexpr std::size_t kMostComparisons = 50'000'000;  // protects against files designed to be slow
+constexpr std::size_t kMaxComparisons = 50'000'000;  // protects against files designed to be slow
 
 // Returns a description of the error in a ring, or "". Compares only segments whose longitude
 // ranges overlap and subtracts each comparison from `left`, the limit per file, which no real coast
@@ -70,7 +70,7 @@ std::string FaultOf(const CoastRing& ring, std::size_t& left) {
       doubles = doubles || Doubles(ring[a], ring[a + 1], ring[b], ring[b + 1]);
       if (--left > 0) continue;
       return "of " + std::to_string(lines) + " lines " + (doubles ? "overlaps itself and " : "") +
-             "was not looked through for crossings after " + std::to_string(kMostComparisons) +
+             "was not looked through for crossings after " + std::to_string(kMaxComparisons) +
              " comparisons of the file, nor are those behind it";
     }
   }
@@ -82,7 +82,7 @@ class CoastReader {
   CoastReader(Coast& coast, ParseContext& place) : coast_(coast), place_(place) {}
 
   void ReadObject(const Json& value, const std::string& path, int depth) {
-    if (depth > kMostNested) place_.FailValue(path, "got collections nested too deeply");
+    if (depth > kMaxNested) place_.FailValue(path, "got collections nested too deeply");
     const internal::JsonObject object(value, path, place_);
     const std::string type = object.Text({"type"});
     if (type == "FeatureCollection") return ReadList(object, "features", depth);
@@ -146,7 +146,7 @@ class CoastReader {
         place_.FailValue(At(path, i), "got " + internal::Quoted(point.dump()) +
                                           ", expected [longitude, latitude] in degrees");
       }
-      if (++points_ > kMostPoints) place_.FailValue(path, "got too many points for one chart");
+      if (++points_ > kMaxPoints) place_.FailValue(path, "got too many points for one chart");
       ring.push_back({latitude, longitude});
     }
     if (ring.front().latitude != ring.back().latitude ||
@@ -164,7 +164,7 @@ class CoastReader {
   Coast& coast_;
   ParseContext& place_;
   std::size_t points_{};
-  std::size_t comparisons_left_{kMostComparisons};
+  std::size_t comparisons_left_{kMaxComparisons};
 };
 
 // A geographic bounding box; longitudes are relative to `middle`.

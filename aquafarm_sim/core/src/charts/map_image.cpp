@@ -155,10 +155,10 @@ MapImage ParseWithStb(const std::string& bytes, const ParseContext& place) {
                "), expected PGM, PNG or BMP");
   };
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) refuse();
-  // Even compressed, PNG and BMP need at least one byte per kMostPacking pixels.
-  constexpr std::size_t kMostPacking = 2048;
+  // Even compressed, PNG and BMP need at least one byte per kMaxPacking pixels.
+  constexpr std::size_t kMaxPacking = 2048;
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  if (width > kMaxMapSide || height > kMaxMapSide || pixels / kMostPacking > bytes.size()) {
+  if (width > kMaxMapSide || height > kMaxMapSide || pixels / kMaxPacking > bytes.size()) {
     place.Fail("got a size of " + std::to_string(width) + " x " + std::to_string(height) +
                " pixels in " + std::to_string(bytes.size()) + " bytes");
   }

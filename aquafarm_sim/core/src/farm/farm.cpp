@@ -159,7 +159,7 @@ void Farm::Reset(std::uint64_t seed, std::uint64_t episode) {
 void Farm::IndexShips() {
   ship_index_.clear();
   for (const Ship& ship : ships_) {
-    ship_index_.push_back(ship.in_play ? LinearIndex(ship.cell, scenario_->width) : kNone);
+    ship_index_.push_back(ship.active ? LinearIndex(ship.cell, scenario_->width) : kNone);
   }
 }
 
@@ -214,7 +214,7 @@ void Farm::Act(std::int32_t id, Action action) {
   ship.energy = 0.0;
   ship.distance = 0.0;
   ship.action = action;
-  if (!ship.in_play) {
+  if (!ship.active) {
     ship.outcome = Outcome::kOutOfPlay;
     return;
   }
@@ -360,7 +360,7 @@ void Farm::DropOff(Ship& ship, std::int32_t id) {
   }
   ship.aboard = 0;
   if (ship.own_device != kNone) {
-    ship.in_play = false;
+    ship.active = false;
     ship_index_[static_cast<std::size_t>(id)] = kNone;
   }
   ship.outcome = Outcome::kOk;
@@ -468,7 +468,7 @@ float Farm::DamagingRiskAt(Cell cell, DeviceKind kind) const {
 
 ActionMask Farm::LegalActions(std::int32_t id) const {
   const Ship& ship = ships_[static_cast<std::size_t>(id)];
-  if (!ship.in_play) return kMoveMask;
+  if (!ship.active) return kMoveMask;
   ActionMask mask = kMoveMask;
   const std::uint8_t bits = layout_->bits(ship.cell);
   if ((bits & (kPortBit | kDeviceSiteBit)) == 0) return mask;

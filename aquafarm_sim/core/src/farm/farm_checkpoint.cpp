@@ -124,10 +124,10 @@ std::int32_t ReadDevices(const json& list, std::vector<Device>& devices) {
   return remaining;
 }
 
-std::vector<Disaster> ReadDisasters(const json& list, std::size_t least) {
-  if (list.size() < least || list.size() > static_cast<std::size_t>(kMaxDisasters)) {
+std::vector<Disaster> ReadDisasters(const json& list, std::size_t min) {
+  if (list.size() < min || list.size() > static_cast<std::size_t>(kMaxDisasters)) {
     throw InputError("state: disasters: got " + std::to_string(list.size()) + ", expected [" +
-                     std::to_string(least) + ", " + std::to_string(kMaxDisasters) + "]");
+                     std::to_string(min) + ", " + std::to_string(kMaxDisasters) + "]");
   }
   std::vector<Disaster> disasters;
   disasters.reserve(list.size());
@@ -165,7 +165,7 @@ void Farm::HashState(Hasher& hasher) const {
     hasher.Add(ship.cell.x, ship.cell.y);
     hasher.Add(ship.own_device, ship.aboard);
     hasher.Add(ship.reward, ship.episode_return);
-    hasher.Add(Int(ship.outcome), ship.in_play ? 1 : 0);
+    hasher.Add(Int(ship.outcome), ship.active ? 1 : 0);
     if (scenario_->energy) {  // part of the features
       hasher.Add(static_cast<float>(ship.energy), static_cast<float>(ship.episode_energy));
     }

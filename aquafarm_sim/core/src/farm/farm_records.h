@@ -131,7 +131,7 @@ struct FieldsOf<Ship> {
     a.Field("cell", ship.cell);
     a.Field("own_device", ship.own_device);
     a.Field("aboard", ship.aboard);
-    a.Field("in_play", ship.in_play);
+    a.Field("in_play", ship.active);
     a.Field("action", ship.action);
     a.Field("outcome", ship.outcome);
     std::array<float, kRewardTermCount> t = Numbers(ship.terms);

@@ -39,7 +39,7 @@ std::string RenderText(const Farm& farm) {
   }
   for (std::size_t id = farm.ships().size(); id-- > 0;) {
     const Ship& ship = farm.ships()[id];
-    if (ship.in_play) at(ship.cell) = static_cast<char>('0' + id % 10);
+    if (ship.active) at(ship.cell) = static_cast<char>('0' + id % 10);
   }
   return text;
 }

@@ -248,8 +248,8 @@ const IssuedForecast* NewestForecast(const Farm& farm, std::int32_t disaster, st
   if (id < specs.size() && farm.tracks()[id].get() == &specs[id].track) {
     newest = in_force(LastIssued(specs[id].forecasts, step));
   }
-  if (const Forecasts& in_play = farm.forecasts()[id]; in_play != nullptr) {
-    const IssuedForecast* last = in_force(LastIssued(*in_play, step));
+  if (const Forecasts& forecasts = farm.forecasts()[id]; forecasts != nullptr) {
+    const IssuedForecast* last = in_force(LastIssued(*forecasts, step));
     if (last != nullptr && (newest == nullptr || last->step >= newest->step)) newest = last;
   }
   return newest;

@@ -101,15 +101,15 @@ bool LayoutGenerator::TryPlace(std::uint64_t seed, std::uint64_t episode, std::u
 void LayoutGenerator::ChartAllWays(Layout& layout) {
   const std::size_t places =
       layout.ports.size() + static_cast<std::size_t>(scenario_.FetchableCount());
-  way_queue_.reserve(static_cast<std::size_t>(scenario_.CellCount()));
-  layout.ways.resize(static_cast<std::size_t>(scenario_.CellCount()) * places);
-  RouteEntry* ways = layout.ways.data();
+  route_queue_.reserve(static_cast<std::size_t>(scenario_.CellCount()));
+  layout.routes.resize(static_cast<std::size_t>(scenario_.CellCount()) * places);
+  RouteEntry* routes = layout.routes.data();
   for (const Cell port : layout.ports) {
-    ComputeRoutes(layout.cells, port, ways++, places, way_steps_, way_queue_);
+    ComputeRoutes(layout.cells, port, routes++, places, route_steps_, route_queue_);
   }
   for (const PlacedDevice& device : layout.devices) {
     if (device.self_propelled) continue;
-    ComputeRoutes(layout.cells, device.cell, ways++, places, way_steps_, way_queue_);
+    ComputeRoutes(layout.cells, device.cell, routes++, places, route_steps_, route_queue_);
   }
 }
 

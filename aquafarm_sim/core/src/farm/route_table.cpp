@@ -35,25 +35,25 @@ void StepsByWater(const Grid<std::uint8_t>& cells, const Cell* targets, std::siz
   }
 }
 
-void ComputeRoutes(const Grid<std::uint8_t>& cells, Cell target, RouteEntry* ways,
+void ComputeRoutes(const Grid<std::uint8_t>& cells, Cell target, RouteEntry* routes,
                    std::size_t stride, Grid<std::int32_t>& steps, std::vector<Cell>& queue) {
   StepsByWater(cells, &target, 1, steps, queue);
   const auto count = static_cast<std::size_t>(cells.size());
-  for (std::size_t cell = 0; cell < count; ++cell) ways[cell * stride] = {};
+  for (std::size_t cell = 0; cell < count; ++cell) routes[cell * stride] = {};
   const auto width = static_cast<std::int32_t>(cells.cols());
   for (const Cell at : queue) {
-    RouteEntry& way = ways[static_cast<std::size_t>(LinearIndex(at, width)) * stride];
-    way.steps = steps(at.y, at.x);
+    RouteEntry& route = routes[static_cast<std::size_t>(LinearIndex(at, width)) * stride];
+    route.steps = steps(at.y, at.x);
     std::int32_t nearest = std::numeric_limits<std::int32_t>::max();
     for (const Cell by : kMoves) {
       const Cell to{at.x + by.x, at.y + by.y};
-      if (!IsOnMap(cells, to) || steps(to.y, to.x) != way.steps - 1) continue;
+      if (!IsOnMap(cells, to) || steps(to.y, to.x) != route.steps - 1) continue;
       const std::int32_t dx = target.x - to.x;
       const std::int32_t dy = target.y - to.y;
       if (dx * dx + dy * dy >= nearest) continue;
       nearest = dx * dx + dy * dy;
-      way.east = static_cast<std::int8_t>(by.x);
-      way.north = static_cast<std::int8_t>(by.y);
+      route.east = static_cast<std::int8_t>(by.x);
+      route.north = static_cast<std::int8_t>(by.y);
     }
   }
 }

@@ -127,7 +127,7 @@ class PathFinder : public nlohmann::json_sax<Json> {
 
 // Rejects JSON that is nested deeper than any bulletin or chart.
 void CheckDepth(const std::string& text, ParseContext& place) {
-  constexpr int kMostDepth = 64;
+  constexpr int kMaxDepth = 64;
   int depth = 0;
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -137,10 +137,10 @@ void CheckDepth(const std::string& text, ParseContext& place) {
     } else if (c == '"') {
       quoted = !quoted;
     } else if (!quoted && (c == '[' || c == '{')) {
-      if (++depth <= kMostDepth) continue;
+      if (++depth <= kMaxDepth) continue;
       place.path.clear();
       place.line = LineAt(text, i);
-      place.Fail("got JSON nested more deeply than " + std::to_string(kMostDepth) +
+      place.Fail("got JSON nested more deeply than " + std::to_string(kMaxDepth) +
                  " levels, expected a bulletin or a chart");
     } else if (!quoted && (c == ']' || c == '}')) {
       --depth;

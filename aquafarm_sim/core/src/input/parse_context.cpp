@@ -12,7 +12,7 @@
 namespace aquafarm::internal {
 namespace {
 
-constexpr std::size_t kMostWarnings = 100;  // protects against files designed to fill the memory
+constexpr std::size_t kMaxWarnings = 100;  // protects against files designed to fill the memory
 
 template <typename T>
 std::string NotInRange(std::string_view text, const char* name, T min, T max) {
@@ -25,12 +25,12 @@ std::string NotInRange(std::string_view text, const char* name, T min, T max) {
 
 std::string ParseContext::Located(const std::string& value_path) const {
   // Each search reads the file again, so only a limited number of messages contain the line.
-  constexpr std::size_t kMostSearches = 200;
-  constexpr std::size_t kMostBytes = std::size_t{128} << 20U;
+  constexpr std::size_t kMaxSearches = 200;
+  constexpr std::size_t kMaxBytes = std::size_t{128} << 20U;
   if (!locate) return file_ + ":" + std::to_string(line) + ": ";
   ++searches_;
-  const bool affordable = searches_ == 1 || searches_ * locate_bytes <= kMostBytes;
-  if (searches_ > kMostSearches || !affordable) return file_ + ": ";
+  const bool affordable = searches_ == 1 || searches_ * locate_bytes <= kMaxBytes;
+  if (searches_ > kMaxSearches || !affordable) return file_ + ": ";
   return file_ + ":" + std::to_string(locate(value_path)) + ": ";
 }
 std::string ParseContext::At(const std::string& what) const {
@@ -49,10 +49,10 @@ void ParseContext::RefuseFixValue(const std::string& value_path, const std::stri
   throw FixError(AtValue(value_path, what));
 }
 void ParseContext::Warn(const std::string& what) {
-  if (warnings_.size() < kMostWarnings) warnings_.push_back(At(what));
+  if (warnings_.size() < kMaxWarnings) warnings_.push_back(At(what));
 }
 void ParseContext::WarnValue(const std::string& value_path, const std::string& what) {
-  if (warnings_.size() < kMostWarnings) warnings_.push_back(AtValue(value_path, what));
+  if (warnings_.size() < kMaxWarnings) warnings_.push_back(AtValue(value_path, what));
 }
 bool ParseContext::IsRepeated(const std::string& kind) {
   const auto found = repeated_.find(kind);
@@ -67,7 +67,7 @@ bool ParseContext::IsRepeated(const std::string& kind) {
 }
 void ParseContext::AddFirst(const std::string& kind, std::string text) {
   repeated_[kind] = {warnings_.size(), 0, text};
-  if (warnings_.size() < kMostWarnings) warnings_.push_back(std::move(text));
+  if (warnings_.size() < kMaxWarnings) warnings_.push_back(std::move(text));
 }
 void ParseContext::WarnOnce(const std::string& kind, const std::string& what) {
   if (!IsRepeated(kind)) AddFirst(kind, At(what));

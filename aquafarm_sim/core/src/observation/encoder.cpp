@@ -40,8 +40,8 @@ Encoder::Encoder(const Scenario& scenario)
   }
 
   // Base-3 codes grow as 3^D; with more devices no table would fit in memory.
-  constexpr std::int32_t kMostDevices = 14;
-  if (fetchable_ > kMostDevices) return;
+  constexpr std::int32_t kMaxDevices = 14;
+  if (fetchable_ > kMaxDevices) return;
   std::size_t codes = 1;
   for (std::int32_t i = 0; i < fetchable_; ++i) codes *= 3;
   status_rank_.assign(codes, kNone);
@@ -118,7 +118,7 @@ void Encoder::Planes(const View& view, std::uint8_t* out) const {
     if (device.aboard_self) cargo += value;
     if (device.status == DeviceStatus::kDeployed) at(kDevice, device.cell) = ToByte(value);
   }
-  if (view.in_play) at(kSelf, view.self) = 255;
+  if (view.active) at(kSelf, view.self) = 255;
   if (view.aboard > 0) at(kCargo, view.self) = ToByte(cargo / static_cast<float>(view.capacity));
   for (const KnownShip& other : view.others) {
     if (other.visible) at(kOthers, other.cell) = 255;

@@ -127,18 +127,18 @@ void FarmBatch::Write(const BatchOutput& output) {
   for (std::int32_t i = 0; i < farms(); ++i) WriteOne(i, 0, farm(i).step() == 0, output);
 }
 
-void FarmBatch::WriteOne(std::int32_t i, std::int32_t thread, bool started,
+void FarmBatch::WriteOne(std::int32_t i, std::int32_t thread, bool is_first,
                          const BatchOutput& output) {
-  WriteFarm(farm(i), encoder_, static_cast<std::size_t>(i), started,
+  WriteFarm(farm(i), encoder_, static_cast<std::size_t>(i), is_first,
             views_[static_cast<std::size_t>(thread)], output);
 }
 
-void WriteFarm(const Farm& farm, const Encoder& encoder, std::size_t n, bool started, View& view,
+void WriteFarm(const Farm& farm, const Encoder& encoder, std::size_t n, bool is_first, View& view,
                const BatchOutput& output) {
-  if (output.reasons != nullptr) {
-    output.reasons[n] = static_cast<std::uint8_t>(farm.record().reason);
+  if (output.end_reasons != nullptr) {
+    output.end_reasons[n] = static_cast<std::uint8_t>(farm.record().reason);
   }
-  if (output.started != nullptr) output.started[n] = started ? 1 : 0;
+  if (output.is_first != nullptr) output.is_first[n] = is_first ? 1 : 0;
   if (output.hashes != nullptr) output.hashes[n] = farm.Hash();
   const std::vector<Ship>& ships = farm.ships();
   for (std::size_t id = 0; id < ships.size(); ++id) {
@@ -153,7 +153,7 @@ void WriteFarm(const Farm& farm, const Encoder& encoder, std::size_t n, bool sta
     if (output.distance != nullptr) output.distance[k] = static_cast<float>(ship.distance);
     if (output.outcomes != nullptr) output.outcomes[k] = static_cast<std::uint8_t>(ship.outcome);
     if (output.legal != nullptr) output.legal[k] = farm.LegalActions(agent);
-    if (output.in_play != nullptr) output.in_play[k] = ship.in_play ? 1 : 0;
+    if (output.active != nullptr) output.active[k] = ship.active ? 1 : 0;
     if (output.index != nullptr) output.index[k] = encoder.Index(farm, agent);
     if (output.features == nullptr && output.planes == nullptr) continue;
     Observe(farm, agent, view);

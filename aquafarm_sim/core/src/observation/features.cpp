@@ -147,18 +147,18 @@ void WriteEnergy(const FeatureScales& scales, const View& view, float* out) {
 }
 
 // Writes the next move and the number of moves left to every port and every deployed device.
-void WriteWays(const FeatureScales& scales, const View& view, float* out) {
+void WriteRoutes(const FeatureScales& scales, const View& view, float* out) {
   const float scale = scales.length;
   const Layout& layout = *view.layout;
   const auto cell = static_cast<std::size_t>(LinearIndex(view.self, view.scenario->width));
-  const RouteEntry* way = layout.ways.data() + cell * layout.way_count();
+  const RouteEntry* route = layout.routes.data() + cell * layout.route_count();
   // Also encodes unreachable targets.
   const std::int32_t farthest = 2 * (view.scenario->width + view.scenario->height);
   const auto write = [&] {
-    *out++ = static_cast<float>(way->east);
-    *out++ = static_cast<float>(way->north);
-    *out++ = static_cast<float>(std::min(way->steps, farthest)) * scale;
-    ++way;
+    *out++ = static_cast<float>(route->east);
+    *out++ = static_cast<float>(route->north);
+    *out++ = static_cast<float>(std::min(route->steps, farthest)) * scale;
+    ++route;
   };
   for (std::size_t port = 0; port < layout.ports.size(); ++port) write();
   for (const KnownDevice& device : view.devices) {
@@ -167,12 +167,12 @@ void WriteWays(const FeatureScales& scales, const View& view, float* out) {
       write();
     } else {
       out = std::fill_n(out, kWayFeatures, 0.0F);
-      ++way;
+      ++route;
     }
   }
 }
 
-std::vector<std::string> WayNames(const Scenario& scenario) {
+std::vector<std::string> RouteNames(const Scenario& scenario) {
   std::vector<std::string> names;
   const auto add = [&names](const char* thing, std::int32_t id) {
     for (const char* part : {".way_east", ".way_north", ".way_steps"}) {
@@ -191,8 +191,8 @@ std::vector<std::string> WayNames(const Scenario& scenario) {
 
 // Writes the forecast risk after one step of each move, and the mean forecast risk over the steps
 // of each straight course and of staying. A ship stops at the edge of the map.
-void WriteCourses(const FeatureScales&, const View& view, float* out) {
-  CourseRisks risks(*view.scenario, view.self);
+void WriteLookaheadRisks(const FeatureScales&, const View& view, float* out) {
+  LookaheadRisks risks(*view.scenario, view.self);
   for (const KnownDisaster& known : view.disasters) {
     if (known.known && known.belief.active()) {
       risks.MaxWith(known.belief, static_cast<float>(known.age));
@@ -201,7 +201,7 @@ void WriteCourses(const FeatureScales&, const View& view, float* out) {
   risks.Write(out, out + kMoveCount);
 }
 
-std::vector<std::string> CourseNames() {
+std::vector<std::string> LookaheadRiskNames() {
   std::vector<std::string> names = ForEachMove("risk.");
   const std::vector<std::string> courses = ForEachMove("course.");
   names.insert(names.end(), courses.begin(), courses.end());
@@ -280,8 +280,9 @@ std::vector<FeatureGroup> FeatureGroups(const Scenario& scenario) {
   // Only where the reward depends on it.
   const bool costs_energy = scenario.energy && scenario.energy->weight > 0.0;
   if (costs_energy) groups.push_back({"energy", {"energy_used"}, WriteEnergy});
-  if (scenario.view.waterways) groups.push_back({"waterways", WayNames(scenario), WriteWays});
-  if (scenario.view.courses) groups.push_back({"courses", CourseNames(), WriteCourses});
+  if (scenario.view.routes) groups.push_back({"waterways", RouteNames(scenario), WriteRoutes});
+  if (scenario.view.lookahead_risk)
+    groups.push_back({"courses", LookaheadRiskNames(), WriteLookaheadRisks});
   if (scenario.view.kinds) groups.push_back({"kinds", KindNames(scenario), WriteKinds});
   const auto is_empty = [](const FeatureGroup& group) { return group.names.empty(); };
   groups.erase(std::remove_if(groups.begin(), groups.end(), is_empty), groups.end());

@@ -91,22 +91,22 @@ const CourseMoves kCourseMoves = MakeCourseMoves();
 AQUAFARM_WIDEST
 void FollowCourses(Cell from, std::int32_t width, std::int32_t height, std::size_t steps,
                    FloatRun* x, FloatRun* y) {
-  const FloatRun least = {};
-  const FloatRun east = least + static_cast<float>(width - 1);
-  const FloatRun north = least + static_cast<float>(height - 1);
+  const FloatRun zero = {};
+  const FloatRun east = zero + static_cast<float>(width - 1);
+  const FloatRun north = zero + static_cast<float>(height - 1);
   for (std::size_t step = 0; step < steps; ++step) {
     const auto taken = static_cast<float>(step + 1);
     const FloatRun to_x = static_cast<float>(from.x) + taken * kCourseMoves.x;
     const FloatRun to_y = static_cast<float>(from.y) + taken * kCourseMoves.y;
-    x[step] = to_x < least ? least : to_x > east ? east : to_x;
-    y[step] = to_y < least ? least : to_y > north ? north : to_y;
+    x[step] = to_x < zero ? zero : to_x > east ? east : to_x;
+    y[step] = to_y < zero ? zero : to_y > north ? north : to_y;
   }
 }
 
 // Merges the risk of the rings into risk [steps] at the cells x, y [steps], step by step.
 AQUAFARM_WIDEST
-void WorsenByRings(const ObservableDisaster& disaster, float age, std::size_t steps,
-                   const FloatRun* x, const FloatRun* y, FloatRun* risk) {
+void MaxWithRings(const ObservableDisaster& disaster, float age, std::size_t steps,
+                  const FloatRun* x, const FloatRun* y, FloatRun* risk) {
   const auto rings = static_cast<std::size_t>(disaster.rings);
   for (std::size_t step = 0; step < steps; ++step) {
     const float ahead = age + static_cast<float>(step + 1);
@@ -124,8 +124,8 @@ void WorsenByRings(const ObservableDisaster& disaster, float age, std::size_t st
 }
 
 // As WorsenByRings for rings by quadrants, cell by cell.
-void WorsenByQuadrants(const ObservableDisaster& disaster, float age, std::size_t steps,
-                       const FloatRun* x, const FloatRun* y, FloatRun* risk) {
+void MaxWithQuadrants(const ObservableDisaster& disaster, float age, std::size_t steps,
+                      const FloatRun* x, const FloatRun* y, FloatRun* risk) {
   for (std::size_t step = 0; step < steps; ++step) {
     const float ahead = age + static_cast<float>(step + 1);
     for (std::int32_t i = 0; i < kCourseCount; ++i) {
@@ -157,7 +157,7 @@ void RiskBrush::Paint(float ahead, std::uint8_t* plane) const {
   PaintRings(cx, cy, radius_squared_.data(), levels_.data(), box, width_, plane);
 }
 
-CourseRisks::CourseRisks(const Scenario& scenario, Cell self) {
+LookaheadRisks::LookaheadRisks(const Scenario& scenario, Cell self) {
   FollowCourses(self, scenario.width, scenario.height, kSteps, x_.data(), y_.data());
   if (!scenario.seas || scenario.seas->risk.empty()) return;
   for (std::size_t step = 0; step < kSteps; ++step) {
@@ -168,15 +168,15 @@ CourseRisks::CourseRisks(const Scenario& scenario, Cell self) {
   }
 }
 
-void CourseRisks::MaxWith(const ObservableDisaster& disaster, float age) {
+void LookaheadRisks::MaxWith(const ObservableDisaster& disaster, float age) {
   if (disaster.by_quadrant) {
-    WorsenByQuadrants(disaster, age, kSteps, x_.data(), y_.data(), risk_.data());
+    MaxWithQuadrants(disaster, age, kSteps, x_.data(), y_.data(), risk_.data());
   } else {
-    WorsenByRings(disaster, age, kSteps, x_.data(), y_.data(), risk_.data());
+    MaxWithRings(disaster, age, kSteps, x_.data(), y_.data(), risk_.data());
   }
 }
 
-void CourseRisks::Write(float* next, float* courses) const {
+void LookaheadRisks::Write(float* next, float* courses) const {
   const FloatRun first = risk_[0] * kRiskScale;
   FloatRun mean = {};
   for (const FloatRun& risk : risk_) mean += risk * kRiskScale;

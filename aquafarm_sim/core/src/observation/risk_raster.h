@@ -51,10 +51,10 @@ inline constexpr std::int32_t kCourseCount = kMoveCount + 1;
 static_assert(kCourseCount <= kRun);
 
 /// Risks that a ship would meet on each course if every disaster keeps its motion.
-class CourseRisks {
+class LookaheadRisks {
  public:
   /// Starts the courses at `self` with the risk of the sea. A ship stops at the edge of the map.
-  CourseRisks(const Scenario& scenario, Cell self);
+  LookaheadRisks(const Scenario& scenario, Cell self);
 
   /// Merges a disaster as known `age` steps ago; the worse risk is kept.
   void MaxWith(const ObservableDisaster& disaster, float age);

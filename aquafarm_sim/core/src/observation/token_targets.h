@@ -43,10 +43,10 @@ class Kept {
   std::size_t count_{};
 };
 
-/// Returns the routes from a cell to all ports and devices, as Layout::ways.
-inline const RouteEntry* WaysFrom(const View& view, Cell cell) {
+/// Returns the routes from a cell to all ports and devices, as Layout::routes.
+inline const RouteEntry* RoutesFrom(const View& view, Cell cell) {
   const auto index = static_cast<std::size_t>(LinearIndex(cell, view.scenario->width));
-  return view.layout->ways.data() + index * view.layout->way_count();
+  return view.layout->routes.data() + index * view.layout->route_count();
 }
 
 /// @tparam kDevices slots for devices @tparam kPorts slots for ports
@@ -54,28 +54,28 @@ template <std::size_t kDevices, std::size_t kPorts>
 class TargetsOf {
  public:
   explicit TargetsOf(const View& view) : view_(view) {
-    const RouteEntry* const ways = WaysFrom(view, view.self);
+    const RouteEntry* const routes = RoutesFrom(view, view.self);
     for (std::size_t id = 0; id < view.layout->ports.size(); ++id) {
-      ports_.Add(static_cast<std::int32_t>(id), static_cast<float>(ways[id].steps));
+      ports_.Add(static_cast<std::int32_t>(id), static_cast<float>(routes[id].steps));
     }
-    std::size_t way = view.layout->ports.size();
+    std::size_t route = view.layout->ports.size();
     for (std::size_t id = 0; id < view.devices.size(); ++id) {
       const KnownDevice& device = view.devices[id];
       if (device.self_propelled) continue;
-      const std::size_t own_way = way++;
+      const std::size_t own_route = route++;
       if (device.aboard_self) devices_.Add(static_cast<std::int32_t>(id), -1.0F);
       if (device.status != DeviceStatus::kDeployed) continue;
-      devices_.Add(static_cast<std::int32_t>(id), static_cast<float>(ways[own_way].steps));
+      devices_.Add(static_cast<std::int32_t>(id), static_cast<float>(routes[own_route].steps));
     }
-    for (std::size_t slot = 0; slot < devices(); ++slot) ways_[slot] = WayOf(device(slot));
+    for (std::size_t slot = 0; slot < devices(); ++slot) routes_[slot] = RouteOf(device(slot));
   }
 
   std::size_t devices() const { return devices_.size(); }
   std::size_t ports() const { return ports_.size(); }
   std::size_t device(std::size_t slot) const { return devices_[slot]; }  ///< id
   std::size_t port(std::size_t slot) const { return ports_[slot]; }      ///< id
-  /// Index of the device of a slot in Layout::ways.
-  std::size_t way(std::size_t slot) const { return ways_[slot]; }
+  /// Index of the device of a slot in Layout::routes.
+  std::size_t route(std::size_t slot) const { return routes_[slot]; }
 
   /// Returns the moves from the port of a slot to the nearest deployed device; 0 without one.
   std::int32_t FromPort(std::size_t slot) const {
@@ -89,10 +89,10 @@ class TargetsOf {
   /// Returns the moves from the device of a slot to a port and on to the nearest other deployed
   /// device, by the best port.
   std::int32_t ToNextDeviceByPort(std::size_t slot) const {
-    const RouteEntry* const ways = WaysFrom(view_, view_.devices[device(slot)].cell);
+    const RouteEntry* const routes = RoutesFrom(view_, view_.devices[device(slot)].cell);
     std::int32_t best = kUnreachable;
     for (std::size_t i = 0; i < ports(); ++i) {
-      const std::int32_t steps = ways[port(i)].steps;
+      const std::int32_t steps = routes[port(i)].steps;
       if (steps >= best) continue;
       best = std::min(best, steps + ToDevice(view_.layout->ports[port(i)], slot));
     }
@@ -102,22 +102,22 @@ class TargetsOf {
  private:
   static constexpr std::size_t kNoDevice = kDevices;
 
-  std::size_t WayOf(std::size_t id) const {
-    std::size_t way = view_.layout->ports.size();
-    for (std::size_t i = 0; i < id; ++i) way += view_.devices[i].self_propelled ? 0 : 1;
-    return way;
+  std::size_t RouteOf(std::size_t id) const {
+    std::size_t route = view_.layout->ports.size();
+    for (std::size_t i = 0; i < id; ++i) route += view_.devices[i].self_propelled ? 0 : 1;
+    return route;
   }
 
   // Moves to the nearest deployed device except that of a slot; 0 without one.
   std::int32_t ToDevice(Cell from, std::size_t except) const {
-    const RouteEntry* const ways = WaysFrom(view_, from);
+    const RouteEntry* const routes = RoutesFrom(view_, from);
     std::int32_t best = kUnreachable;
     bool has_device = false;
     for (std::size_t slot = 0; slot < devices(); ++slot) {
       const bool is_deployed = view_.devices[device(slot)].status == DeviceStatus::kDeployed;
       if (slot == except || !is_deployed) continue;
       has_device = true;
-      best = std::min(best, ways[ways_[slot]].steps);
+      best = std::min(best, routes[routes_[slot]].steps);
     }
     return has_device ? best : 0;
   }
@@ -125,7 +125,7 @@ class TargetsOf {
   const View& view_;
   Kept<kDevices> devices_;
   Kept<kPorts> ports_;
-  std::array<std::size_t, kDevices> ways_{};
+  std::array<std::size_t, kDevices> routes_{};
 };
 
 }  // namespace aquafarm

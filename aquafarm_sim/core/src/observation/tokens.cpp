@@ -124,7 +124,7 @@ void WriteShip(const FeatureScales&, const View& view, float* out) {
   *out++ = static_cast<float>(view.capacity) * kCountScale;
   out = WriteMoveEnergy(view, out);
   *out++ = Unit(view.scenario->damage.exposure_damage * -kWorstRisk);
-  CourseRisks courses(*view.scenario, view.self);
+  LookaheadRisks courses(*view.scenario, view.self);
   for (std::size_t i = 0; i < risk.count(); ++i) {
     courses.MaxWith(risk.disaster(i).belief, static_cast<float>(risk.disaster(i).age));
   }
@@ -147,7 +147,7 @@ std::vector<std::string> TargetNames() {
 }
 
 // Writes the summed risk along a route and the risk at its end on arrival.
-float* WriteRouteRisk(const View& view, const TokenRisk& risk, std::size_t way, Cell target,
+float* WriteRouteRisk(const View& view, const TokenRisk& risk, std::size_t route, Cell target,
                       std::int32_t steps, float* out) {
   float near = 0.0F;
   float sum = 0.0F;
@@ -155,7 +155,7 @@ float* WriteRouteRisk(const View& view, const TokenRisk& risk, std::size_t way, 
   const std::int32_t walked = steps < kUnreachable ? std::min(steps, kTokenRoute) : 0;
   if (!risk.IsCalmWithin(cell, walked)) {
     for (std::int32_t step = 1; step <= walked; ++step) {
-      const RouteEntry& entry = WaysFrom(view, cell)[way];
+      const RouteEntry& entry = RoutesFrom(view, cell)[route];
       cell = {cell.x + entry.east, cell.y + entry.north};
       sum += risk.At(cell, static_cast<float>(step));
       if (step <= kNear) near = sum;
@@ -167,15 +167,15 @@ float* WriteRouteRisk(const View& view, const TokenRisk& risk, std::size_t way, 
   return out;
 }
 
-// @param steps of the route by water from the ship; `way` is its index in Layout::ways
-float* WriteTarget(const View& view, const TokenRisk& risk, std::size_t way, Cell target,
+// @param steps of the route by water from the ship; `route` is its index in Layout::routes
+float* WriteTarget(const View& view, const TokenRisk& risk, std::size_t route, Cell target,
                    std::int32_t steps, bool is_aboard, float* out) {
   *out++ = 1.0F;
   out = WritePlace(view.self, target, out);
   *out++ = steps == 0 && !is_aboard ? 1.0F : 0.0F;
   std::fill_n(out, kMoveCount, 0.0F);
   if (steps > 0 && steps < kUnreachable) {
-    const RouteEntry& entry = WaysFrom(view, view.self)[way];
+    const RouteEntry& entry = RoutesFrom(view, view.self)[route];
     for (std::size_t move = 0; move < kMoves.size(); ++move) {
       if (kMoves[move].x == entry.east && kMoves[move].y == entry.north) out[move] = 1.0F;
     }
@@ -184,7 +184,7 @@ float* WriteTarget(const View& view, const TokenRisk& risk, std::size_t way, Cel
   const auto distance = static_cast<float>(steps);
   *out++ = Length(distance);
   *out++ = steps < kUnreachable ? kCloseSteps / (kCloseSteps + distance) : 0.0F;
-  out = WriteRouteRisk(view, risk, way, target, steps, out);
+  out = WriteRouteRisk(view, risk, route, target, steps, out);
   *out++ = risk.At(target, 0.0F);
   const RingTimes rings = risk.RingsAt(target);
   *out++ = rings.in < 0.0F ? 0.0F : kRingSteps / (kRingSteps + rings.in);
@@ -228,10 +228,10 @@ float LossOf(const View& view, const TokenRisk& risk, const KnownDevice& device)
 float* WriteDevice(const View& view, const TokenRisk& risk, const TokenTargets& targets,
                    std::size_t slot, float* out) {
   const KnownDevice& device = view.devices[targets.device(slot)];
-  const std::size_t way = targets.way(slot);
+  const std::size_t route = targets.route(slot);
   const bool is_deployed = device.status == DeviceStatus::kDeployed;
-  const std::int32_t steps = is_deployed ? WaysFrom(view, view.self)[way].steps : 0;
-  out = WriteTarget(view, risk, way, device.cell, steps, !is_deployed, out);
+  const std::int32_t steps = is_deployed ? RoutesFrom(view, view.self)[route].steps : 0;
+  out = WriteTarget(view, risk, route, device.cell, steps, !is_deployed, out);
   *out++ = is_deployed ? 1.0F : 0.0F;
   *out++ = device.aboard_self ? 1.0F : 0.0F;
   *out++ = device.value * kValueScale;
@@ -239,9 +239,9 @@ float* WriteDevice(const View& view, const TokenRisk& risk, const TokenTargets& 
   *out++ = device.health * device.value * kValueScale;
   *out++ = std::min(kFarthest, LossOf(view, risk, device));
   std::int32_t home = kUnreachable;
-  const RouteEntry* const ways = WaysFrom(view, device.cell);
+  const RouteEntry* const routes = RoutesFrom(view, device.cell);
   for (std::size_t port = 0; port < view.layout->ports.size(); ++port) {
-    home = std::min(home, ways[port].steps);
+    home = std::min(home, routes[port].steps);
   }
   *out++ = Length(static_cast<float>(home));
   constexpr float kActions = 2.0F;  // pickup and drop-off
@@ -267,11 +267,11 @@ void WriteDeviceTokens(const FeatureScales&, const View& view, float* out) {
 void WritePortTokens(const FeatureScales&, const View& view, float* out) {
   const TokenRisk risk(view);
   const TokenTargets targets(view);
-  const RouteEntry* const ways = WaysFrom(view, view.self);
+  const RouteEntry* const routes = RoutesFrom(view, view.self);
   float* const end = out + kTokenPorts * TokenGroups()[2].size;
   for (std::size_t slot = 0; slot < targets.ports(); ++slot) {
     const std::size_t id = targets.port(slot);
-    out = WriteTarget(view, risk, id, view.layout->ports[id], ways[id].steps, false, out);
+    out = WriteTarget(view, risk, id, view.layout->ports[id], routes[id].steps, false, out);
     *out++ = Length(static_cast<float>(targets.FromPort(slot)));
   }
   std::fill(out, end, 0.0F);

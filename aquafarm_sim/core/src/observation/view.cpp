@@ -35,7 +35,7 @@ void CollectSensors(const Farm& farm, Cell self, std::vector<Sensor>& sensors) {
   sensors.clear();
   sensors.push_back({self, view.sensor_radius});
   for (const Ship& ship : farm.ships()) {
-    if (view.shared_sight && ship.in_play) sensors.push_back({ship.cell, view.sensor_radius});
+    if (view.shared_sight && ship.active) sensors.push_back({ship.cell, view.sensor_radius});
   }
   if (view.monitoring_radius == 0.0F) return;
   for (const Device& device : farm.devices()) {
@@ -182,7 +182,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
   const bool full = scenario.view.mode == ViewMode::kFull;
   view.ship = ship;
   view.self = self.cell;
-  view.in_play = self.in_play;
+  view.active = self.active;
   view.step = farm.step();
   view.aboard = self.aboard;
   view.energy = self.episode_energy;
@@ -198,7 +198,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
     known.id = static_cast<std::int32_t>(id);
     known.cell = ships[id].cell;
     known.aboard = ships[id].aboard;
-    known.visible = ships[id].in_play && (full || IsSeen(view.sensors, known.cell));
+    known.visible = ships[id].active && (full || IsSeen(view.sensors, known.cell));
   }
 
   view.devices.resize(farm.devices().size());

@@ -82,10 +82,10 @@ class Builder {
   bool CompleteFromDraft() {
     const bool storms = !request_.archive.files.empty();
     if (storms) SelectStorms();
-    plan_.waterways = IsForNetworks();
+    plan_.routes = IsForNetworks();
     const bool values = !request_.value.empty();
     if (values) ValueDevices();
-    return storms || plan_.waterways || values;
+    return storms || plan_.routes || values;
   }
 
   // Replaces the archives in the text by the storms in reach, which the reader selected.
@@ -107,7 +107,7 @@ class Builder {
     const std::uint32_t states = Encoder(ranch_.scenario).state_count();
     if (states > 0 && states <= kSoonLearnt) return false;
     Scenario told = ranch_.scenario;
-    told.view.waterways = true;
+    told.view.routes = true;
     try {
       ValidateScenario(told);
     } catch (const InputError&) {

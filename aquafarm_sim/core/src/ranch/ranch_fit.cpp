@@ -114,12 +114,12 @@ void NeedValues(const SeaField& field, const Layer& layer, const RanchArea& ranc
 std::string CheckTime(const SeaField& field, std::optional<std::int64_t> start,
                       const std::string& path) {
   constexpr double kDay_s = 86400.0;
-  constexpr double kMost_days = 2.0;
+  constexpr double kMax_days = 2.0;
   if (!start || !field.time) return "";
   const double days = std::abs(static_cast<double>(*field.time - *start)) / kDay_s;
-  if (days <= kMost_days) return "";
+  if (days <= kMax_days) return "";
   return path + ": " + field.name + ": got " + FormatTime(*field.time) +
-         " as the time nearest to the start, expected one within " + Format(kMost_days) +
+         " as the time nearest to the start, expected one within " + Format(kMax_days) +
          " days of " + FormatTime(*start) + Text("; it is %.0f days off: check --start", days);
 }
 

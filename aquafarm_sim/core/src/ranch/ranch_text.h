@@ -37,7 +37,7 @@ struct RanchPlan {
   std::int32_t archive_steps{};  ///< duration of an episode with one of them; 0: no archive
   std::vector<NamedLayer> layers;
   std::vector<std::string> sea_units;  ///< one for each layer
-  bool waterways{};
+  bool routes{};
 };
 
 /// @param decided lines for people, written as comments

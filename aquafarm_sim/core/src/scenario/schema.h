@@ -147,8 +147,8 @@ void VisitView(Archive& a, S& s) {
     b.Field("forecast_error_km", s.view.forecast_error_km,
             ListOf<Interval<float>>{{0.0F, 10000.0F}, Archive::kReads ? 3U : 0U, 3});
     b.Always();
-    b.Field("waterways", s.view.waterways, AnyFlag{});
-    b.Field("courses", s.view.courses, AnyFlag{});
+    b.Field("waterways", s.view.routes, AnyFlag{});
+    b.Field("courses", s.view.lookahead_risk, AnyFlag{});
     VisitViewKinds(b, s.view);
     b.When(Archive::kReads || s.view.disaster_slots > 0, "");
     b.Field("disaster_slots", s.view.disaster_slots, Interval<std::int32_t>{0, kMaxDisasters});

@@ -241,7 +241,7 @@ void CheckFits(const char* path, std::int32_t wanted, std::int32_t& free, const 
   free -= wanted;
 }
 
-constexpr std::uint64_t kMostWays = 16'777'216;  // 128 MiB per layout
+constexpr std::uint64_t kMaxRoutes = 16'777'216;  // 128 MiB per layout
 
 void CheckPlaces(const Scenario& scenario) {
   constexpr std::int32_t kFewestCells = 4;  // so that a run fits in the planes (kRun)
@@ -249,14 +249,14 @@ void CheckPlaces(const Scenario& scenario) {
     throw FieldError("grid", "got " + Format(scenario.CellCount()) + " cells, expected at least " +
                                  Format(kFewestCells));
   }
-  const std::uint64_t ways =
+  const std::uint64_t routes =
       static_cast<std::uint64_t>(scenario.CellCount()) *
       static_cast<std::uint64_t>(scenario.PortCount() + scenario.FetchableCount());
-  if (scenario.view.NeedsRoutes() && ways > kMostWays) {
+  if (scenario.view.NeedsRoutes() && routes > kMaxRoutes) {
     throw FieldError(scenario.view.tokens ? "view.tokens" : "view.waterways",
-                     "needs " + Format(ways) +
-                         " ways (cells times ports and devices), expected at most " +
-                         Format(kMostWays));
+                     "needs " + Format(routes) +
+                         " routes (cells times ports and devices), expected at most " +
+                         Format(kMaxRoutes));
   }
   Occupancy occupancy(scenario);
   const auto put_all = [&occupancy](const std::string& path, const auto& cells,

@@ -53,7 +53,7 @@ class HeaderReader {
     return kBytesOfType[type];
   }
   void SkipName() {
-    const std::uint64_t bytes = AtMost(Count(), kMostNameBytes);
+    const std::uint64_t bytes = AtMost(Count(), kMaxNameBytes);
     Need(bytes > 0);
     Skip(bytes);
   }
@@ -61,16 +61,16 @@ class HeaderReader {
     for (std::uint64_t left = ListCount(kAttributes); left > 0 && good(); --left) {
       SkipName();
       const std::uint64_t bytes = BytesOfType();
-      Skip(AtMost(Count(), kMostBytes) * bytes);
+      Skip(AtMost(Count(), kMaxBytes) * bytes);
     }
   }
 
  private:
-  static constexpr std::uint64_t kMostNameBytes = 1024;  // four times libnetcdf's limit
-  static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 40U;
+  static constexpr std::uint64_t kMaxNameBytes = 1024;  // four times libnetcdf's limit
+  static constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 40U;
 
-  std::uint64_t AtMost(std::uint64_t value, std::uint64_t most) {
-    if (value <= most) return value;
+  std::uint64_t AtMost(std::uint64_t value, std::uint64_t max) {
+    if (value <= max) return value;
     file_.setstate(std::ios::failbit);
     return 0;
   }
@@ -84,7 +84,7 @@ class HeaderReader {
   }
   // Names and values are padded to multiples of four bytes.
   void Skip(std::uint64_t bytes) {
-    const std::uint64_t filled = (AtMost(bytes, kMostBytes * 8) + 3) / 4 * 4;
+    const std::uint64_t filled = (AtMost(bytes, kMaxBytes * 8) + 3) / 4 * 4;
     if (good()) file_.seekg(static_cast<std::streamoff>(filled), std::ios::cur);
   }
   std::istream& file_;

@@ -17,8 +17,8 @@ namespace {
 
 using internal::NcFile;
 
-constexpr std::size_t kMostAlong = 1'000'000;    // coordinates per axis
-constexpr std::size_t kMostValues = 64'000'000;  // values per window
+constexpr std::size_t kMaxAlong = 1'000'000;    // coordinates per axis
+constexpr std::size_t kMaxValues = 64'000'000;  // values per window
 
 enum class Axis { kTime, kDepth, kLatitude, kLongitude, kOther };
 
@@ -104,9 +104,9 @@ Dimension ReadDimension(const NcFile& file, int dimension, const std::string& va
   const bool has_coordinate = nc_inq_varid(file.id(), name.data(), &found.coordinate) == NC_NOERR &&
                               nc_inq_varndims(file.id(), found.coordinate, &rank) == NC_NOERR &&
                               rank == 1;
-  if (length == 0 || length > kMostAlong) {
+  if (length == 0 || length > kMaxAlong) {
     file.Fail(found.name + ": got " + std::to_string(length) + " values, expected [1, " +
-              std::to_string(kMostAlong) + "]");
+              std::to_string(kMaxAlong) + "]");
   }
   found.at.resize(length);
   if (!has_coordinate) {
@@ -162,9 +162,9 @@ std::vector<Dimension> ReadDimensions(const NcFile& file, int variable, const st
     if (!along) continue;
     const bool is_latitude = d.axis == Axis::kLatitude;
     // Packed values have rounding errors, and grids may continue beyond the date line.
-    const double most = is_latitude ? 90.0 + 1.0e-3 : 720.0;
+    const double max = is_latitude ? 90.0 + 1.0e-3 : 720.0;
     for (const double degrees : d.at) {
-      if (std::abs(degrees) <= most) continue;
+      if (std::abs(degrees) <= max) continue;
       file.Fail(d.name + ": got a " + (is_latitude ? "latitude" : "longitude") + " of " +
                 internal::Format(degrees) + ", expected " +
                 (is_latitude ? "[-90, 90]" : "[-180, 360]"));
@@ -408,7 +408,7 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
   std::vector<Dimension> dimensions = ReadDimensions(file, variable, field.name);
   const Block block = ChooseBlock(file, choice, ExtentOf(frame, width, height), dimensions, field);
   const std::size_t size = block.count[block.along_latitude] * block.count[block.along_longitude];
-  if (size > kMostValues) {
+  if (size > kMaxValues) {
     file.Fail(field.name + ": its resolution is too fine for this ranch");
   }
   std::vector<float> values(size);

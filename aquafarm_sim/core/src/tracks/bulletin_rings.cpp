@@ -21,7 +21,7 @@ std::array<double, kQuadrantCount> ReadQuadrants(
   std::size_t said = 0;
   for (std::size_t q = 0; q < keys.size(); ++q) {
     const std::string upper = Upper(keys[q]);
-    const auto one = object.TryNumber({keys[q], upper.c_str()}, 0.0, kMostRadius_km);
+    const auto one = object.TryNumber({keys[q], upper.c_str()}, 0.0, kMaxRadius_km);
     radius_km[q] = one.value_or(fallback[q]);
     said += one ? 1 : 0;
   }

@@ -10,7 +10,7 @@
 
 namespace aquafarm::internal {
 
-inline constexpr double kMostRadius_km = 3000.0;
+inline constexpr double kMaxRadius_km = 3000.0;
 
 /// Reads the radii of an object with one key per quadrant, NE, SE, SW, NW, in lower or upper case.
 /// Missing or invalid radii are replaced by those of `fallback`, with a warning.

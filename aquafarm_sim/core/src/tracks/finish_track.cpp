@@ -72,7 +72,7 @@ void KeepAscending(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext
 // km for two positions.
 void WarnOfJumps(const std::vector<StormFix>& fixes, const std::string& storm,
                  ParseContext& place) {
-  constexpr double kMost_kmh = 150.0;
+  constexpr double kMax_kmh = 150.0;
   constexpr double kRounding_km = 16.0;
   for (std::size_t i = 1; i < fixes.size(); ++i) {
     const GeoPoint& from = fixes[i - 1].position;
@@ -81,7 +81,7 @@ void WarnOfJumps(const std::vector<StormFix>& fixes, const std::string& storm,
     GeographicLib::Geodesic::WGS84().Inverse(from.latitude, from.longitude, to.latitude,
                                              to.longitude, distance_m);
     const double hours = static_cast<double>(fixes[i].time - fixes[i - 1].time) / 3600.0;
-    if (distance_m / 1000.0 - kRounding_km <= kMost_kmh * hours) continue;
+    if (distance_m / 1000.0 - kRounding_km <= kMax_kmh * hours) continue;
     if (fixes[i].line > 0) place.line = fixes[i].line;
     place.WarnOnce("jump of " + storm,
                    "points: got " + std::to_string(std::lround(distance_m / 1000.0 / hours)) +

@@ -20,7 +20,7 @@ namespace aquafarm {
 namespace {
 
 // Makes the ids of storms unique: in files of several years, storms may share an id.
-void TellApart(StormFile& file, internal::ParseContext& place) {
+void DistinguishFormats(StormFile& file, internal::ParseContext& place) {
   std::map<std::string, int> times;
   std::set<std::string> seen;
   for (const StormTrack& track : file.tracks) {
@@ -80,7 +80,7 @@ StormFile ParseStormFile(const std::string& text, const std::string& origin_name
     place.locate = [&clean](const std::string& path) { return internal::LineOfJson(clean, path); };
   }
   file.tracks = reader->read(reader->is_json ? clean : internal::WithoutMark(text), place);
-  TellApart(file, place);
+  DistinguishFormats(file, place);
   return file;
 }
 
@@ -106,10 +106,10 @@ const StormTrack& FindTrack(const StormFile& file, const std::string& storm) {
     words.push_back(internal::Upper(track.name));
     words.push_back(internal::Upper(track.id));
   }
-  constexpr std::size_t kMostNamed = 60;
-  if (names.size() > kMostNamed) {
-    const std::string more = std::to_string(names.size() - kMostNamed) + " more";
-    names.resize(kMostNamed);
+  constexpr std::size_t kMaxNamed = 60;
+  if (names.size() > kMaxNamed) {
+    const std::string more = std::to_string(names.size() - kMaxNamed) + " more";
+    names.resize(kMaxNamed);
     names.push_back(more);
   }
   if (found.empty()) found = named;

@@ -59,7 +59,7 @@ void AppendFix(StormFix fix, std::vector<StormFix>& fixes, ParseContext& place) 
 std::optional<double> CheckedPressure(std::optional<double> pressure_hpa,
                                       const std::string& value_path, ParseContext& place) {
   if (!pressure_hpa || *pressure_hpa <= 0.0) return std::nullopt;
-  if (*pressure_hpa >= kLeastPressure_hpa) return pressure_hpa;
+  if (*pressure_hpa >= kMinPressure_hpa) return pressure_hpa;
   const std::string what = "got " + Format(*pressure_hpa) +
                            " hPa, expected [800, 1100], or 0 where it is not known" + kIgnored;
   if (place.locate) {

@@ -17,7 +17,7 @@ namespace aquafarm::internal {
 inline constexpr std::size_t kMaxFixes = 10000;
 
 /// Lower limit of a plausible pressure; the lowest on record is 870 hPa.
-inline constexpr double kLeastPressure_hpa = 800.0;
+inline constexpr double kMinPressure_hpa = 800.0;
 
 /// Parses tenths of a degree in [-900, 900]. @throws FixError
 double ReadLatitudeTenths(std::string_view text, const ParseContext& place);

@@ -49,23 +49,23 @@ Farm At10(const Scenario& scenario = NorthernStorm()) {
 }
 
 TEST(IssueForecast, ChangesWhatAgentsAreToldAndNotTheTruth) {
-  Farm told = At10();
-  Farm untold = At10();
-  told.IssueForecast(0, Eastward());
-  EXPECT_NE(told.Hash(), untold.Hash());
+  Farm informed = At10();
+  Farm uninformed = At10();
+  informed.IssueForecast(0, Eastward());
+  EXPECT_NE(informed.Hash(), uninformed.Hash());
   View view;
-  Observe(told, 0, view);
+  Observe(informed, 0, view);
   EXPECT_TRUE(view.disasters[0].known);
   EXPECT_EQ(view.disasters[0].age, 0) << "the bulletin is issued at once";
   EXPECT_FLOAT_EQ(view.disasters[0].belief.dx, 1.0F) << "30 cells east in 30 steps";
   EXPECT_EQ(view.disasters[0].belief.dy, 0.0F);
   for (int step = 0; step < 100; ++step) {
-    test::RandomSteps(told, 1, static_cast<std::uint64_t>(step));
-    test::RandomSteps(untold, 1, static_cast<std::uint64_t>(step));
-    ASSERT_EQ(told.disasters()[0].x, untold.disasters()[0].x);
-    ASSERT_EQ(told.disasters()[0].y, untold.disasters()[0].y);
-    ASSERT_EQ(told.disasters()[0].radius, untold.disasters()[0].radius);
-    ASSERT_EQ(told.record().episode_return, untold.record().episode_return);
+    test::RandomSteps(informed, 1, static_cast<std::uint64_t>(step));
+    test::RandomSteps(uninformed, 1, static_cast<std::uint64_t>(step));
+    ASSERT_EQ(informed.disasters()[0].x, uninformed.disasters()[0].x);
+    ASSERT_EQ(informed.disasters()[0].y, uninformed.disasters()[0].y);
+    ASSERT_EQ(informed.disasters()[0].radius, uninformed.disasters()[0].radius);
+    ASSERT_EQ(informed.record().episode_return, uninformed.record().episode_return);
   }
 }
 

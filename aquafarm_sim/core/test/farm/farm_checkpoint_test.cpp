@@ -121,17 +121,17 @@ TEST(CopyStateFrom, DrawsRoutesThatTheOtherFarmHasNot) {
   Farm farm = MakeFarm(scenario);
   farm.Reset(3, 8);
   RandomSteps(farm, 5, 1);
-  scenario.view.waterways = true;
+  scenario.view.routes = true;
   Farm copy = MakeFarm(scenario);
   copy.CopyStateFrom(farm);
   EXPECT_EQ(copy.StartHash(), farm.StartHash());
   Farm drawn = MakeFarm(scenario);
   drawn.Reset(3, 8);
-  EXPECT_FALSE(copy.layout().ways.empty());
-  EXPECT_EQ(copy.layout().way_count(), drawn.layout().way_count());
-  ASSERT_EQ(copy.layout().ways.size(), drawn.layout().ways.size());
-  for (std::size_t i = 0; i < drawn.layout().ways.size(); ++i) {
-    EXPECT_EQ(copy.layout().ways[i].steps, drawn.layout().ways[i].steps);
+  EXPECT_FALSE(copy.layout().routes.empty());
+  EXPECT_EQ(copy.layout().route_count(), drawn.layout().route_count());
+  ASSERT_EQ(copy.layout().routes.size(), drawn.layout().routes.size());
+  for (std::size_t i = 0; i < drawn.layout().routes.size(); ++i) {
+    EXPECT_EQ(copy.layout().routes[i].steps, drawn.layout().routes[i].steps);
   }
 }
 

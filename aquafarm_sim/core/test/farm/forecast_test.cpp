@@ -210,7 +210,7 @@ TEST(Forecasts, AreWrittenBackAndPartOfTheHash) {
 
 /// The storm of Forecast() with two forecasts issued by an authority at steps 0 and 200, without
 /// forecast_error_km.
-Scenario Said() {
+Scenario ReportedFarm() {
   Scenario scenario = Forecast();
   scenario.view.forecast_error_km.clear();
   scenario.disasters[0].forecasts = {{0.0F, {{144.0F, 45.0F, -40.0F}, {288.0F, 95.0F, 0.0F}}},
@@ -219,7 +219,7 @@ Scenario Said() {
 }
 
 TEST(IssuedForecasts, LeadFromWhereTheStormIsToThePointsSaid) {
-  Farm farm = MakeFarm(Said());
+  Farm farm = MakeFarm(ReportedFarm());
   farm.Reset(3, 5);
   const auto at = [&](std::int32_t issued, std::int32_t step) {
     return ForecastAt(farm, 0, issued, step);
@@ -241,7 +241,7 @@ TEST(IssuedForecasts, LeadFromWhereTheStormIsToThePointsSaid) {
 }
 
 TEST(IssuedForecasts, AreToldFromTheFirstIssueUntilTheyRunOut) {
-  Scenario scenario = Said();
+  Scenario scenario = ReportedFarm();
   scenario.disasters[0].forecasts[0].step = 10.0F;
   Farm farm = MakeFarm(scenario);
   farm.Reset(3, 5);
@@ -252,9 +252,9 @@ TEST(IssuedForecasts, AreToldFromTheFirstIssueUntilTheyRunOut) {
 }
 
 TEST(IssuedForecasts, AreWhatShipsAreToldWhileTheTruthFollowsTheTrack) {
-  Scenario plain = Said();
+  Scenario plain = ReportedFarm();
   plain.disasters[0].forecasts.clear();
-  const Farm told = PlayedBeside(plain, Said());
+  const Farm told = PlayedBeside(plain, ReportedFarm());
   View view;
   Observe(told, 0, view);
   const auto there = ForecastAt(told, 0, 60, 60 + kForecastSteps);
@@ -265,7 +265,7 @@ TEST(IssuedForecasts, AreWhatShipsAreToldWhileTheTruthFollowsTheTrack) {
 }
 
 TEST(IssuedForecasts, AreTheSameAsATrackWithTheTruthsRings) {
-  Scenario scenario = Said();
+  Scenario scenario = ReportedFarm();
   scenario.disasters[0].track[2].radii = {30.0F, 60.0F};
   Farm farm = MakeFarm(scenario);
   farm.Reset(3, 6);
@@ -285,9 +285,9 @@ TEST(IssuedForecasts, AreTheSameAsATrackWithTheTruthsRings) {
 }
 
 TEST(IssuedForecasts, AreOfTheScenariosTrackNotOfOneSetInPlay) {
-  Farm farm = MakeFarm(Said());
+  Farm farm = MakeFarm(ReportedFarm());
   farm.Reset(3, 6);
-  Farm loaded = MakeFarm(Said());
+  Farm loaded = MakeFarm(ReportedFarm());
   DisasterSpec other = farm.scenario().disasters[0];
   other.forecasts.clear();
   farm.SetDisaster(0, other);
@@ -310,14 +310,14 @@ TEST(IssuedForecasts, AreOnlyOfATrackOfTheScenario) {
     }
     return "was taken";
   };
-  Scenario scenario = Said();
+  Scenario scenario = ReportedFarm();
   scenario.disasters[0].track.clear();
   EXPECT_EQ(refused([&] { ValidateScenario(scenario); }),
             "disasters[0].forecasts: is used only where there is a track");
 }
 
 // Returns the error of reading a file with these forecasts, or "was taken".
-std::string SaidRefused(const std::string& forecasts, const std::string& errors = "") {
+std::string RefusalOfReported(const std::string& forecasts, const std::string& errors = "") {
   const std::string text =
       "name: x\ngrid: {origin: {latitude: 30, longitude: 122}}\n"
       "time: {step_duration_s: 600, start: 2021-07-24T00:00:00Z}\n"
@@ -333,21 +333,21 @@ std::string SaidRefused(const std::string& forecasts, const std::string& errors 
 }
 
 TEST(IssuedForecasts, AreRefusedWithALine) {
-  EXPECT_EQ(SaidRefused("[{step: 0, points: [{step: 6, x: 1, y: 2}]}]"), "was taken");
-  EXPECT_EQ(SaidRefused("[{step: 6, points: [{step: 6, x: 1, y: 2}]}]"),
+  EXPECT_EQ(RefusalOfReported("[{step: 0, points: [{step: 6, x: 1, y: 2}]}]"), "was taken");
+  EXPECT_EQ(RefusalOfReported("[{step: 6, points: [{step: 6, x: 1, y: 2}]}]"),
             "x.yaml:9: disasters[0].forecasts[0].points[0].step: got 6, expected more than that of "
             "its issue, 6");
-  EXPECT_EQ(SaidRefused("[{step: 6, points: [{step: 9, x: 1, y: 2}]}, "
-                        "{step: 6, points: [{step: 9, x: 1, y: 2}]}]"),
+  EXPECT_EQ(RefusalOfReported("[{step: 6, points: [{step: 9, x: 1, y: 2}]}, "
+                              "{step: 6, points: [{step: 9, x: 1, y: 2}]}]"),
             "x.yaml:9: disasters[0].forecasts[1].step: got 6, expected more than that of "
             "forecasts[0], 6");
-  EXPECT_EQ(SaidRefused("[{step: 6}]"),
+  EXPECT_EQ(RefusalOfReported("[{step: 6}]"),
             "x.yaml:9: disasters[0].forecasts[0].points: got 0 entries, expected [1, 10000]");
-  EXPECT_EQ(SaidRefused("[{step: 0, points: [{step: 6, x: 1, latitude: 2}]}]"),
+  EXPECT_EQ(RefusalOfReported("[{step: 0, points: [{step: 6, x: 1, latitude: 2}]}]"),
             "x.yaml:9: disasters[0].forecasts[0].points[0].y: missing, expected a number in "
             "[-1e+06, 1e+06]");
-  EXPECT_EQ(SaidRefused("[{step: 0, points: [{step: 6, x: 1, y: 2}]}]",
-                        "view: {forecast_error_km: [1, 2, 3]}\n"),
+  EXPECT_EQ(RefusalOfReported("[{step: 0, points: [{step: 6, x: 1, y: 2}]}]",
+                              "view: {forecast_error_km: [1, 2, 3]}\n"),
             "x.yaml:10: view.forecast_error_km: is used only where no disaster has forecasts, but "
             "disasters[0] has");
 }

@@ -170,7 +170,7 @@ TEST(SelfPropelled, DevicesAreShipsThatDeliverThemselvesAndLeave) {
   EXPECT_EQ(farm.LegalActions(1), kMoveMask | MaskOf(Action::kDropOff));
   Both(farm, Action::kNorth, Action::kDropOff);
   EXPECT_EQ(farm.ships()[1].reward, 110.0F);
-  EXPECT_FALSE(farm.ships()[1].in_play);
+  EXPECT_FALSE(farm.ships()[1].active);
   EXPECT_FALSE(farm.over());
   Both(farm, Action::kPickup, Action::kNorth);
   EXPECT_EQ(farm.ships()[1].outcome, Outcome::kOutOfPlay);

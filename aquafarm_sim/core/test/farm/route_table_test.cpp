@@ -33,17 +33,17 @@ Grid<std::int32_t> SlowSteps(const Grid<std::uint8_t>& cells, Cell target) {
 }
 
 Scenario WithWays(Scenario scenario) {
-  scenario.view.waterways = true;
+  scenario.view.routes = true;
   return scenario;
 }
 
-RouteEntry WayFrom(const Layout& layout, Cell cell, std::size_t place) {
+RouteEntry RouteFrom(const Layout& layout, Cell cell, std::size_t place) {
   const auto index =
       static_cast<std::size_t>(LinearIndex(cell, static_cast<std::int32_t>(layout.cells.cols())));
-  return layout.ways[index * layout.way_count() + place];
+  return layout.routes[index * layout.route_count() + place];
 }
 
-TEST(Waterway, IsChartedForEveryPortAndEveryDeviceThatIsFetched) {
+TEST(RouteTable, IsChartedForEveryPortAndEveryDeviceThatIsFetched) {
   const Scenario scenario = WithWays(test::CrowdedScenario(2));
   LayoutGenerator generator(scenario);
   for (std::uint64_t episode = 0; episode < 20; ++episode) {
@@ -54,26 +54,26 @@ TEST(Waterway, IsChartedForEveryPortAndEveryDeviceThatIsFetched) {
       if (!device.self_propelled) places.push_back(device.cell);
     }
     ASSERT_EQ(places.size(), 2U + 4U);
-    ASSERT_EQ(layout.way_count(), places.size());
+    ASSERT_EQ(layout.route_count(), places.size());
     for (std::size_t i = 0; i < places.size(); ++i) {
       const Grid<std::int32_t> steps = SlowSteps(layout.cells, places[i]);
       for (std::int32_t y = 0; y < scenario.height; ++y) {
         for (std::int32_t x = 0; x < scenario.width; ++x) {
-          const RouteEntry way = WayFrom(layout, {x, y}, i);
-          ASSERT_EQ(way.steps, steps(y, x));
-          const bool leads = way.steps > 0 && way.steps < kUnreachable;
-          ASSERT_EQ(way.east != 0 || way.north != 0, leads);
+          const RouteEntry route = RouteFrom(layout, {x, y}, i);
+          ASSERT_EQ(route.steps, steps(y, x));
+          const bool leads = route.steps > 0 && route.steps < kUnreachable;
+          ASSERT_EQ(route.east != 0 || route.north != 0, leads);
           if (!leads) continue;
-          ASSERT_EQ(steps(y + way.north, x + way.east), way.steps - 1);
+          ASSERT_EQ(steps(y + route.north, x + route.east), route.steps - 1);
         }
       }
     }
   }
 }
 
-TEST(Waterway, GoesRoundAnIslandAndStraightOnOpenWater) {
+TEST(RouteTable, GoesRoundAnIslandAndStraightOnOpenWater) {
   const Farm farm = test::MakeFarm(WithWays(test::TinyScenario()));
-  const auto to_port = [&](Cell cell) { return WayFrom(farm.layout(), cell, 0); };
+  const auto to_port = [&](Cell cell) { return RouteFrom(farm.layout(), cell, 0); };
   EXPECT_EQ(to_port({0, 2}).steps, 3);  // the port is at (2, 0), the island west of it
   EXPECT_EQ(to_port({0, 2}).east, 1);
   EXPECT_EQ(to_port({0, 2}).north, 0);
@@ -84,8 +84,8 @@ TEST(Waterway, GoesRoundAnIslandAndStraightOnOpenWater) {
   EXPECT_EQ(to_port({2, 0}).north, 0);
 }
 
-TEST(Waterway, IsNotChartedUnlessAskedFor) {
-  EXPECT_TRUE(test::MakeFarm(test::TinyScenario()).layout().ways.empty());
+TEST(RouteTable, IsNotChartedUnlessAskedFor) {
+  EXPECT_TRUE(test::MakeFarm(test::TinyScenario()).layout().routes.empty());
 }
 
 }  // namespace

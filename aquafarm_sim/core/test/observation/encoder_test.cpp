@@ -221,7 +221,7 @@ TEST(Features, SayWhereThingsAre) {
 
 TEST(Features, TellTheWayByWaterToPortsAndToDevicesThatWait) {
   Scenario scenario = TinyScenario();
-  scenario.view.waterways = true;
+  scenario.view.routes = true;
   Farm farm = MakeFarm(scenario);
   EXPECT_EQ(FeaturesOf(farm, 0).size(), 5U + 8 + 5 + 2 + 2 * 3);
   EXPECT_EQ(Feature(farm, "device0.way_east"), 0.0F);
@@ -238,7 +238,7 @@ TEST(Features, TellTheWayByWaterToPortsAndToDevicesThatWait) {
   EXPECT_FLOAT_EQ(Feature(farm, "port0.way_steps"), 2.0F / 5.0F);
 
   Scenario crowded = CrowdedScenario(3, 2);
-  crowded.view.waterways = true;
+  crowded.view.routes = true;
   EXPECT_EQ(FeaturesOf(MakeFarm(crowded), 4).size(),
             5U + 8 + 5 * 5 + 2 * 2 + 2 * 7 + 4 * 4 + 5 + (2 + 3) * 3);
 }
@@ -284,7 +284,7 @@ TEST(Features, HaveTheBlockedMovesWhereTheyAreSaidToBe) {
 
 /// Compares the features with the disasters themselves, moved step by step, and the sea.
 void ExpectCoursesInPlay(Scenario scenario) {
-  scenario.view.courses = true;
+  scenario.view.lookahead_risk = true;
   Farm farm = MakeFarm(std::move(scenario));
   int risky = 0;
   for (int round = 0; round < 40; ++round) {
@@ -319,7 +319,7 @@ TEST(Features, TellTheRiskForecastAlongEachCourse) {
 
 TEST(Features, TellTheRiskOfTheSeaAlongEachCourse) {
   Scenario scenario = CrowdedScenario(1, 0);
-  scenario.view.courses = true;
+  scenario.view.lookahead_risk = true;
   scenario.disasters.clear();
   scenario.seas.emplace();
   for (int i = 0; i < scenario.CellCount(); ++i) {
@@ -342,7 +342,7 @@ TEST(Features, TellTheRiskThatAnOldBulletinLeadsToExpect) {
   Scenario scenario = CrowdedScenario(1, 0);
   scenario.damage.crash_probability = 0.0F;
   scenario.view = {ViewMode::kPartial, 0.5F, 9, 0.0F};
-  scenario.view.courses = true;
+  scenario.view.lookahead_risk = true;
   DisasterSpec west = StillDisaster(-5.0F, 4.0F, {2.0F, 5.0F}, {-15.0F, -6.0F});
   west.speed = 0.15F;
   west.heading_deg = 90;
@@ -395,7 +395,7 @@ std::vector<std::uint8_t> SlowPlanes(const View& view) {
           }
         }
         if (plane == 6) part /= static_cast<float>(view.capacity);
-        if (plane == 5) part = view.in_play && view.self == cell ? 1.0F : 0.0F;
+        if (plane == 5) part = view.active && view.self == cell ? 1.0F : 0.0F;
         for (const KnownShip& other : view.others) {
           if (plane == 7 && other.visible && other.cell == cell) part = 1.0F;
         }

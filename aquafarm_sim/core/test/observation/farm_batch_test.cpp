@@ -28,21 +28,21 @@ struct Buffers {
     distance.resize(k);
     outcomes.resize(k);
     legal.resize(k);
-    in_play.resize(k);
-    reasons.resize(n);
-    started.resize(n);
+    active.resize(k);
+    end_reasons.resize(n);
+    is_first.resize(n);
     hashes.resize(n);
     index.resize(k);
     features.resize(k * static_cast<std::size_t>(batch.encoder().feature_count()));
     planes.resize(k * batch.encoder().planes_size());
   }
   BatchOutput View() {
-    return {rewards.data(), terms.data(),    energy.data(),  distance.data(), outcomes.data(),
-            legal.data(),   in_play.data(),  reasons.data(), started.data(),  hashes.data(),
+    return {rewards.data(), terms.data(),    energy.data(),      distance.data(), outcomes.data(),
+            legal.data(),   active.data(),   end_reasons.data(), is_first.data(), hashes.data(),
             index.data(),   features.data(), planes.data()};
   }
   std::vector<float> rewards, terms, energy, distance, features;
-  std::vector<std::uint8_t> outcomes, in_play, reasons, started, planes;
+  std::vector<std::uint8_t> outcomes, active, end_reasons, is_first, planes;
   std::vector<ActionMask> legal;
   std::vector<std::uint64_t> hashes;
   std::vector<std::uint32_t> index;
@@ -85,8 +85,8 @@ TEST(FarmBatch, EveryFarmIsThatFarmAlone) {
         farm.Step(actions.data() + i * 3);
       }
       ASSERT_EQ(buffers.hashes[i], farm.Hash()) << "farm " << i << " step " << step;
-      ASSERT_EQ(buffers.started[i] != 0, starts);
-      ASSERT_EQ(buffers.reasons[i], static_cast<std::uint8_t>(farm.reason()));
+      ASSERT_EQ(buffers.is_first[i] != 0, starts);
+      ASSERT_EQ(buffers.end_reasons[i], static_cast<std::uint8_t>(farm.reason()));
       for (std::size_t ship = 0; ship < 3; ++ship) {
         ASSERT_EQ(buffers.rewards[i * 3 + ship], farm.ships()[ship].reward);
         ASSERT_EQ(buffers.legal[i * 3 + ship], farm.LegalActions(static_cast<std::int32_t>(ship)));
@@ -106,7 +106,7 @@ TEST(FarmBatch, TwoBatchesShareTheEpisodesOfOne) {
   all.Reset(3, 7, whole.View());
   first.Reset(3, 7, a.View(), 5);
   last.Reset(3, 10, b.View(), 5);
-  int started = 0;
+  int is_first = 0;
   for (std::uint64_t step = 0; step < 700; ++step) {
     const auto actions = Actions(all, step);
     all.Step(actions.data(), whole.View());
@@ -115,9 +115,9 @@ TEST(FarmBatch, TwoBatchesShareTheEpisodesOfOne) {
     std::vector<std::uint64_t> hashes = a.hashes;
     hashes.insert(hashes.end(), b.hashes.begin(), b.hashes.end());
     ASSERT_EQ(hashes, whole.hashes) << "step " << step;
-    for (const std::uint8_t one : whole.started) started += one;
+    for (const std::uint8_t one : whole.is_first) is_first += one;
   }
-  EXPECT_GT(started, 5);  // also later episodes than the first ones
+  EXPECT_GT(is_first, 5);  // also later episodes than the first ones
 }
 
 TEST(FarmBatch, ThreadsChangeNothing) {
@@ -175,7 +175,7 @@ void ExpectNoAllocation(Scenario scenario) {
   int episodes = 0;
   for (std::size_t i = 0; i < 5000; ++i) {
     batch.Step(actions[i % 64].data(), output);
-    episodes += std::accumulate(buffers.started.begin(), buffers.started.end(), 0);
+    episodes += std::accumulate(buffers.is_first.begin(), buffers.is_first.end(), 0);
   }
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(episodes, 50);
@@ -184,7 +184,7 @@ void ExpectNoAllocation(Scenario scenario) {
 TEST(FarmBatch, NeitherStepsNorEpisodesAllocate) {
   ExpectNoAllocation(CrowdedScenario(2));
   Scenario charted = CrowdedScenario(2);
-  charted.view.waterways = charted.view.courses = true;
+  charted.view.routes = charted.view.lookahead_risk = true;
   ExpectNoAllocation(charted);
   charted.view.mode = ViewMode::kPartial;
   ExpectNoAllocation(charted);
@@ -218,23 +218,23 @@ TEST(FarmBatch, SaysWhichAgentsAreDoneUntilTheirNextEpisode) {
   FarmBatch batch(Shared(scenario), 1);
   Buffers buffers(batch);
   batch.Reset(1, 0, buffers.View());
-  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 1}));
+  EXPECT_EQ(buffers.active, (std::vector<std::uint8_t>{1, 1}));
   const auto step = [&](Action device) {
     const std::uint8_t actions[] = {test::Act(Action::kHold), test::Act(device)};
     batch.Step(actions, buffers.View());
   };
   step(Action::kSouth);
-  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 1}));
+  EXPECT_EQ(buffers.active, (std::vector<std::uint8_t>{1, 1}));
   step(Action::kDropOff);
-  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_EQ(buffers.active, (std::vector<std::uint8_t>{1, 0}));
   EXPECT_EQ(buffers.rewards[1], 110.0F);
   step(Action::kNorth);
-  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_EQ(buffers.active, (std::vector<std::uint8_t>{1, 0}));
   step(Action::kNorth);
-  EXPECT_EQ(buffers.reasons[0], static_cast<std::uint8_t>(EndReason::kStepLimit));
+  EXPECT_EQ(buffers.end_reasons[0], static_cast<std::uint8_t>(EndReason::kStepLimit));
   step(Action::kNorth);
-  EXPECT_EQ(buffers.started[0], 1);
-  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 1}));
+  EXPECT_EQ(buffers.is_first[0], 1);
+  EXPECT_EQ(buffers.active, (std::vector<std::uint8_t>{1, 1}));
 }
 
 TEST(FarmBatch, StartsOneFarmAndKeepsItsStride) {

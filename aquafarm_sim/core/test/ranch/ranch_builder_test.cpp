@@ -20,10 +20,10 @@ namespace fs = std::filesystem;
 TEST(Ranch, OfManyDevicesTellsNetworksTheWay) {
   RanchRequest request = Request();
   request.devices = 3;
-  EXPECT_FALSE(BuildRanch(request).scenario.view.waterways);
+  EXPECT_FALSE(BuildRanch(request).scenario.view.routes);
   request.devices = 12;
   const BuiltRanch ranch = BuildRanch(request);
-  EXPECT_TRUE(ranch.scenario.view.waterways);
+  EXPECT_TRUE(ranch.scenario.view.routes);
   // 24 x 20 cells; each device is waiting or delivered, or one of them is aboard.
   EXPECT_TRUE(Says(ranch.decided, "states: 13762560, many for a table"));
   EXPECT_NE(ranch.yaml.find("#   states: 13762560"), std::string::npos);
@@ -34,7 +34,7 @@ TEST(Ranch, TooLargeForWaysByWaterIsWhatItsFileSays) {
   request.width = request.height = 1100;
   request.devices = 12;
   const BuiltRanch ranch = BuildRanch(request);
-  EXPECT_FALSE(ranch.scenario.view.waterways);
+  EXPECT_FALSE(ranch.scenario.view.routes);
   EXPECT_EQ(HashScenario(ranch.scenario), HashScenario(ParseScenario(ranch.yaml, request.name)));
 }
 

@@ -222,8 +222,8 @@ TEST(Writer, GivesTextThatReadsBackToTheSameBits) {
   EXPECT_EQ(back.energy->self_propelled.idle_per_step, s.energy->self_propelled.idle_per_step);
   EXPECT_EQ(back.view.bulletin_noise, s.view.bulletin_noise);
   EXPECT_EQ(back.view.shared_sight, s.view.shared_sight);
-  EXPECT_EQ(back.view.waterways, s.view.waterways);
-  EXPECT_EQ(back.view.courses, s.view.courses);
+  EXPECT_EQ(back.view.routes, s.view.routes);
+  EXPECT_EQ(back.view.lookahead_risk, s.view.lookahead_risk);
   EXPECT_EQ(back.disasters[0].heading_deg, s.disasters[0].heading_deg);
   EXPECT_EQ(back.disasters[0].start, s.disasters[0].start);
   EXPECT_EQ(back.disasters[1].heading_deg, std::nullopt);

@@ -110,8 +110,8 @@ TEST(Truncated, IsTruncatedBeforeItsDisasterEnds) {
 TEST(PaperPlain, DiffersFromPaperInItsViewAlone) {
   Scenario plain = Load("paper_plain");
   const Scenario paper = Load("paper");
-  EXPECT_FALSE(plain.view.waterways);
-  EXPECT_FALSE(plain.view.courses);
+  EXPECT_FALSE(plain.view.routes);
+  EXPECT_FALSE(plain.view.lookahead_risk);
   plain.view = paper.view;
   plain.name = paper.name;
   plain.description = paper.description;

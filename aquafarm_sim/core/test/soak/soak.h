@@ -39,7 +39,7 @@ inline void Must(bool holds, const char* what) {
 /// What the checks need to know of the state before a step.
 struct Before {
   std::vector<ActionMask> legal;
-  std::vector<bool> in_play;
+  std::vector<bool> active;
   std::vector<DeviceStatus> status;
   std::vector<float> health;
   double episode_return{};
@@ -50,7 +50,7 @@ inline Before Look(const Farm& farm) {
   Before before;
   for (std::int32_t ship = 0; ship < static_cast<std::int32_t>(farm.ships().size()); ++ship) {
     before.legal.push_back(farm.LegalActions(ship));
-    before.in_play.push_back(farm.ships()[static_cast<std::size_t>(ship)].in_play);
+    before.active.push_back(farm.ships()[static_cast<std::size_t>(ship)].active);
   }
   for (const Device& device : farm.devices()) {
     before.status.push_back(device.status);
@@ -97,7 +97,7 @@ inline void CheckShips(const Farm& farm, const Before& before,
                        const std::vector<std::uint8_t>& actions) {
   for (std::size_t i = 0; i < farm.ships().size(); ++i) {
     const Ship& ship = farm.ships()[i];
-    if (!before.in_play[i]) continue;
+    if (!before.active[i]) continue;
     Must(OnMap(farm, ship.cell), "a ship is off the map");
     Must((farm.layout().bits(ship.cell) & kBlockedBits) == 0, "a ship is on land or a rock");
     const auto action = static_cast<Action>(actions[i]);
@@ -111,7 +111,7 @@ inline void CheckRewards(const Farm& farm, const Before& before) {
   float sum = 0.0F;
   for (std::size_t i = 0; i < farm.ships().size(); ++i) {
     const Ship& ship = farm.ships()[i];
-    if (!before.in_play[i]) continue;
+    if (!before.active[i]) continue;
     const float total = ship.terms.Total();
     Must(std::isfinite(total), "a reward is not finite");
     Must(team || ship.reward == total, "a reward is not the sum of its terms");

@@ -28,11 +28,11 @@ class ReusingService : public ros::ServiceCallbackHelper {
 
   bool call(ros::ServiceCallbackHelperCallParams& params) override {
     const aquafarm::MutexLock lock(mutex_);
-    if (params.request.num_bytes > kMostKeptBytes) request_ = Request();
+    if (params.request.num_bytes > kMaxKeptBytes) request_ = Request();
     ReadMessage(params.request, request_);
     params.response = ros::serialization::serializeServiceResponse(
         true, handler_(request_, (*params.connection_header)["callerid"]));
-    if (params.request.num_bytes > kMostKeptBytes) request_ = Request();
+    if (params.request.num_bytes > kMaxKeptBytes) request_ = Request();
     return true;
   }
 
@@ -44,7 +44,7 @@ class ReusingService : public ros::ServiceCallbackHelper {
 
  private:
   // The memory of larger requests is freed after the call.
-  static constexpr std::size_t kMostKeptBytes = std::size_t{1} << 16U;
+  static constexpr std::size_t kMaxKeptBytes = std::size_t{1} << 16U;
 
   aquafarm::Mutex mutex_;
   const Handler handler_;

@@ -204,10 +204,10 @@ class FarmServer {
       AQUAFARM_REQUIRES(mutex_);
   std::optional<Refusal> Check(const aquafarm_msgs::Step::Request& request,
                                const std::string& caller) AQUAFARM_REQUIRES(mutex_);
-  std::optional<Refusal> CheckAnswerSize(std::int32_t farms, std::uint8_t encodings) const
+  std::optional<Refusal> CheckAnswerSize(std::int32_t farms, std::uint8_t observation_types) const
       AQUAFARM_REQUIRES(mutex_);
-  aquafarm::BatchOutput Prepare(std::uint8_t encodings, aquafarm_msgs::StepResult& result) const
-      AQUAFARM_REQUIRES(mutex_);
+  aquafarm::BatchOutput Prepare(std::uint8_t observation_types,
+                                aquafarm_msgs::StepResult& result) const AQUAFARM_REQUIRES(mutex_);
   void Describe(aquafarm_msgs::StepResult& result) const AQUAFARM_REQUIRES(mutex_);
   void Complete(const std::uint8_t* actions, aquafarm_msgs::StepResult& result)
       AQUAFARM_REQUIRES(mutex_);
@@ -242,8 +242,8 @@ class FarmServer {
   ResetLog resets_ AQUAFARM_GUARDED_BY(mutex_);
   std::uint64_t episode_count_ AQUAFARM_GUARDED_BY(mutex_){};
   std::uint64_t version_ AQUAFARM_GUARDED_BY(mutex_){};
-  // StepResult.turn. The start value differs after a restart of the node.
-  std::uint64_t turn_ AQUAFARM_GUARDED_BY(mutex_);
+  // StepResult.state_id. The start value differs after a restart of the node.
+  std::uint64_t state_id_ AQUAFARM_GUARDED_BY(mutex_);
   bool ending_ AQUAFARM_GUARDED_BY(mutex_){};
   // True if a joint step made the last change.
   bool changed_jointly_ AQUAFARM_GUARDED_BY(mutex_){};

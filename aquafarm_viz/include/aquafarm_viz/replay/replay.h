@@ -42,9 +42,9 @@ class ReplayTape {
     std::size_t run{};  ///< unique number of one playthrough of an episode
   };
 
-  static constexpr std::size_t kMostStates = 10'000;  ///< max states sent before a jump's target
+  static constexpr std::size_t kMaxStates = 10'000;  ///< max states sent before a jump's target
   /// Queue size for publishers and subscribers: a jump sends all these states at once.
-  static constexpr std::uint32_t kQueueOfStates = kMostStates + 100;
+  static constexpr std::uint32_t kQueueOfStates = kMaxStates + 100;
 
   /// @throws std::runtime_error with a message of one line if the bag cannot be shown: not a bag,
   ///         another version, no state

@@ -31,7 +31,7 @@ class RanchModel {
   using Row = std::vector<std::string>;
   /// Capacity of the curve. A long training keeps between half this number and this number of
   /// points, spread over the whole training.
-  static constexpr std::size_t kMostPoints = 1000;
+  static constexpr std::size_t kMaxPoints = 1000;
 
   /// Each Take adds a message. Returns the reason if it is refused; empty if it is accepted.
   std::string Take(const aquafarm_msgs::FarmSpecConstPtr& spec) { return pairing_.AddSpec(spec); }
@@ -40,10 +40,10 @@ class RanchModel {
   /// @param now steady time at which the plan was received
   void Take(const aquafarm_msgs::RescuePlanConstPtr& plan, ros::SteadyTime now) {
     plan_ = plan;
-    plan_heard_ = now;
+    plan_node_seen_ = now;
   }
   /// Notes a heartbeat of plan_node.
-  void HearPlanNode(ros::SteadyTime now) { plan_heard_ = now; }
+  void MarkPlanNodePresent(ros::SteadyTime now) { plan_node_seen_ = now; }
 
   /// Returns "paper   episode 12   step 17 / 5,000   return −42.5", or "no ranch yet" before the
   /// first state.
@@ -63,7 +63,7 @@ class RanchModel {
   /// Returns the last rescue plan; null before the first one.
   const aquafarm_msgs::RescuePlanConstPtr& plan() const { return plan_; }
   /// Returns the time since the last plan or heartbeat of plan_node [s].
-  double PlanSilence(ros::SteadyTime now) const { return (now - plan_heard_).toSec(); }
+  double PlanSilence(ros::SteadyTime now) const { return (now - plan_node_seen_).toSec(); }
   /// Returns the time of the plan's next orders: that of the ranch if the plan follows it, else the
   /// plan's start.
   ros::Time PlanNow() const;
@@ -86,7 +86,7 @@ class RanchModel {
   Pairing pairing_;
   aquafarm_msgs::TrainingStatusConstPtr training_;
   aquafarm_msgs::RescuePlanConstPtr plan_;
-  ros::SteadyTime plan_heard_;
+  ros::SteadyTime plan_node_seen_;
   std::vector<CurvePoint> curve_;
   std::uint64_t every_{1};  // keeps one of this many received points
   std::uint64_t came_{};

@@ -33,7 +33,7 @@ struct Ship {
   Cell cell{};
   std::int32_t own_device{kNone};  ///< id of the self-propelled device; kNone: rescue ship
   std::int32_t aboard{};           ///< devices aboard
-  bool in_play{true};              ///< false once a self-propelled device is delivered
+  bool active{true};               ///< false once a self-propelled device is delivered
   Action action{Action::kHold};    ///< in the last step
   Outcome outcome{Outcome::kHeld};
   RewardTerms terms;          ///< of this ship in the last step, before sharing

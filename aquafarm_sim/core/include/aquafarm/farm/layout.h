@@ -35,11 +35,11 @@ struct Layout {
   std::vector<Cell> ports;
   std::vector<Cell> rocks;
   std::vector<PlacedDevice> devices;
-  /// [H, W, way_count()] Routes from each cell to each port and then to each fetchable device, in
-  /// id order; empty without ViewSpec::waterways and ViewSpec::tokens.
-  std::vector<RouteEntry> ways;
+  /// [H, W, route_count()] Routes from each cell to each port and then to each fetchable device, in
+  /// id order; empty without ViewSpec::routes and ViewSpec::tokens.
+  std::vector<RouteEntry> routes;
 
-  std::size_t way_count() const { return ways.size() / static_cast<std::size_t>(cells.size()); }
+  std::size_t route_count() const { return routes.size() / static_cast<std::size_t>(cells.size()); }
   std::uint8_t bits(Cell cell) const { return cells(cell.y, cell.x); }
 };
 
@@ -88,8 +88,8 @@ class LayoutGenerator {
   const Scenario& scenario_;
   std::vector<std::int32_t> candidates_;  // linear indices of cells still available
   std::vector<std::int32_t> queue_;       // scratch of the breadth-first search
-  Grid<std::int32_t> way_steps_;          // scratch of ComputeRoutes
-  std::vector<Cell> way_queue_;           // scratch of ComputeRoutes
+  Grid<std::int32_t> route_steps_;        // scratch of ComputeRoutes
+  std::vector<Cell> route_queue_;         // scratch of ComputeRoutes
   std::vector<std::uint8_t> reached_;     // with a border of one cell on every side
   const char* crowded_{""};
 };

@@ -29,11 +29,11 @@ struct RouteEntry {
   std::int8_t north{};
 };
 
-/// Writes the routes from every cell to `target` to every `stride`-th element of `ways`, by linear
-/// index.
-/// @param ways [H · W · stride]
+/// Writes the routes from every cell to `target` to every `stride`-th element of `routes`, by
+/// linear index.
+/// @param routes [H · W · stride]
 /// @param steps scratch, like `queue`, as in StepsByWater
-void ComputeRoutes(const Grid<std::uint8_t>& cells, Cell target, RouteEntry* ways,
+void ComputeRoutes(const Grid<std::uint8_t>& cells, Cell target, RouteEntry* routes,
                    std::size_t stride, Grid<std::int32_t>& steps, std::vector<Cell>& queue);
 
 }  // namespace aquafarm

@@ -68,9 +68,9 @@ void VisitStepFields(const Visit& visit, Results&... results) {
   visit(StepField{"distance", kAgents, Columns::kOne, 0}, results.distance...);
   visit(StepField{"outcomes", kAgents, Columns::kOne, 0}, results.outcomes...);
   visit(StepField{"legal", kAgents, Columns::kOne, 0}, results.legal...);
-  visit(StepField{"in_play", kAgents, Columns::kOne, 0}, results.in_play...);
-  visit(StepField{"reasons", kFarms, Columns::kOne, 0}, results.reasons...);
-  visit(StepField{"started", kFarms, Columns::kOne, 0}, results.started...);
+  visit(StepField{"active", kAgents, Columns::kOne, 0}, results.active...);
+  visit(StepField{"end_reasons", kFarms, Columns::kOne, 0}, results.end_reasons...);
+  visit(StepField{"is_first", kFarms, Columns::kOne, 0}, results.is_first...);
   visit(StepField{"hashes", kFarms, Columns::kOne, kHashesField}, results.hashes...);
   visit(StepField{"index", kAgents, Columns::kOne, kIndexField}, results.index...);
   visit(StepField{"features", kAgents, Columns::kFeatures, kFeaturesField}, results.features...);

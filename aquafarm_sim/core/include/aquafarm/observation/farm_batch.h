@@ -27,9 +27,9 @@ struct BatchOutput {
   float* distance{};         ///< [N, S] travelled in the step [km]
   std::uint8_t* outcomes{};  ///< [N, S] Outcome
   ActionMask* legal{};       ///< [N, S] legal actions of the next step
-  std::uint8_t* in_play{};   ///< [N, S] 0: a delivered self-propelled device, whose agent is done
-  std::uint8_t* reasons{};   ///< [N] EndReason; kNone while the episode runs
-  std::uint8_t* started{};   ///< [N] 1: first observation of an episode, not the result of a step
+  std::uint8_t* active{};    ///< [N, S] 0: a delivered self-propelled device, whose agent is done
+  std::uint8_t* end_reasons{};  ///< [N] EndReason; kNone while the episode runs
+  std::uint8_t* is_first{};  ///< [N] 1: first observation of an episode, not the result of a step
   std::uint64_t* hashes{};   ///< [N] state hash
   std::uint32_t* index{};    ///< [N, S] tabular index
   float* features{};         ///< [N, S, F]
@@ -37,8 +37,8 @@ struct BatchOutput {
 };
 
 /// Writes the results of farm n of N to the caller's memory.
-/// @param started whether this is the first observation of an episode @param view scratch
-void WriteFarm(const Farm& farm, const Encoder& encoder, std::size_t n, bool started, View& view,
+/// @param is_first whether this is the first observation of an episode @param view scratch
+void WriteFarm(const Farm& farm, const Encoder& encoder, std::size_t n, bool is_first, View& view,
                const BatchOutput& output);
 
 /// N farms of one scenario, each in its own episode. Not thread-safe.
@@ -105,7 +105,7 @@ class FarmBatch {
  private:
   void StepOne(std::int32_t i, std::int32_t thread, const std::uint8_t* actions,
                const BatchOutput& output);
-  void WriteOne(std::int32_t i, std::int32_t thread, bool started, const BatchOutput& output);
+  void WriteOne(std::int32_t i, std::int32_t thread, bool is_first, const BatchOutput& output);
 
   std::shared_ptr<const Scenario> scenario_;
   std::vector<Farm> farms_;

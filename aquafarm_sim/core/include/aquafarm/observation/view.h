@@ -53,7 +53,7 @@ struct KnownDisaster {
 struct View {
   std::int32_t ship{};
   Cell self{};
-  bool in_play{true};
+  bool active{true};
   std::int32_t step{};
   std::int32_t aboard{};
   std::int32_t capacity{};

@@ -205,17 +205,17 @@ struct MoneySpec {
 /// Observation settings of the agents (§2.3).
 struct ViewSpec {
   /// Whether features contain routes, which a layout then has.
-  bool NeedsRoutes() const { return waterways || tokens; }
+  bool NeedsRoutes() const { return routes || tokens; }
 
   ViewMode mode{ViewMode::kFull};
   float sensor_radius{5.0F};
   std::int32_t bulletin_period{20};  ///< [steps]; 0: no bulletins
   float bulletin_noise{0.0F};        ///< max error of the reported centre on each axis [cells]
   bool shared_sight{};               ///< agents are networked and share all observations
-  bool waterways{};  ///< features include the shortest routes by water to ports and devices
-  bool courses{};    ///< features include the forecast risk along each course
-  bool tokens{};     ///< features are entity tokens instead (observation/tokens.h)
-  bool kinds{};      ///< features include the kinds of devices, and kinds and grades of disasters
+  bool routes{};          ///< features include the shortest routes by water to ports and devices
+  bool lookahead_risk{};  ///< features include the forecast risk along each course
+  bool tokens{};          ///< features are entity tokens instead (observation/tokens.h)
+  bool kinds{};  ///< features include the kinds of devices, and kinds and grades of disasters
   /// Radius in which a monitoring device in place sees for all ships in partial view [cells]; 0: it
   /// sees nothing
   float monitoring_radius{};

@@ -106,8 +106,7 @@ StormFix ReadFix(const std::vector<std::string_view>& words, ParseContext& place
   const bool below = words[4].substr(0, 1) == "<";
   const auto wind = ReadOptional(words[4].substr(below ? 1 : 0), "wind", 0.0, 150.0, place);
   (below ? fix.wind_below_mps : fix.wind_mps) = wind;
-  fix.pressure_hpa =
-      ReadOptional(words[5], "pressure", internal::kLeastPressure_hpa, 1100.0, place);
+  fix.pressure_hpa = ReadOptional(words[5], "pressure", internal::kMinPressure_hpa, 1100.0, place);
   for (std::size_t i = kBeforeRings; i < words.size(); ++i) {
     AddRing(ReadRing(words[i], place), fix.rings);
   }

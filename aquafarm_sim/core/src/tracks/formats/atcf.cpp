@@ -44,14 +44,14 @@ std::string_view At(const Fields& fields, Field field) {
 }
 
 // Parses "123N" or "1423E" in tenths of a degree.
-double ReadAngle(std::string_view text, char positive, char negative, std::int32_t most,
+double ReadAngle(std::string_view text, char positive, char negative, std::int32_t max,
                  const char* name, const ParseContext& place) {
   const char side = text.empty() ? ' ' : text.back();
   if (side != positive && side != negative) {
     place.RefuseFix(std::string(name) + ": got " + Quoted(text) +
                     ", expected tenths of a degree and " + positive + " or " + negative);
   }
-  const double tenths = ReadFixNumber(text.substr(0, text.size() - 1), name, 0, most, place);
+  const double tenths = ReadFixNumber(text.substr(0, text.size() - 1), name, 0, max, place);
   return (side == positive ? tenths : -tenths) / 10.0;
 }
 

@@ -57,7 +57,7 @@ std::optional<std::array<double, kQuadrantCount>> ParseRadii(const JsonObject& p
   const Json* value = point.Find(keys);
   const std::string text = value != nullptr && value->is_string() ? value->get<std::string>() : "";
   if (text.find('|') == std::string::npos) {
-    const std::optional<double> all = point.TryNumber(keys, 0.0, kMostRadius_km);
+    const std::optional<double> all = point.TryNumber(keys, 0.0, kMaxRadius_km);
     if (!all && value != nullptr) return std::nullopt;
     radius.fill(all.value_or(0.0));
     return radius;
@@ -67,7 +67,7 @@ std::optional<std::array<double, kQuadrantCount>> ParseRadii(const JsonObject& p
   for (std::size_t q = 0; q < radius.size(); ++q) {
     const std::size_t bar = rest.find('|');
     const std::optional<double> number = ParseNumber(rest.substr(0, bar));
-    fits = fits && number && *number >= 0.0 && *number <= kMostRadius_km &&
+    fits = fits && number && *number >= 0.0 && *number <= kMaxRadius_km &&
            (bar == std::string_view::npos) == (q + 1 == radius.size());
     if (!fits) break;
     radius[q] = *number;
@@ -142,10 +142,10 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
 // forecast
 bool IsAhead(std::int64_t time, std::int64_t observed, const std::string& path,
              ParseContext& place) {
-  constexpr std::int64_t kMostDays = 15;
-  if (time - observed > kMostDays * 86400) {
+  constexpr std::int64_t kMaxDays = 15;
+  if (time - observed > kMaxDays * 86400) {
     place.RefuseFixValue(path, "got " + FormatTime(time) + ", expected a forecast's within " +
-                                   std::to_string(kMostDays) + " days after " +
+                                   std::to_string(kMaxDays) + " days after " +
                                    FormatTime(observed));
   }
   if (time < observed) {

@@ -93,19 +93,19 @@ namespace {
 // Columns are fixed and numbers are right-aligned. A point that is shorter than others with as many
 // fields has therefore lost digits of its last number.
 void WarnOfShortPoints(std::string_view text, ParseContext& place) {
-  constexpr std::size_t kMostWords = 7;
+  constexpr std::size_t kMaxWords = 7;
   const auto each = [&](auto&& act) {
     LineReader lines(text, place);
     std::string_view line;
     while (lines.Next(line)) {
       const std::size_t words = SplitWords(line).size();
       const std::string_view end = line.substr(0, line.find_last_not_of(" \t\r") + 1);
-      if (words > 0 && words <= kMostWords && Trim(line).substr(0, 5) != "66666") {
+      if (words > 0 && words <= kMaxWords && Trim(line).substr(0, 5) != "66666") {
         act(words, end.size());
       }
     }
   };
-  std::array<std::size_t, kMostWords + 1> longest{};
+  std::array<std::size_t, kMaxWords + 1> longest{};
   each([&](std::size_t words, std::size_t size) {
     longest[words] = std::max(longest[words], size);
   });

@@ -96,7 +96,7 @@ void ReadStrength(const Columns& columns, const Fields& fields, StormFix& fix,
   for (const char* key : {"WMO_PRES", "USA_PRES"}) {
     const std::string_view pressure = columns.Get(fields, key);
     if (fix.pressure_hpa || pressure.empty()) continue;
-    fix.pressure_hpa = TryNumber(pressure, key, kLeastPressure_hpa, 1100.0, place);
+    fix.pressure_hpa = TryNumber(pressure, key, kMinPressure_hpa, 1100.0, place);
   }
   const auto radius = Number(columns.Get(fields, "USA_RMW"), "USA_RMW", 999.0, place);
   if (radius) fix.max_wind_radius_km = *radius * kKmPerNauticalMile;

@@ -4,10 +4,10 @@
 /// A parameter that varies with the training progress in [0, 1]:
 ///
 ///   constant     start ----------------------
-///   linear       start \                          over the first fraction `share` of the run
+///   linear       start \                          over the first `fraction` of the run
 ///                       \_________ end
-///   exponential  start · (end/start)^(progress/share), then end
-///   harmonic     start / (1 + (start/end - 1) · progress/share), then end. It decays like 1/t, as
+///   exponential  start · (end/start)^(progress/fraction), then end
+///   harmonic     start / (1 + (start/end - 1) · progress/fraction), then end: decays like 1/t, as
 ///                Robbins and Monro (1951) require of a learning rate that averages out the noise
 
 #include <cstdint>
@@ -23,15 +23,15 @@ std::string_view ToString(ScheduleKind value);
 struct Schedule {
   ScheduleKind kind{ScheduleKind::kConstant};
   double start{};
-  double end{};       ///< ignored by kConstant
-  double share{1.0};  ///< fraction of the run after which `end` is reached, (0, 1]; ignored by
-                      ///< kConstant
+  double end{};          ///< ignored by kConstant
+  double fraction{1.0};  ///< of the run, after which `end` is reached, (0, 1]; ignored by
+                         ///< kConstant
 
   /// Value at `progress` of the run, [0, 1].
   double At(double progress) const;
 };
 
-/// Reads "0.1", "linear:1:0.05:0.5" or "exponential:10:0.5:0.5" (kind:start:end:share).
+/// Reads "0.1", "linear:1:0.05:0.5" or "exponential:10:0.5:0.5" (kind:start:end:fraction).
 /// @param what prefix of error messages, such as "learning_rate"
 /// @throws InputError if `text` has another form or a number is not in [min, max]; exponential and
 ///         harmonic schedules need start and end above 0

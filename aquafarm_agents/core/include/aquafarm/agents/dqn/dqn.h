@@ -18,9 +18,9 @@
 
 namespace aquafarm::agents {
 
-/// Returns the EncodingBits that a DQN with these options requires. @throws InputError if an option
-/// is wrong
-std::uint8_t DqnEncodings(const std::string& options);
+/// Returns the ObservationTypeBits that a DQN with these options requires. @throws InputError if an
+/// option is wrong
+std::uint8_t DqnObservationTypes(const std::string& options);
 /// Returns a DQN that has not learnt yet. @throws InputError if an option is wrong
 std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
@@ -37,7 +37,7 @@ std::unique_ptr<Learner> MakeVdn(const EnvironmentSpec& spec, std::uint64_t seed
 std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 
 // The same functions for LSTM-DQN.
-std::uint8_t RecurrentDqnEncodings(const std::string& options);
+std::uint8_t RecurrentDqnObservationTypes(const std::string& options);
 std::unique_ptr<Learner> MakeRecurrentDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                           const std::string& options);
 std::unique_ptr<Policy> MakeRecurrentDqnPolicy(const Checkpoint& checkpoint,

@@ -5,10 +5,10 @@
 /// services. Both give bit-identical transitions.
 ///
 /// A farm whose episode is over (its reason is not kNone) ignores the action of the next Step and
-/// starts its next episode. That entry has started = 1, reward 0 and holds no transition.
+/// starts its next episode. That slot has is_first = 1, reward 0 and holds no transition.
 ///
 /// An agent may be done before its farm is: a delivered self-propelled device is no longer in play
-/// (as in PettingZoo's parallel API). Its last transition terminates. Later entries of this agent
+/// (as in PettingZoo's parallel API). Its last transition terminates. Later slots of this agent
 /// are padding until the next episode.
 
 #include <cstdint>
@@ -29,7 +29,7 @@ namespace aquafarm::agents {
 /// Bit mask of observation types. kOwnRewardsBit requests each agent's individual reward where the
 /// scenario gives every agent the team's sum. kStatesBit requests the complete farms; planners use
 /// it.
-enum EncodingBits : std::uint8_t {
+enum ObservationTypeBits : std::uint8_t {
   kIndexBit = kIndexField,
   kFeaturesBit = kFeaturesField,
   kPlanesBit = kPlanesField,
@@ -55,35 +55,40 @@ struct EnvironmentSpec {
   std::int32_t step_limit{};
 };
 
+/// Returns the number of slots: one for each agent of each farm.
+inline std::size_t SlotCount(const EnvironmentSpec& spec) {
+  return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
+}
+
 /// Results of one Reset or Step. Owned by the environment and valid until its next call. Arrays are
 /// row-major; step_fields.h lists them.
 struct StepResults {
-  /// True if this transition is the last one of the agent at entry farm · S + agent.
-  bool IsDone(std::size_t entry, std::size_t farm) const {
-    return in_play[entry] == 0 || IsTerminated(static_cast<EndReason>(reasons[farm]));
+  /// True if this transition is the last one of the agent in slot farm · S + agent.
+  bool IsDone(std::size_t slot, std::size_t farm) const {
+    return active[slot] == 0 || IsTerminated(static_cast<EndReason>(end_reasons[farm]));
   }
 
-  std::vector<float> rewards;            ///< [N, S]
-  std::vector<float> terms;              ///< [N, S, kRewardTermCount]; empty unless requested
-  std::vector<float> energy;             ///< [N, S] consumed in the step [kWh]
-  std::vector<float> distance;           ///< [N, S] travelled in the step [km]
-  std::vector<std::uint8_t> outcomes;    ///< [N, S] Outcome
-  std::vector<ActionMask> legal;         ///< [N, S] for the next step
-  std::vector<std::uint8_t> in_play;     ///< [N, S] 0 if this agent is done until the next episode
-  std::vector<std::uint8_t> reasons;     ///< [N] EndReason; kNone while the episode continues
-  std::vector<std::uint8_t> started;     ///< [N] 1 at an episode's first observation
-  std::vector<std::uint64_t> hashes;     ///< [N]; empty unless requested
-  std::vector<std::uint32_t> index;      ///< [N, S]; empty unless requested
-  std::vector<float> features;           ///< [N, S, F]; empty unless requested
-  std::vector<std::uint8_t> planes;      ///< [N, S, P, H, W]; empty unless requested
-  std::vector<const Farm*> states;       ///< [N] the farms themselves; empty unless requested
-  std::vector<EpisodeSummary> finished;  ///< episodes that ended in this step, ordered by farm
+  std::vector<float> rewards;             ///< [N, S]
+  std::vector<float> terms;               ///< [N, S, kRewardTermCount]; empty unless requested
+  std::vector<float> energy;              ///< [N, S] consumed in the step [kWh]
+  std::vector<float> distance;            ///< [N, S] travelled in the step [km]
+  std::vector<std::uint8_t> outcomes;     ///< [N, S] Outcome
+  std::vector<ActionMask> legal;          ///< [N, S] for the next step
+  std::vector<std::uint8_t> active;       ///< [N, S] 0 if this agent is done until the next episode
+  std::vector<std::uint8_t> end_reasons;  ///< [N] EndReason; kNone while the episode continues
+  std::vector<std::uint8_t> is_first;     ///< [N] 1 at an episode's first observation
+  std::vector<std::uint64_t> hashes;      ///< [N]; empty unless requested
+  std::vector<std::uint32_t> index;       ///< [N, S]; empty unless requested
+  std::vector<float> features;            ///< [N, S, F]; empty unless requested
+  std::vector<std::uint8_t> planes;       ///< [N, S, P, H, W]; empty unless requested
+  std::vector<const Farm*> states;        ///< [N] the farms themselves; empty unless requested
+  std::vector<EpisodeSummary> finished;   ///< episodes that ended in this step, ordered by farm
 };
 
 /// Number of farms and the outputs that the environment must produce.
 struct EnvironmentOptions {
   std::int32_t farms{1};
-  std::uint8_t encodings{kIndexBit};
+  std::uint8_t observation_types{kIndexBit};
   bool hashes{false};
   std::int32_t threads{1};  ///< threads that step the farms; results do not depend on it
 };
@@ -94,9 +99,10 @@ class EnvironmentLost : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Returns whether `encodings` request each agent's own reward where the scenario gives every agent
-/// the team's sum. If so, `spec` then has no team reward, and the farms must return kTermsField.
-bool WantsOwnRewards(std::uint8_t encodings, EnvironmentSpec& spec);
+/// Returns whether `observation_types` request each agent's own reward where the scenario gives
+/// every agent the team's sum. If so, `spec` then has no team reward, and the farms must return
+/// kTermsField.
+bool WantsOwnRewards(std::uint8_t observation_types, EnvironmentSpec& spec);
 
 /// Replaces each agent's reward by the sum of its own reward terms. @param results with terms
 void UseOwnRewards(StepResults& results);

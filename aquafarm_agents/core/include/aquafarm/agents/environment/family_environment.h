@@ -38,7 +38,7 @@ class FamilyEnvironment final : public Environment {
   const Farm& farm(std::int32_t i) const { return *farms_[static_cast<std::size_t>(i)]; }
 
  private:
-  void Write(std::int32_t i, std::int32_t thread, bool started);
+  void Write(std::int32_t i, std::int32_t thread, bool is_first);
   void Complete();
 
   std::shared_ptr<const Scenario> family_;

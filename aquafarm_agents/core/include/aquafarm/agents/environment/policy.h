@@ -13,8 +13,8 @@ class Policy {
  public:
   virtual ~Policy() = default;
 
-  /// The observation types it requires, a mask of EncodingBits.
-  virtual std::uint8_t encodings() const = 0;
+  /// The observation types it requires, a mask of ObservationTypeBits.
+  virtual std::uint8_t observation_types() const = 0;
 
   /// Starts new episodes: resets the recurrent state.
   /// @param seed of its random numbers, if it draws any

@@ -33,7 +33,7 @@ std::string WhyNoBestMoves(const Scenario& scenario);
 /// @param policy is reset first: a recurrent policy starts from an empty state
 /// @param stop ends it early with the cells done so far; null if it cannot be stopped
 /// @throws InputError if the policy does not fit
-std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t encodings, Policy& policy,
-                                        const std::atomic<bool>* stop = nullptr);
+std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t observation_types,
+                                        Policy& policy, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace aquafarm::agents

@@ -33,9 +33,9 @@ struct RolloutValues {
 ///        stopped
 /// @param discount in [0, 1]
 /// @throws InputError if the scenario or the policy does not fit
-RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
-                         const MakePolicyFor& make_policy, std::uint64_t seed,
-                         std::uint64_t episode, std::int32_t episodes,
+RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario,
+                         std::uint8_t observation_types, const MakePolicyFor& make_policy,
+                         std::uint64_t seed, std::uint64_t episode, std::int32_t episodes,
                          const std::atomic<bool>* stop = nullptr, double discount = 1.0);
 
 /// Writes JSON with the values and the sea layers of the scenario. Rows start in the south; cells

@@ -46,7 +46,7 @@ struct Route {
 /// @param stop may be set by a signal handler: the route then ends early; null if it cannot be
 ///        stopped
 /// @throws InputError if the scenario or the policy does not fit
-Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
+Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t observation_types,
                  const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
                  const std::atomic<bool>* stop = nullptr);
 

@@ -11,19 +11,19 @@ namespace aquafarm::agents {
 
 struct Checkpoint;
 
-/// Random streams for exploration, one per agent of each farm: entry i is stream i of (seed,
+/// Random streams for exploration, one per agent of each farm: slot i is stream i of (seed,
 /// exploration). Restored streams continue bit-identically.
 class AgentRng {
  public:
   AgentRng() = default;
-  /// @param first stream of entry 0
-  AgentRng(std::uint64_t seed, std::size_t entries, std::size_t first = 0);
+  /// @param first stream of slot 0
+  AgentRng(std::uint64_t seed, std::size_t slots, std::size_t first = 0);
 
   std::size_t size() const { return streams_.size(); }
-  RandomStream& operator[](std::size_t entry) { return streams_[entry]; }
+  RandomStream& operator[](std::size_t slot) { return streams_[slot]; }
 
   void Save(Checkpoint& checkpoint) const;
-  /// @throws InputError if the number of entries differs
+  /// @throws InputError if the number of slots differs
   void Load(const Checkpoint& checkpoint);
 
  private:

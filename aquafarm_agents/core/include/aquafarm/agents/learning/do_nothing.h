@@ -13,17 +13,17 @@ class DoNothingPolicy final : public Policy {
  public:
   explicit DoNothingPolicy(const EnvironmentSpec& spec)
       : agents_(static_cast<std::size_t>(spec.agents)) {}
-  std::uint8_t encodings() const override { return 0; }
+  std::uint8_t observation_types() const override { return 0; }
   void Begin(std::uint64_t, std::int32_t farms) override {
-    entries_ = agents_ * static_cast<std::size_t>(farms);
+    slots_ = agents_ * static_cast<std::size_t>(farms);
   }
   void Act(const StepResults&, std::vector<std::uint8_t>& actions) override {
-    actions.assign(entries_, static_cast<std::uint8_t>(Action::kHold));
+    actions.assign(slots_, static_cast<std::uint8_t>(Action::kHold));
   }
 
  private:
   std::size_t agents_;
-  std::size_t entries_{};
+  std::size_t slots_{};
 };
 
 }  // namespace aquafarm::agents

@@ -99,9 +99,9 @@ std::array<double, kActionCount> BoltzmannProbabilities(const float* values, Act
 /// Chooses exploratory actions. A restored explorer continues bit-identically.
 class Explorer {
  public:
-  /// @param entries farms × agents; entry i draws from stream i of (seed, exploration)
+  /// @param slots farms × agents; slot i draws from stream i of (seed, exploration)
   /// @param value_scale scale of the values passed to Choose: values per unit of reward
-  Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t entries,
+  Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t slots,
            double value_scale = 1.0);
 
   /// @param progress of the run, [0, 1]
@@ -111,21 +111,20 @@ class Explorer {
 
   /// @param values [kActionCount]
   /// @param best of the same values and mask
-  std::uint8_t Choose(const float* values, ActionMask allowed, const Best& best,
-                      std::size_t entry) {
-    if (kind_ == ExplorationKind::kBoltzmann) return ChooseBoltzmann(values, allowed, entry);
-    RandomStream& stream = streams_[entry];
+  std::uint8_t Choose(const float* values, ActionMask allowed, const Best& best, std::size_t slot) {
+    if (kind_ == ExplorationKind::kBoltzmann) return ChooseBoltzmann(values, allowed, slot);
+    RandomStream& stream = streams_[slot];
     if (stream.Unit() >= epsilon_) return best.action;
     if (allowed == kAllActions) return static_cast<std::uint8_t>(stream.Below(kActionCount));
     return DrawAction(allowed, stream);
   }
 
   void Save(Checkpoint& checkpoint) const { streams_.Save(checkpoint); }
-  /// @throws InputError if the number of entries differs
+  /// @throws InputError if the number of slots differs
   void Load(const Checkpoint& checkpoint) { streams_.Load(checkpoint); }
 
  private:
-  std::uint8_t ChooseBoltzmann(const float* values, ActionMask allowed, std::size_t entry);
+  std::uint8_t ChooseBoltzmann(const float* values, ActionMask allowed, std::size_t slot);
 
   ExplorationKind kind_;
   Schedule schedule_;

@@ -32,13 +32,13 @@ class Learner {
  public:
   virtual ~Learner() = default;
 
-  /// The observation types it requires, a mask of EncodingBits.
-  virtual std::uint8_t encodings() const = 0;
+  /// The observation types it requires, a mask of ObservationTypeBits.
+  virtual std::uint8_t observation_types() const = 0;
   /// All options with their effective values. Learners with equal options learn identically.
   virtual std::string options() const = 0;
 
   /// Learns from the transition that ended in `results`, then chooses the next exploratory actions.
-  /// Entries with started = 1 hold no transition and are skipped. Only termination stops
+  /// Slots with is_first = 1 hold no transition and are skipped. Only termination stops
   /// bootstrapping; truncation does not.
   /// @param progress of the run, [0, 1]; drives the schedules
   /// @param actions is resized to [N, S]

@@ -19,15 +19,15 @@ std::string_view ToString(RandomActions value);
 
 /// Reads RANDOM's options: "actions=all" (default) or "actions=reachable". @throws InputError
 RandomActions ParseRandomActions(const std::string& options);
-/// EncodingBits that RANDOM reads with these options. @throws InputError
-std::uint8_t RandomEncodings(const std::string& options);
+/// ObservationTypeBits that RANDOM reads with these options. @throws InputError
+std::uint8_t RandomObservationTypes(const std::string& options);
 
 /// RANDOM of §4.2: draws each action of its set with the same probability.
 class RandomPolicy final : public Policy {
  public:
   explicit RandomPolicy(const EnvironmentSpec& spec, RandomActions actions = RandomActions::kAll)
       : agents_(spec.agents), features_(spec.feature_count), actions_(actions) {}
-  std::uint8_t encodings() const override;
+  std::uint8_t observation_types() const override;
   void Begin(std::uint64_t seed, std::int32_t farms) override;
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 
@@ -46,7 +46,7 @@ class RandomLearner final : public Learner {
  public:
   /// @throws InputError on an unknown option or value
   RandomLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
-  std::uint8_t encodings() const override { return policy_.encodings(); }
+  std::uint8_t observation_types() const override { return policy_.observation_types(); }
   /// Empty for `all`, as in checkpoints from before the option existed.
   std::string options() const override;
   void Step(const StepResults& results, double progress,

@@ -2,7 +2,7 @@
 #pragma once
 
 /// Replay buffer: a ring of time steps (*moments*). Each contains one observation of every agent of
-/// every farm (an *entry*). Every observation is stored once: a transition is a pair of consecutive
+/// every farm (a *slot*). Every observation is stored once: a transition is a pair of consecutive
 /// time steps, and a sequence is a run of them.
 ///
 ///   time step     t            t+1          t+2
@@ -11,7 +11,7 @@
 ///   reward        r_t          r_t+1        …         that led to o_t
 ///
 /// The last time step of an episode has an end reason. Its action is unused, and the next time step
-/// is the first of another episode. If a time step has started = 1 and no end reason precedes it,
+/// is the first of another episode. If a time step has is_first = 1 and no end reason precedes it,
 /// the farms were lost in mid-episode: the outcome of the last action before it is unknown.
 
 #include <cstdint>
@@ -41,7 +41,7 @@ class SumTree {
 
 struct ReplayOptions {
   std::size_t capacity{100000};    ///< transitions
-  std::size_t entries{1};          ///< farms × agents
+  std::size_t slots{1};            ///< farms × agents
   std::int32_t agents{1};          ///< agents per farm
   std::size_t observation_size{};  ///< values per observation
   std::size_t recurrent_size{};    ///< values of an agent's recurrent state; 0 if there is none
@@ -69,28 +69,28 @@ class Replay {
   explicit Replay(const ReplayOptions& options);
 
   /// Adds a time step.
-  /// @param observations [entries, observation_size]
-  /// @param recurrent_state [entries, recurrent_size] recurrent state of each agent before this
+  /// @param observations [slots, observation_size]
+  /// @param recurrent_state [slots, recurrent_size] recurrent state of each agent before this
   /// time step
   void Add(const StepResults& results, const Scalar* observations,
            const float* recurrent_state = nullptr);
-  /// Adds the chosen actions to the newest time step. @param actions [entries]
+  /// Adds the chosen actions to the newest time step. @param actions [slots]
   void SetActions(const std::vector<std::uint8_t>& actions);
 
   /// Number of stored time steps, at most moment_capacity().
   std::size_t size() const { return size_; }
   std::size_t moment_capacity() const { return moments_; }
-  std::size_t entries() const { return options_.entries; }
+  std::size_t slots() const { return options_.slots; }
 
   /// True if a transition (or a run of `steps` time steps) begins here: `steps` later time steps
   /// are stored, the episode is not over, and the next time step belongs to the same episode (it
   /// does not if the farms were lost in between).
   /// @param age number of time steps after the oldest stored one, [0, size())
-  bool Begins(std::size_t age, std::size_t entry, std::size_t steps) const {
-    return age + steps < size_ && reasons_[Row(age, entry)] == 0 &&
-           started_[Row(age + 1, entry)] == 0;
+  bool Begins(std::size_t age, std::size_t slot, std::size_t steps) const {
+    return age + steps < size_ && end_reasons_[Row(age, slot)] == 0 &&
+           is_first_[Row(age + 1, slot)] == 0;
   }
-  /// True if Begins holds for any agent of a farm. @param first entry of the farm's first agent
+  /// True if Begins holds for any agent of a farm. @param first slot of the farm's first agent
   bool BeginsForAny(std::size_t age, std::size_t first, std::size_t steps) const {
     for (std::size_t agent = 0; agent < static_cast<std::size_t>(options_.agents); ++agent) {
       if (Begins(age, first + agent, steps)) return true;
@@ -98,23 +98,23 @@ class Replay {
     return false;
   }
   /// Transition over `steps` steps from a row for which Begins holds.
-  Transition At(std::size_t age, std::size_t entry, std::size_t steps, float discount) const;
+  Transition At(std::size_t age, std::size_t slot, std::size_t steps, float discount) const;
 
   /// Transition of all agents of a farm over `steps` steps.
-  /// @param first entry of the farm's first agent
+  /// @param first slot of the farm's first agent
   /// @param rewards [agents] receives each agent's discounted sum over the steps
   JointTransition JointAt(std::size_t age, std::size_t first, std::size_t steps, float discount,
                           float* rewards) const;
 
-  /// Row of an entry of a time step in the arrays. It is stable while the time step is stored.
-  std::size_t Row(std::size_t age, std::size_t entry) const {
-    return ((oldest_ + age) % moments_) * options_.entries + entry;
+  /// Row of a slot of a time step in the arrays. It is stable while the time step is stored.
+  std::size_t Row(std::size_t age, std::size_t slot) const {
+    return ((oldest_ + age) % moments_) * options_.slots + slot;
   }
   /// Age of the time step that contains a row.
   std::size_t Age(std::size_t row) const {
-    return (row / options_.entries + moments_ - oldest_) % moments_;
+    return (row / options_.slots + moments_ - oldest_) % moments_;
   }
-  std::size_t rows() const { return moments_ * options_.entries; }
+  std::size_t rows() const { return moments_ * options_.slots; }
   const Scalar* observation(std::size_t row) const {
     return observations_.data() + row * options_.observation_size;
   }
@@ -124,8 +124,8 @@ class Replay {
   ActionMask legal(std::size_t row) const { return legal_[row]; }
   std::uint8_t action(std::size_t row) const { return actions_[row]; }
   float reward(std::size_t row) const { return rewards_[row]; }
-  EndReason reason(std::size_t row) const { return static_cast<EndReason>(reasons_[row]); }
-  bool started(std::size_t row) const { return started_[row] != 0; }
+  EndReason reason(std::size_t row) const { return static_cast<EndReason>(end_reasons_[row]); }
+  bool is_first(std::size_t row) const { return is_first_[row] != 0; }
 
   /// Memory of the arrays [bytes].
   std::size_t bytes() const;
@@ -143,8 +143,8 @@ class Replay {
   std::vector<float> rewards_;
   std::vector<ActionMask> legal_;
   std::vector<std::uint8_t> actions_;
-  std::vector<std::uint8_t> reasons_;
-  std::vector<std::uint8_t> started_;
+  std::vector<std::uint8_t> end_reasons_;
+  std::vector<std::uint8_t> is_first_;
 };
 
 extern template class Replay<float>;

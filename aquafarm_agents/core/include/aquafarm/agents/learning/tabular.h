@@ -66,7 +66,7 @@ class TableLearner : public Learner {
   /// @throws InputError if the farm is too large for a table, or an option is wrong
   TableLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
 
-  std::uint8_t encodings() const override { return kIndexBit; }
+  std::uint8_t observation_types() const override { return kIndexBit; }
   std::string options() const override { return resolved_; }
   LearnerStatus status() const override;
   std::unique_ptr<Policy> GreedyPolicy() const override;
@@ -80,7 +80,7 @@ class TableLearner : public Learner {
   /// Sets ε or the temperature, and the learning rate. @param progress of the run, [0, 1]
   void SetProgress(double progress);
   /// Actions that an agent may choose: all, or the legal ones with mask_illegal.
-  ActionMask AllowedOf(ActionMask legal) const {
+  ActionMask ActionMaskOf(ActionMask legal) const {
     return options_.mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
   }
   /// Adds the mean squared TD error of a step to the reported loss.
@@ -115,7 +115,7 @@ class GreedyTabularPolicy final : public Policy {
  public:
   GreedyTabularPolicy(QTable table, bool mask_illegal)
       : table_(std::move(table)), mask_illegal_(mask_illegal) {}
-  std::uint8_t encodings() const override { return kIndexBit; }
+  std::uint8_t observation_types() const override { return kIndexBit; }
   void Begin(std::uint64_t, std::int32_t) override {}
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 

@@ -26,7 +26,7 @@
 namespace aquafarm::agents {
 
 /// Observation types that MADDPG requires with these options. @throws InputError on a wrong option
-std::uint8_t MaddpgEncodings(const std::string& options);
+std::uint8_t MaddpgObservationTypes(const std::string& options);
 /// Makes a MADDPG learner. @throws InputError on a wrong option
 std::unique_ptr<Learner> MakeMaddpg(const EnvironmentSpec& spec, std::uint64_t seed,
                                     const std::string& options);

@@ -54,7 +54,7 @@ class FetchByValue {
 class FetchByValuePolicy final : public Policy {
  public:
   explicit FetchByValuePolicy(const EnvironmentSpec& spec);
-  std::uint8_t encodings() const override { return kStatesBit; }
+  std::uint8_t observation_types() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 

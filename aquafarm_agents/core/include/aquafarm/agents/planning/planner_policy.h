@@ -20,7 +20,7 @@ class PlannerPolicy final : public Policy {
  public:
   /// @throws InputError if the farm is too large or not supported (see Planner)
   PlannerPolicy(const EnvironmentSpec& spec, Foresight foresight);
-  std::uint8_t encodings() const override { return kStatesBit; }
+  std::uint8_t observation_types() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 
@@ -39,7 +39,7 @@ class PlannerPolicy final : public Policy {
   std::shared_ptr<const Scenario> scenario_;
   Foresight foresight_;
   Planner planner_;
-  std::vector<PlanState> courses_;
+  std::vector<PlanState> plans_;
 };
 
 }  // namespace aquafarm::agents

@@ -62,14 +62,14 @@ class TeamPlannerPolicy final : public Policy {
  public:
   /// @throws InputError if the farm is too large or not supported (see Planner)
   TeamPlannerPolicy(const EnvironmentSpec& spec, Foresight foresight);
-  std::uint8_t encodings() const override { return kStatesBit; }
+  std::uint8_t observation_types() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 
  private:
   std::shared_ptr<const Scenario> scenario_;
   TeamPlanner planner_;
-  std::vector<TeamPlanner::PlanState> courses_;
+  std::vector<TeamPlanner::PlanState> plans_;
 };
 
 }  // namespace aquafarm::agents

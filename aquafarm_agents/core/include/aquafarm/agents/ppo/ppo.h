@@ -24,9 +24,9 @@
 
 namespace aquafarm::agents {
 
-/// Observation types (EncodingBits) that PPO reads. @throws InputError if an option is wrong
-std::uint8_t PpoEncodings(const std::string& options);
-std::uint8_t MappoEncodings(const std::string& options);
+/// Observation types (ObservationTypeBits) that PPO reads. @throws InputError if an option is wrong
+std::uint8_t PpoObservationTypes(const std::string& options);
+std::uint8_t MappoObservationTypes(const std::string& options);
 /// @throws InputError if an option is wrong
 std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);

@@ -78,8 +78,8 @@ struct PpoOptions {
   bool IsTeam(bool team_reward) const {
     return team_reward || team_share.At(0.0) > 0.0 || team_share.At(1.0) > 0.0;
   }
-  /// Returns the steps per agent in one rollout. @param entries farms × agents
-  std::int32_t Horizon(std::size_t entries) const;
+  /// Returns the steps per agent in one rollout. @param slots farms × agents
+  std::int32_t Horizon(std::size_t slots) const;
 
   /// Parses "key=value …". @param resolved receives the values of all options
   /// @param central the options are those of MAPPO

@@ -18,9 +18,9 @@ struct Algorithm {
   const char* summary;          ///< one line for people
   bool learns;                  ///< false: the name refers to a policy that needs no training
   std::uint64_t default_steps;  ///< steps of a training without a limit; see DefaultSteps
-  /// Returns the EncodingBits that it requires with these options. @throws InputError if an option
-  /// is wrong
-  std::uint8_t (*encodings)(const std::string& options);
+  /// Returns the ObservationTypeBits that it requires with these options. @throws InputError if an
+  /// option is wrong
+  std::uint8_t (*observation_types)(const std::string& options);
   /// Creates the learner; nullptr if there is nothing to train.
   std::unique_ptr<Learner> (*make)(const EnvironmentSpec& spec, std::uint64_t seed,
                                    const std::string& options);

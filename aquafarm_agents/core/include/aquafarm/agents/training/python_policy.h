@@ -32,8 +32,8 @@ class PolicyProcess {
   PolicyProcess(const PolicyProcess&) = delete;
   PolicyProcess& operator=(const PolicyProcess&) = delete;
 
-  /// The observation type that the policy reads, one of EncodingBits.
-  std::uint8_t encodings() const { return encodings_; }
+  /// The observation type that the policy reads, one of ObservationTypeBits.
+  std::uint8_t observation_types() const { return observation_types_; }
 
   /// Chooses the actions of all agents. @param actions is resized to [N, S]
   /// @throws InputError if the policy fails or returns no valid actions. After an error that the
@@ -65,7 +65,7 @@ class PolicyProcess {
   std::string where_;
   int socket_{-1};
   int process_{-1};
-  std::uint8_t encodings_{};
+  std::uint8_t observation_types_{};
   Limit answer_limit_;
   std::string broken_;  // the error after which the connection was closed; empty before
   Mutex mutex_;         // held during a request and its answer

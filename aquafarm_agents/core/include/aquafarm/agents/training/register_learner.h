@@ -4,7 +4,7 @@
 /// Learners of other packages. A shared library registers its learner when it is loaded:
 ///
 ///   const bool registered = RegisterLearner({"mine", "one line for people", true, 1000000,
-///                                            EncodingsOf, MakeLearner, MakePolicy});
+///                                            ObservationTypesOf, MakeLearner, MakePolicy});
 ///
 /// Every program and node loads the libraries listed in the environment variable AQUAFARM_LEARNERS
 /// (paths separated by ':') before it looks up a learner. The learner is then selected by its name

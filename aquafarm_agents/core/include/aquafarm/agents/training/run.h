@@ -67,7 +67,7 @@ struct RunReport {
 void CheckRunOptions(const RunOptions& options);
 
 /// Makes the environment with the observation types that the algorithm requires.
-using MakeEnvironment = std::function<std::unique_ptr<Environment>(std::uint8_t encodings)>;
+using MakeEnvironment = std::function<std::unique_ptr<Environment>(std::uint8_t observation_types)>;
 
 /// A training whose farms are divided among the ranks of a process group.
 struct RankedRun {

@@ -18,7 +18,7 @@ inline constexpr const char* kGeneralist = "generalist";
 struct SavedPolicy {
   std::string path;       ///< source file, or the name of a built-in policy
   Checkpoint checkpoint;  ///< contents of the file; a built-in policy has only the algorithm
-  std::uint8_t encodings{};
+  std::uint8_t observation_types{};
   std::shared_ptr<PolicyProcess> process;  ///< of a policy in Python, which is then the policy
 };
 

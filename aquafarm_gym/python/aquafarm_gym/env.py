@@ -11,10 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from aquafarm_gym import rendering, spaces
-from aquafarm_gym.episodes import Episodes, check_options, check_seed
-from aquafarm_gym.farms import OBSERVATIONS, LocalFarms
-from aquafarm_gym.rendering import Pictures, Window, check_render_mode, html_of
-from aquafarm_gym.single_farm import info_at, observation_at
+from aquafarm_gym.episodes import check_options, check_seed
+from aquafarm_gym.farms import LocalFarms
+from aquafarm_gym.single_farm import SingleFarm, info_at, observation_at
 
 
 def one_agent(farms: Any) -> Any:
@@ -25,16 +24,7 @@ def one_agent(farms: Any) -> Any:
     return farms
 
 
-def observation_of(farms: Any, observation: str) -> npt.NDArray[Any]:
-    """Returns the array of an observation; raises ValueError if the farms do not write it."""
-    if observation not in farms.buffers:
-        has = ", ".join(name for name in OBSERVATIONS if name in farms.buffers)
-        raise ValueError(f"observation: got '{observation}', but the farms given write {has}")
-    array: npt.NDArray[Any] = farms.buffers[observation]
-    return array
-
-
-class FarmEnv(gymnasium.Env[Any, Any]):
+class FarmEnv(SingleFarm, gymnasium.Env[Any, Any]):
     """One farm with one ship.
 
     observation: `features` (default), `planes` or `index`. info has the same keys at every step,
@@ -47,12 +37,6 @@ class FarmEnv(gymnasium.Env[Any, Any]):
 
     metadata: dict[str, Any] = {"render_modes": list(rendering.OFFERED),
                                 "render_fps": rendering.FPS}
-    farms: Any
-    observation: str
-    render_mode: str | None
-    picture_size: tuple[int, int]
-    picture_layers: str
-    picture_style: str
     action_space: gymnasium.Space[Any]
     observation_space: gymnasium.Space[Any]
 
@@ -64,24 +48,11 @@ class FarmEnv(gymnasium.Env[Any, Any]):
         """farms: a backend that replaces the scenario's farms in this process, e.g. RosFarms().
         picture_size: width and height of pictures [pixels]. picture_layers: their layers
         (aquafarm_core.pictures.LAYERS), picture_style: dark or light, as for ./aquafarm render."""
-        self.farms = one_agent(farms or LocalFarms(scenario, 1, observation))
-        self.render_mode = check_render_mode(render_mode, self.farms)
-        self.observation = observation
-        self.picture_size, self.picture_layers = picture_size, picture_layers
-        self.picture_style = picture_style
+        super().__init__(one_agent(farms or LocalFarms(scenario, 1, observation)), observation,
+                         render_mode, picture_size, picture_layers, picture_style)
         self.action_space = spaces.action_space()
         self.observation_space = spaces.observation_space(self.farms, observation)
-        self._episodes = Episodes()
-        self._attach()
-
-    def _attach(self) -> None:
-        """Binds the arrays that the farms write."""
-        self._buffers = self.farms.buffers
-        self._observation = observation_of(self.farms, self.observation)
         self._actions = np.zeros((1, 1), np.uint8)
-        self._pictures = Pictures(self.farms, self.picture_size, self.picture_layers,
-                                  self.picture_style)
-        self._window = Window(self._pictures, self.farms)
 
     def reset(self, *, seed: int | None = None,
               options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
@@ -112,9 +83,7 @@ class FarmEnv(gymnasium.Env[Any, Any]):
         if self.render_mode is None:
             gymnasium.logger.warn("render: got render_mode None, expected rgb_array or ansi; pass "
                                   "render_mode='rgb_array' to the constructor")
-        if self.render_mode == "rgb_array":
-            return self._pictures.draw()
-        return str(self.farms.text(0)) if self.render_mode == "ansi" else None
+        return self._picture()
 
     def _show(self) -> None:
         if self.render_mode == "human":
@@ -124,26 +93,11 @@ class FarmEnv(gymnasium.Env[Any, Any]):
         """Returns the legal actions, bool [10], for MaskablePPO of sb3_contrib."""
         return spaces.action_mask(self._buffers["legal"][0, 0]).astype(bool)
 
-    def close(self) -> None:
-        self._window.close()
-        self.farms.close()
-
     def _observe(self) -> Any:
         return observation_at(self.observation, self._observation, 0)
 
     def _info(self) -> dict[str, Any]:
         return info_at(self.farms, 0)
-
-    def _repr_html_(self) -> str:
-        return html_of(self.farms, self._pictures, [0])
-
-    def __getstate__(self) -> dict[str, Any]:
-        views = ("_buffers", "_observation", "_actions", "_pictures", "_window")
-        return {name: value for name, value in self.__dict__.items() if name not in views}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self._attach()
 
     def __eq__(self, other: object) -> bool:
         return (isinstance(other, FarmEnv) and self.observation == other.observation

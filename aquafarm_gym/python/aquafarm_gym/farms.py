@@ -71,6 +71,15 @@ class Farms:
         self.plane_count = len(core.PLANES)
 
 
+def observation_of(farms: Any, observation: str) -> npt.NDArray[Any]:
+    """Returns the array of an observation; raises ValueError if the farms do not write it."""
+    if observation not in farms.buffers:
+        has = ", ".join(name for name in OBSERVATIONS if name in farms.buffers)
+        raise ValueError(f"observation: got '{observation}', but the farms given write {has}")
+    array: npt.NDArray[Any] = farms.buffers[observation]
+    return array
+
+
 class LocalFarms(Farms):
     """Farms in this process. Copies and pickles continue bit-identically."""
 

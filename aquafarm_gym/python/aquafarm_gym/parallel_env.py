@@ -15,14 +15,13 @@ from gymnasium.utils import seeding
 from pettingzoo import ParallelEnv
 
 from aquafarm_gym import rendering, spaces
-from aquafarm_gym.env import observation_of
-from aquafarm_gym.episodes import Episodes, check_options
+from aquafarm_gym.episodes import check_options
 from aquafarm_gym.farms import LocalFarms
-from aquafarm_gym.rendering import Pictures, Window, check_render_mode, html_of
-from aquafarm_gym.single_farm import info_at, observation_at
+from aquafarm_gym.single_farm import SingleFarm, info_at, observation_at
 
 
-class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]
+class FarmParallelEnv(SingleFarm,
+                      ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]
     """One farm with several agents, named ship_0, ship_1, … as in ROS. Self-propelled devices come
     last and terminate when they are delivered.
 
@@ -33,12 +32,6 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
     metadata: dict[str, Any] = {"name": "aquafarm_v1", "render_modes": list(rendering.OFFERED),
                                 "render_fps": rendering.FPS,
                                 "is_parallelizable": True}
-    farms: Any
-    observation: str
-    render_mode: str | None
-    picture_size: tuple[int, int]
-    picture_layers: str
-    picture_style: str
     possible_agents: list[str]
     agents: list[str]
     observation_spaces: dict[str, Any]
@@ -52,28 +45,15 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
                  picture_style: str = rendering.STYLE) -> None:
         """farms: a backend that replaces the scenario's farms in this process, e.g. RosFarms().
         picture_size, picture_layers, picture_style: as FarmEnv."""
-        self.farms = farms or LocalFarms(scenario, 1, observation)
-        self.observation = observation
-        self.picture_size, self.picture_layers = picture_size, picture_layers
-        self.picture_style = picture_style
-        self.render_mode = check_render_mode(render_mode, self.farms)
+        super().__init__(farms or LocalFarms(scenario, 1, observation), observation, render_mode,
+                         picture_size, picture_layers, picture_style)
         self.possible_agents = [f"ship_{i}" for i in range(self.farms.agents)]
         self.agents = []
         self.observation_spaces = {agent: spaces.observation_space(self.farms, observation)
                                    for agent in self.possible_agents}
         self.action_spaces = {agent: spaces.action_space() for agent in self.possible_agents}
         self.state_space = spaces.state_space(self.farms, observation)
-        self._episodes = Episodes()
         self._number = {agent: i for i, agent in enumerate(self.possible_agents)}
-        self._attach()
-
-    def _attach(self) -> None:
-        """Binds the arrays that the farms write."""
-        self._buffers = self.farms.buffers
-        self._observation = observation_of(self.farms, self.observation)
-        self._pictures = Pictures(self.farms, self.picture_size, self.picture_layers,
-                                  self.picture_style)
-        self._window = Window(self._pictures, self.farms)
 
     def observation_space(self, agent: str) -> Any:
         return self.observation_spaces[agent]
@@ -129,13 +109,7 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
         `human` shows it in a window."""
         if self.render_mode == "human":
             self._window.show()
-        if self.render_mode == "rgb_array":
-            return self._pictures.draw()
-        return str(self.farms.text(0)) if self.render_mode == "ansi" else None
-
-    def close(self) -> None:
-        self._window.close()
-        self.farms.close()
+        return self._picture()
 
     def _of_agents(self, value: Callable[[int], Any]) -> dict[str, Any]:
         return {agent: value(self._number[agent]) for agent in self.agents}
@@ -145,17 +119,6 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
 
     def _info(self, i: int) -> dict[str, Any]:
         return info_at(self.farms, i)
-
-    def _repr_html_(self) -> str:
-        return html_of(self.farms, self._pictures, [0])
-
-    def __getstate__(self) -> dict[str, Any]:
-        views = ("_buffers", "_observation", "_pictures", "_window")
-        return {name: value for name, value in self.__dict__.items() if name not in views}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self._attach()
 
     def __eq__(self, other: object) -> bool:
         return (isinstance(other, FarmParallelEnv) and self.observation == other.observation

@@ -13,9 +13,8 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv
 
 from aquafarm_gym import spaces
-from aquafarm_gym.env import observation_of
 from aquafarm_gym.episodes import Episodes, summary_of
-from aquafarm_gym.farms import LocalFarms
+from aquafarm_gym.farms import LocalFarms, observation_of
 from aquafarm_gym.rendering import Pictures, check_render_mode
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the environments of one farm return for one of its agents."""
+"""What the environments of one farm share, and what they return for one of its agents."""
 from __future__ import annotations
 
 from typing import Any
@@ -8,7 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from aquafarm_gym import spaces
-from aquafarm_gym.episodes import NO_SUMMARY, summary_of
+from aquafarm_gym.episodes import NO_SUMMARY, Episodes, summary_of
+from aquafarm_gym.farms import observation_of
+from aquafarm_gym.rendering import Pictures, Window, check_render_mode, html_of
 
 
 def observation_at(name: str, array: npt.NDArray[Any], agent: int) -> Any:
@@ -25,3 +27,54 @@ def info_at(farms: Any, agent: int) -> dict[str, Any]:
     return {"action_mask": spaces.action_mask(buffers["legal"][0, agent]),
             "outcome": int(buffers["outcomes"][0, agent]), "reason": summary["reason"],
             "is_success": summary["success"], "summary": summary}
+
+
+class SingleFarm:
+    """The farm of an environment, its pictures, and how it is copied."""
+
+    farms: Any
+    observation: str
+    render_mode: str | None
+    picture_size: tuple[int, int]
+    picture_layers: str
+    picture_style: str
+
+    def __init__(self, farms: Any, observation: str, render_mode: str | None,
+                 picture_size: tuple[int, int], picture_layers: str, picture_style: str) -> None:
+        self.farms = farms
+        self.observation = observation
+        self.render_mode = check_render_mode(render_mode, farms)
+        self.picture_size, self.picture_layers = picture_size, picture_layers
+        self.picture_style = picture_style
+        self._episodes = Episodes()
+        self._attach()
+
+    def _attach(self) -> None:
+        """Binds the arrays that the farms write."""
+        self._buffers = self.farms.buffers
+        self._observation = observation_of(self.farms, self.observation)
+        self._pictures = Pictures(self.farms, self.picture_size, self.picture_layers,
+                                  self.picture_style)
+        self._window = Window(self._pictures, self.farms)
+
+    def _picture(self) -> Any:
+        """Returns the farm as render_mode says; None for `human` and without a mode."""
+        if self.render_mode == "rgb_array":
+            return self._pictures.draw()
+        return str(self.farms.text(0)) if self.render_mode == "ansi" else None
+
+    def close(self) -> None:
+        """Closes the window and the farms."""
+        self._window.close()
+        self.farms.close()
+
+    def _repr_html_(self) -> str:
+        return html_of(self.farms, self._pictures, [0])
+
+    def __getstate__(self) -> dict[str, Any]:
+        views = ("_buffers", "_observation", "_pictures", "_window")
+        return {name: value for name, value in self.__dict__.items() if name not in views}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._attach()

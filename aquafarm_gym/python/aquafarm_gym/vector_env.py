@@ -13,9 +13,9 @@ import numpy.typing as npt
 from gymnasium.vector.utils import batch_space
 
 from aquafarm_gym import rendering, spaces
-from aquafarm_gym.env import observation_of, one_agent
+from aquafarm_gym.env import one_agent
 from aquafarm_gym.episodes import NO_SUMMARY, Episodes, check_options, check_seed, summary_of
-from aquafarm_gym.farms import LocalFarms
+from aquafarm_gym.farms import LocalFarms, observation_of
 from aquafarm_gym.rendering import Pictures, check_render_mode, html_of
 
 NEXT_STEP: str = "NextStep"

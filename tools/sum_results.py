@@ -36,10 +36,10 @@ def cases_of(path, stems):
     if path.name.startswith("ctest-"):
         found = [entry for entry in found if entry[2].get("name") not in stems]
     # A failure before the first case (setUpClass) appears only in the suite's counters.
-    told = int(root.get("errors") or 0) + int(root.get("failures") or 0)
-    untold = told - sum(entry[0] == "failed" for entry in found)
+    reported = int(root.get("errors") or 0) + int(root.get("failures") or 0)
+    unlisted = reported - sum(entry[0] == "failed" for entry in found)
     if not path.name.startswith("ctest-"):
-        found += [("failed", "outside its cases", None)] * max(0, untold)
+        found += [("failed", "outside its cases", None)] * max(0, unlisted)
     return [entry[:2] for entry in found]
 
 

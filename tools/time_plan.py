@@ -65,7 +65,7 @@ def bulletin(seed):
     return json.dumps([{"tfbh": "202106", "ename": "In-Fa", "points": [now]}])
 
 
-def told(name, walls, cpus):
+def report(name, walls, cpus):
     for what, values in (("wall", walls), ("processor", cpus)):
         print(f"{name}: {what} median {statistics.median(values):.2f} s "
               f"({min(values):.2f} to {max(values):.2f} s, n = {len(values)})")
@@ -87,7 +87,7 @@ def time_page(folder, options):
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         walls.append(time.monotonic() - began)
         cpus.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-    told("page", walls, cpus)
+    report("page", walls, cpus)
 
 
 def processor_s(pid):
@@ -154,8 +154,8 @@ def time_node(folder, options):
                     process.wait(20)
                 except subprocess.TimeoutExpired:
                     process.kill()
-    told("from the file to the message", [one[0] for one in rows], [one[1] for one in rows])
-    told("planning in the node (compute_s)", [one[2] for one in rows], [one[1] for one in rows])
+    report("from the file to the message", [one[0] for one in rows], [one[1] for one in rows])
+    report("planning in the node (compute_s)", [one[2] for one in rows], [one[1] for one in rows])
 
 
 def main():

@@ -91,7 +91,7 @@ class AgentNodesTest(unittest.TestCase):
         policy = self.trained()
         self.expect_solved([self.agent(ship, policy, "_episodes:=5") for ship in (0, 1)], 5)
 
-    def test_the_node_of_ship_0_alone_tells_values(self):
+    def test_only_the_node_of_ship_0_publishes_values(self):
         self.sim(TEAM)
         policy = self.trained()
         agents = [self.agent(ship, policy) for ship in (0, 1)]
@@ -235,7 +235,7 @@ class AgentNodesTest(unittest.TestCase):
         self.agent(1, "random")
         self.wait_until(lambda state: state.step > 20, "both ships at work")
 
-    def test_a_wait_in_vain_is_told_while_the_farms_clock_stands_still(self):
+    def test_a_barrier_timeout_is_reported_while_the_farms_clock_stands_still(self):
         rospy.set_param("/use_sim_time", True)
         self.addCleanup(rospy.delete_param, "/use_sim_time")
         self.sim(WIDE, "_barrier_timeout_s:=0.2")
@@ -243,7 +243,7 @@ class AgentNodesTest(unittest.TestCase):
         run.wait_for(lambda: "ship 0: barrier timed out: no command from other ships within" in run.words(),
                      "a warning")
 
-    def test_a_ship_driven_by_what_the_whole_farm_tells_is_held_until_its_node_ends(self):
+    def test_a_ship_of_a_policy_on_whole_farms_is_held_until_its_node_ends(self):
         self.sim(WIDE, "_pace:=paced", "_rate_hz:=0.02", "_claim_timeout_s:=5")
         rospy.wait_for_service(f"{self.namespace}/ship_1/claim", 60)
         claim = rospy.ServiceProxy(f"{self.namespace}/ship_1/claim", Claim)

@@ -230,7 +230,7 @@ TEST_F(BagPolicy, ASavedStateMustBeOfItsStep) {
               saved.data.resize(9);
             })).substr(0, 36));
   const auto late = [](const FarmState& state) { return state.step < 5 ? 0 : 1; };
-  EXPECT_EQ("episode 0 step 5: saved_state.step: got 5, its data says 3",
+  EXPECT_EQ("episode 0 step 5: saved_state.step: got 5, its data has 3",
             DifferenceOf(Copy(bag, late, [](SavedState& saved) { saved.step = 5; })));
 }
 

@@ -177,7 +177,7 @@ class BagPolicyTest(unittest.TestCase):
         damaged.write_bytes(data)
         self.refused(f"bag_policy: {damaged}: damaged: an index that is not of its chunk", 2,
                      damaged, policy)
-        self.refused("no topic spec, so nothing says what was played", 2, self.changed(
+        self.refused("no topic spec, so it is unknown what was played", 2, self.changed(
             bag, lambda topic, message: None if topic.endswith("/spec") else message), policy)
 
         def with_spec(field, value):

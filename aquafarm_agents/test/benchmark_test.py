@@ -271,7 +271,7 @@ class BenchmarkTest(unittest.TestCase):
                 self.assertIn(words, one.words())
         self.assertFalse((self.folder / "out").exists())
 
-    def test_killed_it_goes_on_and_ends_in_the_same_numbers(self):
+    def test_killed_it_resumes_and_ends_in_the_same_numbers(self):
         arguments = ("--algorithms", "q_learning", "--jobs", "2")
         whole = self.start("whole", *arguments, episodes=60000)
         self.assertEqual(0, whole.code(), whole.words())
@@ -388,7 +388,7 @@ class BenchmarkTest(unittest.TestCase):
             self.assertEqual(["env", "PYTHONPATH=/mine"], cli._own_packages(str(home / "bin/python")))
             self.assertEqual([], cli._own_packages("python3"))
 
-    def test_interrupted_it_says_how_to_go_on(self):
+    def test_interrupted_it_prints_how_to_resume(self):
         one = self.start("out", "--algorithms", "q_learning", episodes=10000000)
         one.wait_for(lambda: list(self.folder.glob("out/runs/q_learning/*/metrics.csv")),
                      "a training")
@@ -397,7 +397,7 @@ class BenchmarkTest(unittest.TestCase):
         self.assertIn("the same command resumes it", one.words())
         self.assertTrue(list(self.folder.glob("out/runs/q_learning/*/checkpoints/step_*.ckpt")))
 
-    def test_a_failed_run_is_told_and_the_others_are_kept(self):
+    def test_a_failed_run_is_reported_and_the_others_are_kept(self):
         jobs = [runs.Job(name, name, self.folder / name, self.folder / name / "evaluation.json",
                          [["sh", "-c", command]], 1.0)
                 for name, command in (

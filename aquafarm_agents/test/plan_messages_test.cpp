@@ -407,7 +407,7 @@ TEST_F(PlanMessages, WithUnknownWindsEveryNumberOfTheStormIsNaN) {
   EXPECT_EQ(unknown.devices.size(), plan().devices.size());
 }
 
-TEST_F(PlanMessages, AFileThatIsNoPlanIsRefusedInOneLine) {
+TEST_F(PlanMessages, AnotherFileThanAPlanIsRefusedInOneLine) {
   const auto refusal = [](const std::string& json) {
     try {
       ReadPlan(json, "x.json");

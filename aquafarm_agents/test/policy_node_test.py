@@ -122,7 +122,7 @@ class PolicyNodeTest(unittest.TestCase):
         self.assertTrue(pause(paused=False).ok)
         self.assertEqual(0, run.code(), run.words())
 
-    def test_drivers_that_waited_in_vain_for_each_other_go_on(self):
+    def test_drivers_whose_barrier_timed_out_continue(self):
         start_sim(self, self.namespace, PAIR, "_barrier_timeout_s:=0.3")
         one = self.drive("_policy:=random", "_ship:=1", "_episodes:=2")
         one.wait_for(lambda: "no command from other ships within" in one.words(), "a timeout")

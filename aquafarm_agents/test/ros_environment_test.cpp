@@ -94,7 +94,7 @@ TEST(RosEnvironment, ShipsAndFarmsThatEndOftenAreThoseOfThisProcess) {
   EXPECT_GT(ExpectSameTransitions(ros, local, 2000), 100U);
 }
 
-TEST(RosEnvironment, TellsWhoseTheTeamsRewardIsAsInThisProcess) {
+TEST(RosEnvironment, SplitsTheTeamRewardByAgentAsInThisProcess) {
   RosEnvironment ros = Connect("team", 3, kFeaturesBit | kOwnRewardsBit);
   LocalEnvironment local = InProcess(ros.spec(), kFeaturesBit | kOwnRewardsBit);
   EXPECT_FALSE(ros.spec().team_reward);
@@ -289,7 +289,7 @@ TEST(RosEnvironment, RefusesFarmsThatItCannotUse) {
   ASSERT_TRUE(set_pace.call(pace) && pace.response.ok) << pace.response.message;
 }
 
-TEST(RosEnvironment, NobodyThereIsToldWithinTheLimit) {
+TEST(RosEnvironment, AMissingNodeIsReportedWithinTheLimit) {
   RosEnvironmentOptions options;
   options.wait_limit_s = 1.5;
   std::vector<std::string> notices;

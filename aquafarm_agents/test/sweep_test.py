@@ -72,7 +72,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual(len((run / "calls").read_text().splitlines()), 1)
         self.assertIn("gamma=0.5,2,6.5,", (self.home / "out" / "table.csv").read_text())
 
-    def test_refused_options_and_failures_are_told(self):
+    def test_refused_options_and_failures_are_reported(self):
         code, said = self.sweep("--set", "gamma=0.5,bad", "--seeds", "1-2")
         self.assertEqual(code, 2)
         self.assertIn("refused: gamma=bad: gamma: got 'bad', expected a number", said)

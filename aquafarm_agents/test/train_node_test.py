@@ -107,7 +107,7 @@ class TrainNodeTest(unittest.TestCase):
         second.send(signal.SIGKILL)
         self.assertEqual(6, first.code(RANKS_S), first.words())
         self.assertIn("ranks: rank 1 of 2 has ended or does not answer", first.words())
-        self.assertRegex(first.words(), "go on      roslaunch aquafarm_bringup ranks.launch .*"
+        self.assertRegex(first.words(), "resume     roslaunch aquafarm_bringup ranks.launch .*"
                                         f" resume:=true run_dir:={self.folder / 'parts'} ranks:=2")
         limit = 10000 + int(newest_checkpoint(self.folder / "parts")[len("step_"):-len(".ckpt")])
         first, second = self.ranks("parts", f"_steps:={limit}", "_resume:=true", options)
@@ -122,7 +122,7 @@ class TrainNodeTest(unittest.TestCase):
         self.assert_same_files("whole", "parts",
                                ["policy.ckpt", "metrics.csv", f"checkpoints/{newest}"])
 
-    def test_whoever_looks_at_its_values_changes_no_bit(self):
+    def test_subscribers_of_its_values_change_no_bit(self):
         start_sim(self, self.namespace, TINY)
         for algorithm, steps in (("q_learning", 1500000), ("dqn", 8000)):
             clouds = []
@@ -167,7 +167,7 @@ class TrainNodeTest(unittest.TestCase):
         self.assertIn("the sim node is gone; waiting up to 2 s", run.words())
         self.assertIn(f"saved in {self.folder / 'run'}", run.words())
 
-    def test_a_sim_node_that_comes_back_is_gone_on_with(self):
+    def test_a_training_continues_with_a_sim_node_that_returns(self):
         sim = start_sim(self, self.namespace, TINY)
         run = self.train("run", "_steps:=400000", "_farms:=8")
         metrics = self.folder / "run" / "metrics.csv"

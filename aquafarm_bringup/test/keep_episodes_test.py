@@ -115,7 +115,7 @@ class KeepEpisodesTest(unittest.TestCase):
         self.assertRegex(words, r": identical: 1 episode, \d+ steps"
                          r"(, the end of one is not in the bag)?\n")
 
-    def test_a_recording_that_was_cut_off_is_told_so_and_can_be_reindexed(self):
+    def test_a_recording_that_was_cut_off_is_reported_and_can_be_reindexed(self):
         with Ranch("evaluate", "policy:=random", "episodes:=1", "record:=all", "viz:=false",
                    f"record_dir:={self.folder}") as ranch:
             self.assertEqual(0, ranch.exit_code(60), ranch.words())

@@ -29,17 +29,17 @@ class KeyboardTest(unittest.TestCase):
     def test_every_action_has_a_key(self):
         self.assertLessEqual(set(keyboard.ACTIONS), set(keyboard.KEYS.values()))
 
-    def test_a_step_is_told_with_its_terms_and_what_is_legal(self):
+    def test_a_step_is_shown_with_its_terms_and_the_legal_actions(self):
         result = CommandResult(ok=True, code=Outcome.CRASH, step=7, reward=-2.5,
                                terms=RewardTerms(crash=-2.5), legal_actions=0x1FF)
         self.assertEqual("step 7: crash, reward -2.5 (crash -2.5); legal: moves, pickup",
                          keyboard.describe(result))
 
-    def test_the_end_is_told_with_its_reason(self):
+    def test_the_end_is_shown_with_its_reason(self):
         result = CommandResult(ok=True, terminated=True, reason=FarmState.ALL_RETRIEVED)
         self.assertIn("the episode is over: all retrieved", keyboard.describe(result))
 
-    def test_a_refusal_is_told_with_its_code(self):
+    def test_a_refusal_is_shown_with_its_code(self):
         result = CommandResult(code=Outcome.EPISODE_OVER, message="reset first")
         self.assertEqual("episode over: reset first", keyboard.describe(result))
 

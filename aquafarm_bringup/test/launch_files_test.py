@@ -79,7 +79,7 @@ class LaunchFilesTest(unittest.TestCase):
                           f"(did you mean '{hint}'?); it has: ", done.stderr)
             self.assertNotIn("process[", done.stdout, "a node was started")
 
-    def test_roslaunch_refuses_the_port_of_a_program_that_is_no_master(self):
+    def test_roslaunch_refuses_the_port_of_another_program_than_a_master(self):
         with http.server.HTTPServer(("127.0.0.1", 0), http.server.BaseHTTPRequestHandler) as server:
             threading.Thread(target=server.serve_forever, daemon=True).start()
             self.addCleanup(server.shutdown)

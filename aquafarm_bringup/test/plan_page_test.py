@@ -230,7 +230,7 @@ class PageTest(unittest.TestCase):
                      "No ship should leave.", "No device is fetched.", "no departure has it"):
             self.assertIn(part, words)
 
-    def test_a_storm_that_stays_away_is_no_all_clear(self):
+    def test_a_storm_that_stays_away_gives_no_all_clear(self):
         words = words_of(plan_sample.storm_stays_away())
         for part in ("That is not an all-clear", "No ship needs to leave now.",
                      "No ring reaches the ranch before Mon 26 Jul 02:00",
@@ -249,7 +249,7 @@ class PageTest(unittest.TestCase):
                     self.assertIn("unknown", one["unknown"])
                     self.assertEqual((None, None), (one["probability_home"], one["expected_loss"]))
 
-    def test_an_ended_forecast_is_unknown_and_an_old_one_is_no_all_clear(self):
+    def test_an_ended_forecast_is_unknown_and_an_old_one_gives_no_all_clear(self):
         plan = plan_sample.storm_unknown()
         plan["warnings"][0]["code"], plan["storm"]["age_h"] = "forecast_ended", 46633.0
         words = words_of(plan)
@@ -304,7 +304,7 @@ class PageTest(unittest.TestCase):
         self.assertEqual(2, words.count(said), "in the answer and below the deadlines")
         self.assertNotIn("no ship should leave", words.lower())
 
-    def test_a_deadline_that_the_known_time_ends_is_no_limit(self):
+    def test_a_deadline_that_the_known_time_ends_does_not_limit(self):
         plan = copy.deepcopy(self.plan)
         plan["devices"][1]["deadlines"][2].update(open=True, leave="2021-07-25T18:00:00Z")
         self.assertIn("not known beyond Mon 26 Jul 02:00", words_of(plan))

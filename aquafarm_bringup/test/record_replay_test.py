@@ -93,7 +93,7 @@ class RecordReplayTest(unittest.TestCase):
             self.assertNotIn("/aquafarm/sim", names)
         self.assertGreater(images[0].width * images[0].height, 0)
 
-    def test_a_bag_holds_what_other_viewers_draw_and_replay_draws_it_anew(self):
+    def test_a_bag_holds_what_other_viewers_draw_and_replay_draws_it_again(self):
         bag = self.folder / "drawn.bag"
         with Ranch("record", "of:=evaluate", "policy:=random", "episodes:=1", f"bag:={bag}",
                    "rate_hz:=100") as ranch:

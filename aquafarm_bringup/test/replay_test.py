@@ -112,7 +112,7 @@ class ReplayTest(unittest.TestCase):
         self.assertEqual({5}, {state.episode for state in states})
         self.assertGreaterEqual(9, max(state.step for state in states))
 
-    def test_in_a_loop_it_begins_anew_at_the_end(self):
+    def test_in_a_loop_it_restarts_at_the_end(self):
         _, states = self.play(f"_bag:={self.moved_bag()}", "_loop:=true", "_speed:=1000",
                               "_delay_s:=2")
 
@@ -122,7 +122,7 @@ class ReplayTest(unittest.TestCase):
 
         self.ranch.wait_for(begins_anew, LIMIT_S)
 
-    def test_a_parameter_that_is_no_bool_ends_the_player_with_its_line(self):
+    def test_a_parameter_of_another_type_than_bool_ends_the_player_with_its_line(self):
         for name in ("paused", "loop", "keep_alive"):
             process, _ = self.play(f"_bag:={self.bag}", f"_{name}:=maybe")
             self.assertEqual(2, process.wait(LIMIT_S))

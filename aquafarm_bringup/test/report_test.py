@@ -125,7 +125,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(f"report     {(self.trained / 'report.html').as_uri()}",
                          self.words.splitlines()[-1])
 
-    def test_it_is_opened_where_there_is_a_display_and_a_missing_browser_is_no_failure(self):
+    def test_it_is_opened_where_there_is_a_display_and_a_missing_browser_does_not_fail(self):
         browser = self.folder / "bin" / "xdg-open"
         opened = self.folder / "opened"
         browser.parent.mkdir()
@@ -181,7 +181,7 @@ class ReportTest(unittest.TestCase):
         words = "clairvoyant_planner_on_zhoushan_mitag_2019_with_floats"
         self.assertEqual([""], self.too_wide(make_page(words, tiles([(words, words)]))))
 
-    def test_it_tells_learner_scenario_seeds_and_version(self):
+    def test_it_lists_learner_scenario_seeds_and_version(self):
         settings = json.loads((self.trained / "run.json").read_text())
         for word in ("q_learning on cove", "seed of the training", settings["version"],
                      "layout:", settings["options"]):

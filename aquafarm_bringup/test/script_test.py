@@ -93,7 +93,7 @@ class ScriptTest(unittest.TestCase):
         self.assertEqual(2, done.returncode)
         self.assertIn("got 'sarsa', expected name:=value", done.stdout)
 
-    def test_what_is_not_named_lies_beside_the_user(self):
+    def test_what_is_not_named_lies_in_the_folder_of_the_user(self):
         with tempfile.TemporaryDirectory() as folder:  # rejected after the defaults are printed
             done = run(SCRIPT, "train", "resume:=maybe", cwd=folder)
             self.assertEqual(2, done.returncode, done.stdout)
@@ -139,7 +139,7 @@ class ScriptTest(unittest.TestCase):
         for ranch, policy in (("two_squads", "planner"), ("paper", "generalist")):
             self.assertEqual(f"policy:={policy}", named("sim", f"{scenarios}/{ranch}.yaml")[-1])
 
-    def test_a_fraction_is_no_whole_number(self):
+    def test_a_fraction_is_not_a_whole_number(self):
         with tempfile.TemporaryDirectory() as folder:
             for argument in ("seed:=1.5", "farms:=2.25", "episodes:=0.5", "random_episodes:=7.5"):
                 done = run(SCRIPT, "train", argument, cwd=folder)
@@ -248,7 +248,7 @@ class ScriptTest(unittest.TestCase):
                 done = run(SCRIPT, "train", "resume:=true", "viz:=perhaps", cwd=folder)
                 self.assertIn(f"{newest}/run.json: damaged: ", done.stdout)
 
-    def test_an_interrupted_training_goes_on_with_resume_alone(self):
+    def test_an_interrupted_training_continues_with_resume_alone(self):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder).resolve()
             copy, env = built_tree(folder)
@@ -275,7 +275,7 @@ class ScriptTest(unittest.TestCase):
             first.send_signal(signal.SIGINT)
             words, _ = first.communicate(timeout=LIMIT_S)
             self.assertEqual(INTERRUPTED, first.returncode, words)
-            self.assertIn(f"go on      {copy} train resume:=true run_dir:={folder}/runs/", words)
+            self.assertIn(f"resume     {copy} train resume:=true run_dir:={folder}/runs/", words)
             rest = train("resume:=true")
             words, _ = rest.communicate(timeout=2 * LIMIT_S)
             self.assertEqual(0, rest.returncode, words)
@@ -316,7 +316,7 @@ class ScriptTest(unittest.TestCase):
                 self.assertEqual(0, done.returncode, done.stdout)
                 self.assertIn(f"usage: ./aquafarm {verb}", done.stdout)
 
-    def test_what_another_tree_or_type_has_built_is_built_anew(self):
+    def test_what_another_tree_or_type_has_built_is_rebuilt(self):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder).resolve()
             ws, tree = folder / "ws", folder / "tree"

@@ -102,7 +102,7 @@ class TrainLaunchTest(unittest.TestCase):
             self.assertEqual(RUN_FOLDER_FAILED, ranch.exit_code(START_LIMIT_S))
             self.assertIn(str(self.run_dir), ranch.words())
 
-    def test_a_lost_sim_node_is_told_and_ends_the_training_after_the_limit(self):
+    def test_a_lost_sim_node_is_reported_and_ends_the_training_after_the_limit(self):
         with self.train("sim_restarts:=0", "sim_timeout_s:=3") as ranch:
             self.wait_until_training(ranch)
             os.kill(ranch.node_pid("sim_node"), signal.SIGKILL)
@@ -112,7 +112,7 @@ class TrainLaunchTest(unittest.TestCase):
             self.assertGreater(time.monotonic() - killed, 2.5)
         self.assertTrue(list(self.run_dir.rglob("step_*.ckpt")), "nothing was saved")
 
-    def test_a_sim_node_that_returns_lets_the_training_go_on(self):
+    def test_a_training_continues_after_its_sim_node_returns(self):
         with self.train("episodes:=20000") as ranch:
             self.wait_until_training(ranch)
             os.kill(ranch.node_pid("sim_node"), signal.SIGKILL)
@@ -126,11 +126,12 @@ class TrainLaunchTest(unittest.TestCase):
             self.wait_until_training(ranch)
             ranch.interrupt()
             self.assertEqual(INTERRUPTED, ranch.exit_code(60), ranch.words())
-            told = next(line for line in ranch.words().splitlines() if line.startswith("go on "))
-        words = shlex.split(told)
-        self.assertEqual(["go", "on", "roslaunch", "aquafarm_bringup", "train.launch"], words[:5])
+            suggested = next(line for line in ranch.words().splitlines()
+                             if line.startswith("resume "))
+        words = shlex.split(suggested)
+        self.assertEqual(["resume", "roslaunch", "aquafarm_bringup", "train.launch"], words[:4])
         self.assertEqual(["resume:=true", f"run_dir:={self.run_dir}"], words[-2:])
-        with self.train(*words[5:-1]) as ranch:  # the limit is that of the run
+        with self.train(*words[4:-1]) as ranch:  # the limit is that of the run
             self.assertEqual(0, ranch.exit_code(90), ranch.words())
         parts, self.run_dir = self.run_dir, self.run_dir.parent / "whole"
         with self.train(*begun) as ranch:

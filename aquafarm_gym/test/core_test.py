@@ -90,7 +90,7 @@ class CoreTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "^state: "):
             core.FarmBatch(PAPER).load(b"damaged")
 
-    def test_saved_farms_go_on_bit_for_bit(self):
+    def test_saved_farms_continue_bit_identically(self):
         batch, other = (core.FarmBatch(PAPER, 3, ["hashes", "rewards"]) for _ in range(2))
         batch.reset(5)
         actions = actions_of(1, batch, 60)

@@ -107,7 +107,7 @@ class ExternalTest(unittest.TestCase):
                          [-462, -814, -463, -651, -587])
         self.assertEqual(starts, 5)
 
-    def test_a_learner_that_stops_early_is_no_row_of_the_benchmark(self):
+    def test_a_learner_that_stops_early_has_no_row_in_the_benchmark(self):
         code, said = self.learn("paper", "--episodes", "3", "--max-steps", "50", make=Lazy)
         self.assertEqual((code, said.count("\n")), (2, 1), said)
         self.assertIn("mine: train() ended after 0 episodes, expected 3", said)

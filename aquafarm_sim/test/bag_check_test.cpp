@@ -341,7 +341,7 @@ TEST_F(EpisodeBag, AChunkOfAnySizeHasItsLine) {
       << Refusal(path);
 }
 
-TEST_F(EpisodeBag, AMessageOfNoTopicAndAChunkToldOfTwiceHaveTheirLine) {
+TEST_F(EpisodeBag, AMessageWithoutATopicAndAChunkListedTwiceHaveTheirLine) {
   const std::string path = folder_ + "/chunks.bag";
   {
     rosbag::Bag bag(path, rosbag::bagmode::Write);
@@ -352,7 +352,7 @@ TEST_F(EpisodeBag, AMessageOfNoTopicAndAChunkToldOfTwiceHaveTheirLine) {
   }
   const std::string sound = ContentOf(path);
   EXPECT_EQ(path +
-                ": no topic spec, so nothing says what was played; record spec and state, as "
+                ": no topic spec, so it is unknown what was played; record spec and state, as "
                 "record.launch does",
             Refusal(path));
   const std::string place = "chunk_pos=";
@@ -395,7 +395,7 @@ TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
   EXPECT_EQ(pipe + ": damaged or not a bag: no regular file", Refusal(pipe));
   EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
                                  return spec == nullptr;
-                               })).find("no topic spec, so nothing says what was played"));
+                               })).find("no topic spec, so it is unknown what was played"));
   EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
                                  if (spec != nullptr) spec->version = "9.9.9";
                                  return true;

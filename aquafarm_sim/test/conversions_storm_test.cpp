@@ -242,7 +242,7 @@ TEST(Storms, MakeTheSameDisasterThroughAMessage) {
   }
 }
 
-TEST(Observations, TellQuadrantsAndForecastsAsTheyAreInProcess) {
+TEST(Observations, HaveQuadrantsAndForecastsAsInProcess) {
   for (const auto mode : {aquafarm::ViewMode::kFull, aquafarm::ViewMode::kPartial}) {
     Scenario scenario = Placed();
     auto& storm = scenario.disasters[0];

@@ -54,7 +54,7 @@ aquafarm_msgs::SetDisaster::Request Forecast() {
   return request;
 }
 
-TEST(FarmServerDisasters, AForecastChangesWhatShipsAreToldAndNotTheDisaster) {
+TEST(FarmServerDisasters, AForecastChangesWhatShipsObserveAndNotTheDisaster) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 2);
   aquafarm_msgs::SetDisaster call;
   call.request = Bulletin();

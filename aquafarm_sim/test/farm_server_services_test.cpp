@@ -187,7 +187,7 @@ TEST(FarmServerServices, AJointStepIsRefusedWhileAnotherHoldsAShip) {
 
 // A waiting learner gets STALE only once, when it may continue.
 
-TEST(FarmServerServices, AJointStepHearsWhoIsInTheWayBeforeItIsStale) {
+TEST(FarmServerServices, AJointStepReportsAClaimBeforeItIsStale) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Step::Request mine;
   mine.actions = {kNorth};
@@ -265,7 +265,7 @@ TEST(FarmServerServices, FinishedEpisodesComeWithTheStepThatEndsThem) {
   EXPECT_EQ(3U, StateOf(*ranch, 1).episode);
 }
 
-TEST(FarmServerServices, ASeedReproducesAndWithoutOneTheSequenceGoesOn) {
+TEST(FarmServerServices, ASeedReproducesAndWithoutOneTheSequenceContinues) {
   const auto ranch = MakeRanch(aquafarm::test::CrowdedScenario(2), 2);
   const std::size_t actions = 2 * static_cast<std::size_t>(ranch->agents());
   const auto first = ResetTo(*ranch, 11);

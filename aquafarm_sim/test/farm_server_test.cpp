@@ -15,7 +15,7 @@ namespace {
 using namespace test;  // NOLINT: the fixture
 using std::chrono::milliseconds;
 
-TEST(FarmServer, ACommandMovesTheShipAndTellsTheNextStep) {
+TEST(FarmServer, ACommandMovesTheShipAndReturnsTheNextStep) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   const CommandResult result = ranch->Command({0, kNorth, 0, 0, 1});
   EXPECT_TRUE(result.ok);
@@ -36,7 +36,7 @@ TEST(FarmServer, RepeatingTheLastAcceptedCommandMovesNothing) {
   EXPECT_EQ(2U, StateOf(*ranch).step);
 }
 
-TEST(FarmServer, ATokenTellsARepeatOfTheVeryFirstCommand) {
+TEST(FarmServer, ATokenIdentifiesARetryOfTheFirstCommand) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   const CommandResult first = ranch->Command({0, kNorth, 0, 0, 77});
   EXPECT_EQ(first, ranch->Command({0, kNorth, 0, 0, 77}));
@@ -113,7 +113,7 @@ TEST(FarmServer, ALoneCommandTimesOutAndIsTakenBack) {
   EXPECT_EQ(2U, ranch->counters().barrier_timeouts);
 }
 
-TEST(FarmServer, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
+TEST(FarmServer, ContinuesWithoutAbsentShipsUntilTheyReturnIfConfigured) {
   ServerOptions options;
   options.barrier_timeout_s = 1.0;
   options.late_ships_hold = true;
@@ -167,7 +167,7 @@ TEST(FarmServer, AShipThatIsAlwaysTooLateIsWaitedForAgain) {
   EXPECT_EQ(2U, waiting.get().step);
 }
 
-TEST(FarmServer, APausedFarmDoesNotGoOnWithoutTheLate) {
+TEST(FarmServer, APausedFarmDoesNotStepWithoutAbsentShips) {
   ServerOptions options;
   options.barrier_timeout_s = 1.0;
   options.late_ships_hold = true;
@@ -257,7 +257,7 @@ TEST(FarmServer, ACommandThatWasCarriedOutIsAnsweredSoWhateverCameAfterIt) {
   ranch->SetRecorder(nullptr);
 }
 
-TEST(FarmServer, AStepThatCannotBeToldStandsForAllShips) {
+TEST(FarmServer, AStepWhoseNotificationFailsIsKeptForAllShips) {
   struct Deaf final : FarmListener {
     void OnChange(const ServerView& view) override {
       if (view.batch.farm(0).step() > 0) throw std::runtime_error("no memory");
@@ -282,7 +282,7 @@ TEST(FarmServer, AStepThatCannotBeToldStandsForAllShips) {
   ranch->SetListener(nullptr);
 }
 
-TEST(FarmServer, AResetReleasesThoseWhoWait) {
+TEST(FarmServer, AResetReleasesWaitingCommands) {
   const auto ranch = MakeRanch(TwoShips());
   auto waiting = std::async(std::launch::async, [&] {
     return ranch->Command({0, kNorth, 0, 0, 1});
@@ -292,7 +292,7 @@ TEST(FarmServer, AResetReleasesThoseWhoWait) {
   EXPECT_EQ(Outcome::STALE, waiting.get().code);
 }
 
-TEST(FarmServer, ShutdownReleasesThoseWhoWait) {
+TEST(FarmServer, ShutdownReleasesWaitingCommands) {
   const auto ranch = MakeRanch(TwoShips());
   auto waiting = std::async(std::launch::async, [&] {
     return ranch->Command({0, kNorth, 0, 0, 1});

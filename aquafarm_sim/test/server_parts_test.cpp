@@ -132,7 +132,7 @@ TEST(PaceClock, SettingTheSamePaceDelaysNoTick) {
   EXPECT_TRUE(ticked.get());
 }
 
-TEST(PaceClock, APausedClockWaitsUntilItMayGoOn) {
+TEST(PaceClock, APausedClockWaitsUntilItIsResumed) {
   aquafarm::Mutex mutex;
   PaceClock clock(Paced(1000.0));
   bool ending = false;

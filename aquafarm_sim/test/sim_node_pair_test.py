@@ -56,7 +56,7 @@ class SimNodePairTest(unittest.TestCase):
         self.assertLess(time.monotonic() - start, 30.0)
         self.assertEqual(before, state().hash)
 
-    def test_a_ship_that_waited_in_vain_is_a_warning_in_the_diagnostics(self):
+    def test_a_barrier_timeout_is_a_warning_in_the_diagnostics(self):
         warnings = []
 
         def take(array):
@@ -73,7 +73,7 @@ class SimNodePairTest(unittest.TestCase):
             rospy.rostime.wallsleep(0.05)
         self.assertEqual(["barrier timed out"], warnings[:1])
 
-    def test_waiting_commands_keep_nobody_else_waiting(self):
+    def test_waiting_commands_block_no_other_client(self):
         waiting = [Caller(0, HOLD, token=i + 1) for i in range(20)]
         start = time.monotonic()
         self.assertEqual(0, state().step)

@@ -25,7 +25,7 @@ TEST(SimParams, AnUnknownScenarioIsAnsweredWithThoseThereAre) {
   }
 }
 
-TEST(SimParams, APathThatIsNoFileIsRefused) {
+TEST(SimParams, AnotherPathThanAFileIsRefused) {
   EXPECT_THROW(ResolveScenario(kData, kData), aquafarm::InputError);
   EXPECT_THROW(ResolveScenario("./gone.yaml", kData), aquafarm::InputError);
 }

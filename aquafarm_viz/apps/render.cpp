@@ -323,7 +323,8 @@ int main(int argc, char** argv) {
       "several, or an episode as a video (mp4, webm, gif).",
       "render");
   app.add_option("--bag,bag", request.bag, "bag with spec and state")->required();
-  app.add_option("-o,--output", request.output, "file to write; its ending says what it becomes")
+  app.add_option("-o,--output", request.output,
+                 "file to write; its ending selects the kind of file")
       ->capture_default_str();
   auto* step = app.add_option("--step", request.steps, "step of the episode (default 0)");
   app.add_flag("--end", request.at_end, "the episode's last step")->excludes(step);

@@ -282,7 +282,7 @@ TEST(StateMarkers, ShowHealthAsTheLengthAndColourOfABar) {
   EXPECT_EQ(ByKey(StateMarkers(test::MakeSpec(), state)).at({"health", 2}).action, Marker::DELETE);
 }
 
-TEST(StateMarkers, TellDeviceKindsApart) {
+TEST(StateMarkers, DistinguishDeviceKinds) {
   auto state = test::MakeState();
   for (auto& device : state.devices) {
     device.health = 1.0F;

@@ -243,7 +243,7 @@ TEST(Course, IsTheNewestPublishedForecastThatHasNotExpired) {
   EXPECT_EQ(scene.outlook().devices[0].arrivals.size(), 0U);
 }
 
-TEST(Course, GoesOnAfterTheLastPointOfAForecast) {
+TEST(Course, ContinuesAfterTheLastPointOfAForecast) {
   // The true storm comes to (20, 12); the forecast stops short of it, on its way to the device.
   Scene scene;
   const auto forecast = [&scene](const char* points) {

@@ -84,7 +84,7 @@ class PanelButtons : public testing::Test {
   ros::Subscriber states_;
 };
 
-TEST_F(PanelButtons, PauseStopsTheFarmStepTakesOneAndItGoesOn) {
+TEST_F(PanelButtons, PauseStopsTheFarmStepTakesOneAndResumeContinues) {
   Press("pause");
   ASSERT_TRUE(Until([this] { return Says("   paused") && state_.paused; }));
   const std::uint64_t step = state_.step;
@@ -96,10 +96,10 @@ TEST_F(PanelButtons, PauseStopsTheFarmStepTakesOneAndItGoesOn) {
   EXPECT_EQ(state_.step, step + 1);
   EXPECT_TRUE(state_.paused);
   Press("resume");
-  EXPECT_TRUE(Until([&] { return state_.step > step + 3 && !state_.paused && Says("goes on"); }));
+  EXPECT_TRUE(Until([&] { return state_.step > step + 3 && !state_.paused && Says("resumed"); }));
 }
 
-TEST_F(PanelButtons, ResetBeginsTheEpisodesOfTheSeedBesideIt) {
+TEST_F(PanelButtons, ResetBeginsTheEpisodesOfTheSeedNextToIt) {
   for (const std::uint64_t seed : {31U, 47U}) {
     panel_.findChild<QSpinBox*>("seed")->setValue(static_cast<int>(seed));
     Press("reset");

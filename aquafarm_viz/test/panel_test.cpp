@@ -219,7 +219,7 @@ TEST(PlanText, TheHeadlineNamesWhatIsOutdated) {
             "old. OUTDATED: b.json: bad; this plan is of a.json");
 }
 
-TEST(PlanText, AnEndOfTheKnownTimeIsNoEndOfTheDepartures) {
+TEST(PlanText, DeparturesMayFollowTheEndOfTheKnownTime) {
   const auto plan = Plan();
   plan->not_known_beyond = plan->no_departure_after;
   plan->no_departure_after = ros::Time();
@@ -242,7 +242,7 @@ TEST(PlanWords, SharesAreNeverCertainAndOtherDaysAreNamed) {
             "25 Jul 02:00");
 }
 
-TEST(PlanWords, AShipAtSeaIsNeverToldToStay) {
+TEST(PlanWords, AShipAtSeaIsNeverOrderedToStay) {
   const auto plan = Plan();
   aquafarm_msgs::RescueShip ship = plan->ships[1];
   plan->ports[0].cell.x = 3;

@@ -76,7 +76,7 @@ TEST_F(RenderTest, WritesTheStepAskedForInTheSizeAskedFor) {
   EXPECT_EQ(cv::imread(Path("x.png")).size(), cv::Size(640, 480));
 }
 
-TEST_F(RenderTest, TellsEpisodesApartAndFindsTheEnd) {
+TEST_F(RenderTest, DistinguishesEpisodesAndFindsTheEnd) {
   const std::string bag = MakeBag({""});
   EXPECT_EQ(Render("--bag " + bag + " --end -o " + Path("a.png")).code, 0);
   EXPECT_EQ(Render("--bag " + bag + " --end --episode 13 -o " + Path("b.png")).code, 0);
@@ -101,7 +101,7 @@ TEST_F(RenderTest, AsksWhichRanchWhenThereAreSeveral) {
   EXPECT_EQ(Render("--bag " + bag + " --ns /west -o " + Path("x.png")).code, 0);
 }
 
-TEST_F(RenderTest, RefusesWhatIsNoBagOrNoPlaceToWrite) {
+TEST_F(RenderTest, RefusesInvalidBagsAndUnwritablePaths) {
   const Result none = Render("--bag " + Path("none.bag"));
   EXPECT_EQ(WEXITSTATUS(none.code), 2);
   EXPECT_EQ(none.output, "render: " + Path("none.bag") + ": no such file\n");
@@ -232,7 +232,7 @@ TEST_F(RenderTest, SaysWhatTheBagLacks) {
   EXPECT_NE(result.output.find(": recorded by an unnamed version, this is "), std::string::npos);
   write(false, "");
   result = Render(bag + " -o " + Path("y.png"));
-  EXPECT_NE(result.output.find("no topic spec, so nothing says what was played; record spec and"),
+  EXPECT_NE(result.output.find("no topic spec, so it is unknown what was played; record spec and"),
             std::string::npos)
       << result.output;
 }

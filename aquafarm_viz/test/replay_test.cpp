@@ -210,7 +210,7 @@ TEST_F(Replay, ABagThatCannotBeShownHasItsLine) {
   }
   EXPECT_EQ(FaultOf(path_),
             path_ +
-                ": no topic spec, so nothing says what was played; record spec and state, as "
+                ": no topic spec, so it is unknown what was played; record spec and state, as "
                 "record.launch does");
   {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);

@@ -108,7 +108,7 @@ class ServiceCallerTest : public testing::Test {
   ros::AsyncSpinner spinner_;
 };
 
-TEST_F(ServiceCallerTest, TellsTheAnswerOrWhatWasWrong) {
+TEST_F(ServiceCallerTest, ReportsTheAnswerOrTheError) {
   bool ok = true;
   const auto server = node_.advertiseService<Pause::Request, Pause::Response>(
       "pause", [&ok](Pause::Request&, Pause::Response& response) {

@@ -14,7 +14,7 @@ class AnyFont : public testing::TestWithParam<bool> {
   Font font_{14, GetParam() ? FindFontFile(false) : ""};
 };
 
-TEST_P(AnyFont, DrawsWhereItIsTold) {
+TEST_P(AnyFont, DrawsAtTheGivenPosition) {
   cv::Mat image(40, 200, CV_8UC3, cv::Scalar::all(0));
   const int width = font_.Draw(image, "step 17", {20, 30}, cv::Scalar::all(255));
   EXPECT_EQ(width, font_.Width("step 17"));

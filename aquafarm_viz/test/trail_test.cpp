@@ -45,7 +45,7 @@ TEST(Trail, BreaksOffWhereStatesAreMissing) {
   EXPECT_EQ(trail.Find(0)->places.size(), 1U);
 }
 
-TEST(Trail, StartsAnewWithAnEpisodeAndAfterAnEarlierStep) {
+TEST(Trail, RestartsWithAnEpisodeAndAfterAnEarlierStep) {
   Trail trail;
   trail.Update(At(3, 5, 3));
   trail.Update(At(4, 6, 3));

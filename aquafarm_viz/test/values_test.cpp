@@ -43,7 +43,7 @@ TEST(Values, FarFromZeroHaveTheColoursOfTheirDifferences) {
   EXPECT_EQ(cv::norm(drawn(0.0F), drawn(-1.0e7F), cv::NORM_INF), 0.0);
 }
 
-TEST(Values, LeavesOutWhatIsNoCellNoActionAndNoNumber) {
+TEST(Values, LeavesOutInvalidCellsActionsAndNumbers) {
   auto cloud = test::MakeCloud();
   sensor_msgs::PointCloud2Iterator<float> at(cloud, "x");
   sensor_msgs::PointCloud2Iterator<float> value(cloud, "value");

@@ -111,7 +111,7 @@ TEST_F(VizNodeTest, CompressesOnlyWhatIsAskedFor) {
   EXPECT_EQ(images.back()->format, "bgr8; jpeg compressed bgr8");
 }
 
-TEST_F(VizNodeTest, TellsEachShipsRouteAsAPathInMetres) {
+TEST_F(VizNodeTest, PublishesEachShipsRouteAsAPathInMetres) {
   nav_msgs::PathConstPtr path;
   const auto subscriber = node_.subscribe<nav_msgs::Path>(
       "ship_0/route", 10, [&](const nav_msgs::PathConstPtr& got) { path = got; });

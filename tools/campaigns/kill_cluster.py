@@ -4,7 +4,7 @@
 ranks      a training in several ranks, of which one is killed; the others must end with exit code 6.
            Another number of ranks resumes it
 workers    a benchmark on two workers of Dask; a worker or the scheduler is killed and replaced while
-           the benchmark goes on. Its tables must be those of an undisturbed one
+           the benchmark continues. Its tables must be those of an undisturbed one
 """
 import os
 import signal

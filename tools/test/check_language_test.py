@@ -42,6 +42,14 @@ class CheckLanguageTest(unittest.TestCase):
         self.assertEqual(1, done.returncode)
         self.assertIn("farm.h:2: got 'Anew', expected: again", done.stderr)
 
+    def test_names_of_tests_are_read_as_words(self):
+        self.write("test/farm_test.cpp", "TEST_F(Farm,\n       StartsAnewAtItsPort) {}\n")
+        self.write("test/farm_test.py", "\ndef test_it_shall_end(self):\n    pass\n")
+        done = self.check()
+        self.assertEqual(1, done.returncode)
+        self.assertIn("test/farm_test.cpp:1: got 'Anew', expected: again", done.stderr)
+        self.assertIn("test/farm_test.py:2: got 'shall', expected: must", done.stderr)
+
     def test_an_allowed_number_is_accepted_and_one_more_is_refused(self):
         self.write("tools/words_allowed.txt", "1 farm.h\n")
         self.write("farm.h", "/// Begins anew.\n")

@@ -282,7 +282,7 @@ def claim(folder, settings):
 def _lock(folder):
     lock = os.open(folder / "lock", os.O_RDWR | os.O_CREAT, 0o644)
     end = time.monotonic() + _LOCK_LIMIT_S
-    told = False
+    is_reported = False
     while True:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -291,9 +291,9 @@ def _lock(folder):
             if time.monotonic() > end:
                 os.close(lock)
                 raise BadInput(f"{folder}: is in use by another benchmark") from None
-            if not told:
+            if not is_reported:
                 _say(f"{folder} is in use; waiting up to {_LOCK_LIMIT_S:.0f} s for that to end")
-                told = True
+                is_reported = True
             time.sleep(0.1)
 
 

@@ -118,7 +118,7 @@ class _Runs:
             report(f"{self._over} of {len(jobs)} runs are already complete")
 
     def run(self, period_s):
-        told = checked = time.monotonic()
+        reported = checked = time.monotonic()
         try:
             self._submit_all(self._waiting)
             while self._futures:
@@ -129,8 +129,8 @@ class _Runs:
                     checked = now
                     if not self._cluster.is_alive():
                         self._recover()
-                if now - told >= period_s and self._futures:
-                    told = now
+                if now - reported >= period_s and self._futures:
+                    reported = now
                     self._report(self._progress.describe(list(self._futures.values()),
                                                          self._cluster.workers()))
                 time.sleep(0.05)

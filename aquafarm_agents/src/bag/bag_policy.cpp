@@ -87,7 +87,7 @@ class PolicyProbe {
       return std::string("saved_state.data: ") + error.what();
     }
     if (Step() != saved.step) {
-      return "saved_state.step: got " + Number(saved.step) + ", its data says " + Number(Step());
+      return "saved_state.step: got " + Number(saved.step) + ", its data has " + Number(Step());
     }
     begun_ = true;
     seen_ = false;  // the state after the change follows

@@ -290,13 +290,13 @@ template <typename Service>
 void RosEnvironment::CallOrThrow(ros::ServiceClient& client, const std::string& name,
                                  Service& service) {
   const ros::WallTime start = ros::WallTime::now();
-  bool told = false;
+  bool is_reported = false;
   while (!Try(client, name, service)) {
     const double waited_s = (ros::WallTime::now() - start).toSec();
-    if (!told && waited_s >= 1.0) {
+    if (!is_reported && waited_s >= 1.0) {
       Notice("no response from service " + node_.resolveName(name) + "; waiting up to " +
              Seconds(options_.wait_limit_s) + " for the sim node");
-      told = true;
+      is_reported = true;
     }
     if (Stopped() || waited_s >= options_.wait_limit_s) {
       throw EnvironmentLost("sim node: no response from service " + node_.resolveName(name) +

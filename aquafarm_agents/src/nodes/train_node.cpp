@@ -293,12 +293,12 @@ std::string Next(const agents::RunReport& report, const agents::RunOptions& run)
   if (can_resume) {
     if (report.farms == 0) return "";  // it never started
     if (report.ranks > 1) {
-      return "go on      roslaunch aquafarm_bringup ranks.launch" + Arguments(report, run) +
+      return "resume     roslaunch aquafarm_bringup ranks.launch" + Arguments(report, run) +
              " resume:=true" + Argument("run_dir", run.run_dir) +
              Argument("ranks", std::to_string(report.ranks)) + "\n";
     }
     // The script reads missing arguments from the run folder; roslaunch cannot.
-    return "go on      " + launch("train") + (script != nullptr ? "" : Arguments(report, run)) +
+    return "resume     " + launch("train") + (script != nullptr ? "" : Arguments(report, run)) +
            " resume:=true" + Argument("run_dir", run.run_dir) + "\n";
   }
   if (report.code != ExitCode::kOk) return "";

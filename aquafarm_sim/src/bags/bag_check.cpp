@@ -148,7 +148,7 @@ class Simulation {
       loaded.Reset(farm_.seed(), farm_.episode());
       loaded.Load(std::string(saved.data.begin(), saved.data.end()));
       if (static_cast<std::uint64_t>(loaded.step()) != saved.step) {
-        return "saved_state.step: got " + Number(saved.step) + ", its data says " +
+        return "saved_state.step: got " + Number(saved.step) + ", its data has " +
                std::to_string(loaded.step());
       }
       farm_.Load(std::string(saved.data.begin(), saved.data.end()));

@@ -140,12 +140,12 @@ using Connections = std::map<std::uint32_t, std::map<std::string, std::string>>;
 // Adds a connection. The connection records of the chunks and of the index must be equal.
 // @throws Damage if a connection with the same number differs
 void TakeConnection(const BagRecords& record, Connections& connections) {
-  std::map<std::string, std::string> told{{"/topic", std::string(record.Text("topic"))}};
+  std::map<std::string, std::string> fields{{"/topic", std::string(record.Text("topic"))}};
   for (const auto& [name, value] : record.Fields(record.data())) {
-    told[std::string(name)] = std::string(value);
+    fields[std::string(name)] = std::string(value);
   }
-  const auto [known, is_new] = connections.insert({record.Get<std::uint32_t>("conn"), told});
-  if (!is_new && known->second != told) throw Damage("another connection" + record.Where());
+  const auto [known, is_new] = connections.insert({record.Get<std::uint32_t>("conn"), fields});
+  if (!is_new && known->second != fields) throw Damage("another connection" + record.Where());
 }
 
 // Reads the messages of a chunk.

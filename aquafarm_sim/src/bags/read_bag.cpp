@@ -103,7 +103,7 @@ std::string NoSpec(const rosbag::Bag& bag) {
     return ": topic " + connection->topic + ": got type " + connection->datatype + ", expected " +
            type + way_out;
   }
-  return ": no topic spec, so nothing says what was played" + way_out;
+  return ": no topic spec, so it is unknown what was played" + way_out;
 }
 
 std::string RecordedBy(const std::string& version) {

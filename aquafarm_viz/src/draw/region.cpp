@@ -106,7 +106,7 @@ std::string PlaceText(const FarmSpec& spec, double x, double y) {
   return DistanceText(MetresFromFarm(spec, x, y)) + " " + PointFromFarm(spec, x, y);
 }
 
-// Says how the course is known, and until when if the disaster lasts longer.
+// Words for how the course is known, and until when if the disaster lasts longer.
 std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, const Course& course) {
   const double known = course.known_until - course.ahead.front().step;
   if (known < disaster.steps_left) return "known until +" + AheadText(spec, known);
@@ -115,14 +115,15 @@ std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, cons
   return course.errors.empty() ? "dashed: course ahead" : "shaded: mean forecast error";
 }
 
-// Says that a ring covers a part of the farm. The centre may be far away.
+// Words for a ring that covers a part of the farm. The centre may be far away.
 std::string OverText(std::string wind) {
   std::transform(wind.begin(), wind.end(), wind.begin(),
                  [](unsigned char letter) { return std::toupper(letter); });
   return wind.empty() ? "OVER THE RANCH NOW" : wind + " OVER THE RANCH";
 }
 
-// Says when a storm whose course is given is nearest, or that its rings cover or reach the farm.
+// Words for the time at which a storm whose course is given is nearest, or for rings that cover or
+// reach the farm.
 RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subject& subject,
                         const Course& course) {
   constexpr double kMoved_m = 1.0;

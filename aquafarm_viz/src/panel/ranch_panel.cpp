@@ -111,7 +111,7 @@ RanchButtons RanchPanel::MakeButtons() {
       const std::uint32_t wanted = answer.request.steps;
       return std::string(wanted > 0               ? "one step, then paused"
                          : answer.response.paused ? "paused"
-                                                  : "goes on");
+                                                  : "resumed");
     });
   };
   buttons.reset = [this](std::uint64_t seed) {

@@ -191,20 +191,20 @@ const float* RecurrentDqnLearner::ValuesAlong(RecurrentValueNetwork& network) {
 
 // Line 20 of Algorithm 2. @param values of the online network
 void RecurrentDqnLearner::SetTargets(const float* values) {
-  const float* const told = ValuesAlong(*target_values_);
+  const float* const target = ValuesAlong(*target_values_);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     targets_[i] = batch_.rewards[i];
     if (batch_.weights[i] == 0.0F) continue;  // after the end of its episode
     if (batch_.discounts[i] > 0.0F) {
       const std::size_t next =
           static_cast<std::size_t>(batch_.next[i]) * batch_.size() + i % batch_.size();
-      const float* const chooses = (options_.double_dqn ? values : told) + next * kActionCount;
+      const float* const chooses = (options_.double_dqn ? values : target) + next * kActionCount;
       const Best best = BestOf(chooses, batch_.allowed[next]);
-      targets_[i] += batch_.discounts[i] * told[next * kActionCount + best.action];
+      targets_[i] += batch_.discounts[i] * target[next * kActionCount + best.action];
     }
     if (options_.action_gap > 0.0) {
       targets_[i] -= static_cast<float>(options_.action_gap) *
-                     AdvantageGap(told + i * kActionCount, batch_.allowed[i], batch_.actions[i]);
+                     AdvantageGap(target + i * kActionCount, batch_.allowed[i], batch_.actions[i]);
     }
   }
 }

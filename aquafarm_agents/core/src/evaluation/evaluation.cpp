@@ -190,7 +190,7 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
                     std::optional<std::uint64_t> policy_seed, const AccountsOf& accounts_of) {
   AQUAFARM_CHECK_GE(episodes, 1);
   const auto start = std::chrono::steady_clock::now();
-  auto told = start;
+  auto reported = start;
   const auto count = static_cast<std::size_t>(episodes);
   Evaluation evaluation;
   evaluation.seed = EvaluationSeed(seed);
@@ -213,8 +213,8 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
       ++over;
     }
     const auto present = std::chrono::steady_clock::now();
-    if (on_progress && present - told >= kProgressPeriod) {
-      told = present;
+    if (on_progress && present - reported >= kProgressPeriod) {
+      reported = present;
       on_progress(over);
     }
     if (environment.ConsumeRestart()) {  // new farms; finished episodes are kept

@@ -19,7 +19,7 @@ bool EndsWith(const std::string& name, const std::string& end) {
 
 // Names as in Encoder::feature_names. @param has_cell the features contain the ship's cell; if not,
 // the relative positions of the ports identify it
-bool TellsSituations(const std::string& name, bool has_cell) {
+bool DescribesSituation(const std::string& name, bool has_cell) {
   if (name == "self.x" || name == "self.y" || EndsWith(name, "free_capacity")) return true;
   if (name.rfind("device", 0) == 0) return EndsWith(name, ".deployed") || EndsWith(name, ".aboard");
   return !has_cell && name.rfind("port", 0) == 0 &&
@@ -34,7 +34,7 @@ RepetitionPenalty::RepetitionPenalty(const EnvironmentSpec& spec, double penalty
   const std::vector<std::string>& names = spec.feature_names;
   const bool has_cell = std::find(names.begin(), names.end(), "self.x") != names.end();
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (TellsSituations(names[i], has_cell)) telling_.push_back(i);
+    if (DescribesSituation(names[i], has_cell)) described_.push_back(i);
   }
   steps_.resize(SlotCount(spec));
   done_.resize(steps_.size() * kRemembered);
@@ -43,7 +43,7 @@ RepetitionPenalty::RepetitionPenalty(const EnvironmentSpec& spec, double penalty
 // Hash of the situation, above the bits of an action.
 std::uint64_t RepetitionPenalty::SituationOf(const float* features) const {
   Hasher situation;
-  for (const std::size_t feature : telling_) situation.Add(features[feature], 0.0F);
+  for (const std::size_t feature : described_) situation.Add(features[feature], 0.0F);
   return situation.value() << kActionBits;
 }
 

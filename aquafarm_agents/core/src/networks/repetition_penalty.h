@@ -43,10 +43,10 @@ class RepetitionPenalty {
 
   std::size_t agents_;
   float penalty_;
-  std::vector<std::size_t> telling_;  // features that identify a situation
-  std::vector<std::uint64_t> done_;   // [slots, kRemembered] situation and action
-  std::vector<std::uint64_t> steps_;  // [slots] steps since the episode began
-  std::uint64_t situation_{};         // situation of the last Penalize
+  std::vector<std::size_t> described_;  // features that identify a situation
+  std::vector<std::uint64_t> done_;     // [slots, kRemembered] situation and action
+  std::vector<std::uint64_t> steps_;    // [slots] steps since the episode began
+  std::uint64_t situation_{};           // situation of the last Penalize
   std::array<float, kActionCount> values_{};
 };
 

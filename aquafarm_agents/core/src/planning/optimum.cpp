@@ -104,7 +104,7 @@ OptimumShare CompareWithOptimum(
   share.mean_optimum /= static_cast<double>(pairs.size());
   if (!(share.mean_optimum > 0.0)) {
     throw InputError("optimum: got a mean return of " + FormatNumber(share.mean_optimum) +
-                     " of the best plans, expected more than 0, since a share of it says nothing; "
+                     " of the best plans, expected more than 0 for a share of it; "
                      "evaluate without --optimum");
   }
   share.share = share.mean_return / share.mean_optimum;

@@ -114,7 +114,7 @@ class BulletinErrors {
   BulletinErrors(const ForecastErrors& errors, RandomStream& rng)
       : errors_(errors), rng_(rng), unit_{Normal(rng), Normal(rng), Normal(rng)} {}
 
-  // Goes on to a later lead time.
+  // Advances to a later lead time.
   void GoTo(double lead_h) {
     const double kept = std::exp(-(lead_h - lead_h_) / errors_.correlation_h);
     for (double& one : unit_) {

@@ -108,7 +108,7 @@ TEST(Curiosity, PaysForTransitionsAloneAndNothingOnceItsWeightIsGone) {
   EXPECT_GT(starts, 3);  // in addition to the first
 }
 
-TEST(Curiosity, ALossThatIsNoNumberNamesTheStepAndTheSeed) {
+TEST(Curiosity, ANonFiniteLossNamesTheStepAndTheSeed) {
   LocalEnvironment environment(TinyFarm(), {3, kIndexBit | kFeaturesBit, false, 1});
   std::vector<float> intrinsic;
   const auto learner = WithCuriosity(std::make_unique<Purse>(intrinsic), environment.spec(), 7,

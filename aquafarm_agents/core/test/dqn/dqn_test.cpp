@@ -334,7 +334,7 @@ TEST(RecurrentDqn, SumsRewardsOverNoMoreStepsThanItLearnsFrom) {
   RecurrentDqnObservationTypes("sequence_length=4 n_step=4");
 }
 
-TEST(Dqn, ALossThatIsNoNumberEndsTheTraining) {
+TEST(Dqn, ANonFiniteLossEndsTheTraining) {
   const std::string options = "hidden_size=8 batch_size=8 learning_starts=10 buffer_size=500";
   LocalEnvironment environment(TinyFarm(), {8, kFeaturesBit, false, 1});
   const auto learner = MakeDqn(environment.spec(), 1, options);

@@ -48,7 +48,7 @@ TEST(LocalEnvironment, GivesOnlyWhatWasAskedFor) {
 }
 
 // The oracle is the same farm with individual rewards.
-TEST(LocalEnvironment, TellsWhoseTheTeamsRewardIs) {
+TEST(LocalEnvironment, SplitsTheTeamRewardByAgent) {
   Scenario team = aquafarm::test::CrowdedScenario(2);
   team.rewards.sharing = RewardSharing::kTeam;
   LocalEnvironment shared(Share(team), {3, kIndexBit, false, 1});

@@ -61,7 +61,7 @@ TEST(RolloutValues, AreTheMeanOfEpisodes) {
 
 using ValuesFile = FolderTest;
 
-TEST_F(ValuesFile, HasTheSeaBesideThem) {
+TEST_F(ValuesFile, HasTheSeaNextToThem) {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = 60;
   SeaLayer warmth{"warmth", "degC", std::vector<float>(25, 21.5F)};

@@ -86,7 +86,7 @@ TEST(TwoShips, AreLedHomeByActorsWithACriticThatSeesAll) {
   EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, TwoShips()), 0.98);
 }
 
-TEST(TwoShips, AreLedHomeByActorsWhoAreToldTheTeamsRewardAlone) {
+TEST(TwoShips, AreLedHomeByActorsThatReceiveOnlyTheTeamReward) {
   EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, TwoShips(), /*credit=*/0), 0.98);
 }
 
@@ -141,7 +141,7 @@ TEST(Maddpg, LearnsWithMemoryFromAReplayThatHoldsNoStart) {
   EXPECT_TRUE(std::isfinite(learner->status().loss));
 }
 
-TEST(Maddpg, AnActorsLossThatIsNoNumberNamesTheBatchItWasDrawnFor) {
+TEST(Maddpg, ANonFiniteLossOfAnActorNamesItsBatch) {
   const std::string options =
       "hidden_size=8 batch_size=8 learning_starts=10 buffer_size=500 train_interval=2";
   LocalEnvironment environment(Share(TwoShips()), {2, kFeaturesBit, false, 1});
@@ -166,7 +166,7 @@ TEST(Maddpg, AnActorsLossThatIsNoNumberNamesTheBatchItWasDrawnFor) {
                                std::to_string(position) + ";");
 }
 
-TEST(SmartDevices, DriveThemselvesHomeBesideAShip) {
+TEST(SmartDevices, DriveThemselvesHomeNextToAShip) {
   EXPECT_GE(SuccessAfter("q_learning", "", 200000, SmartDevices()), 0.98);
   EXPECT_GE(SuccessAfter("independent_dqn", kSmall, 24000, SmartDevices()), 0.98);
   EXPECT_GE(SuccessAfter("vdn", kSmall, 24000, SmartDevices()), 0.98);
@@ -212,7 +212,7 @@ TEST(DoneAgents, LearnNothingMoreFromATable) {
   EXPECT_EQ(learner.table().values, once);
 }
 
-TEST(DoneAgents, EndTheirTransitionsInAReplayWhileTheOthersGoOn) {
+TEST(DoneAgents, EndTheirTransitionsInAReplayWhileTheOthersContinue) {
   Replay<float> replay({100, 2, 2, 1, 0});
   StepResults results;
   results.legal = {kAllActions, kAllActions};
@@ -253,7 +253,7 @@ Checkpoint PolicyOf(const Learner& learner, const std::string& algorithm,
   return checkpoint;
 }
 
-TEST_P(Saved, LearnersOfSeveralAgentsGoOnBitForBit) {
+TEST_P(Saved, LearnersOfSeveralAgentsContinueBitIdentically) {
   const std::string options = GetParam() == "mappo"
                                   ? "hidden_size=8 rollout_size=300 batch_size=32 team_share=0.5"
                                   : "hidden_size=8 batch_size=8 learning_starts=50 buffer_size=500";

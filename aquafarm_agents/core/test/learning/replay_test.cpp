@@ -98,7 +98,7 @@ TEST(Replay, ALostEpisodeEndsAtItsLastKnownMoment) {
   farms.Add(kNot, kNot);
   const auto& replay = farms.replay();
   EXPECT_FALSE(replay.Begins(2, 0, 1));
-  EXPECT_TRUE(replay.Begins(2, 1, 1)) << "the other farm goes on";
+  EXPECT_TRUE(replay.Begins(2, 1, 1)) << "the other farm continues";
   EXPECT_TRUE(replay.Begins(1, 0, 3));
   const Transition one = replay.At(1, 0, 3, 0.5F);
   EXPECT_FLOAT_EQ(one.reward, 2.0F) << "nothing of the next episode";

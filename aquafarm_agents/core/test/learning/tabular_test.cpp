@@ -43,7 +43,7 @@ TEST(Tabular, TerminationStopsBootstrappingAndTruncationDoesNot) {
   EXPECT_FLOAT_EQ(ValueAfterEnd<S>(EndReason::kStepLimit), 11.5F);
 }
 
-TEST(Tabular, TheStartOfAnEpisodeIsNoTransition) {
+TEST(Tabular, TheStartOfAnEpisodeIsNotATransition) {
   Chain chain;
   TabularLearner<QLearningRule> learner(chain.spec, 1, kByHand);
   chain.Notify(learner, 0, 0.0F);

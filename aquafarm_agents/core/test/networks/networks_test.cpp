@@ -281,13 +281,13 @@ TEST(FlatParameters, AreTheNetworksOwn) {
   EXPECT_TRUE(torch::equal(network->Forward(input), other->Forward(input)));
 }
 
-TEST(FlatAdam, TakesNoStepDownAGradientThatIsNoNumber) {
+TEST(FlatAdam, SkipsNonFiniteGradients) {
   const auto network = MakeNetwork(SmallSpec(), {}, 3);
   FlatAdam adam(*network, torch::kCPU);
   const std::vector<float> before = adam.parameters().ToVector();
   for (const double limit : {0.0, 10.0}) {
     const torch::Tensor zero = adam.parameters().values().sum() * 0.0;
-    EXPECT_FALSE(adam.Step(zero.sqrt(), 0.01, limit)) << "a loss of 0, whose slope is none";
+    EXPECT_FALSE(adam.Step(zero.sqrt(), 0.01, limit)) << "a loss of 0, which has no slope";
     EXPECT_EQ(adam.parameters().ToVector(), before);
   }
   EXPECT_TRUE(adam.Step(adam.parameters().values().square().sum(), 0.01, 0.0));

@@ -109,7 +109,7 @@ TEST(RepetitionPenalty, EndGoingToAndFro) {
   EXPECT_EQ(steps_until_pickup(0.5), 14) << "after seven times aside and back";
 }
 
-TEST(RepetitionPenalty, GoOnFromACheckpoint) {
+TEST(RepetitionPenalty, ContinueFromACheckpoint) {
   RepetitionPenalty repetitions(kTwoFarmsOfTwo, 0.5);
   for (std::uint8_t step = 0; step < 200; ++step) Do(repetitions, kHere, step % 7, step % 2);
   Checkpoint checkpoint;

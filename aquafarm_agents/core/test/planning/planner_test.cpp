@@ -237,7 +237,7 @@ TEST(Foresight, MovingOneForecastPointChangesThePlanAndNotTheTruth) {
   EXPECT_TRUE(near.record().Success());
 }
 
-TEST(Clairvoyant, GoesOnFromTheMiddleOfAnEpisode) {
+TEST(Clairvoyant, ContinuesFromTheMiddleOfAnEpisode) {
   const auto scenario = std::make_shared<const Scenario>(TinyScenario(9, 0.02F, 1));
   Planner planner(*scenario);
   Farm farm(scenario);

@@ -167,14 +167,14 @@ TEST(TeamBound, NeverCountsLessThanNothingForADeviceThatIsWornOut) {
   EXPECT_LE(best, TeamBound(farm) + 1e-6);
 }
 
-TEST(TeamBound, RefusesRewardsForDawdling) {
+TEST(TeamBound, RefusesRewardsForWaiting) {
   Scenario scenario = TinyTeam();
   scenario.rewards.collision = 2.0F;
   EXPECT_EQ(MessageOf<InputError>([&] { TeamBound(aquafarm::test::MakeFarm(scenario)); }),
             "bound: rewards.collision: got more than 0, expected at most 0");
 }
 
-TEST(TeamPlanner, PlansAnewWhenABulletinArrives) {
+TEST(TeamPlanner, PlansAgainWhenABulletinArrives) {
   Scenario scenario = TinyTeam();
   scenario.disasters = {StillDisaster(-9.0F, 3.0F, {1.5F}, {-6.0F})};
   Farm farm = aquafarm::test::MakeFarm(scenario);

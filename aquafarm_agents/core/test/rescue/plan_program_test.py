@@ -180,7 +180,7 @@ class PlanProgram(unittest.TestCase):
         self.assertNotIn("no ship should leave", words)
         self.assertIsNone(plan["deadlines"]["no_departure_after"])
 
-    def test_an_end_of_the_known_time_is_no_end_of_the_departures(self):
+    def test_departures_may_follow_the_end_of_the_known_time(self):
         code, words, plan = self.plan_of(bulletin(26.0, 0.5), "--ships", 2, "--speed", 12)
         self.assertEqual(0, code, words)
         opens = [one for device in plan["devices"] for one in device["deadlines"]
@@ -271,7 +271,7 @@ class PlanProgram(unittest.TestCase):
         self.assertEqual({None}, {one["odds"]["home"] for one in plan["devices"]})
         self.assertEqual({None, 0}, {plan["loss"]["idle"]["mean"], len(plan["plan"]["routes"])})
 
-    def test_assumptions_tell_what_is_given(self):
+    def test_assumptions_list_what_is_given(self):
         place = self.plan_of(bulletin())[2]["ports"][0]["position"]
         at = f"{place['latitude']},{place['longitude']}"
         ships = self.write("ships.csv", "name,latitude,longitude,speed_kn\n"

@@ -28,7 +28,7 @@ std::string Left(double seconds) {
   return at == std::string::npos ? "" : line.substr(at);
 }
 
-TEST(Progress, ALineTellsReturnSuccessSpeedAndTimeLeft) {
+TEST(Progress, ALineHasReturnSuccessSpeedAndTimeLeft) {
   EXPECT_EQ(DescribeProgress(Midway()),
             "steps 812,000 / 3,000,000  episodes 1,240  return 81.2  success 0.62  "
             "exploration 0.25  250,400 steps/s  left 8.7 s");

@@ -67,7 +67,7 @@ class LostEnvironment final : public Environment {
   LocalEnvironment farms_;
 };
 
-TEST_F(RunTest, AgentsLearnFromTheirOwnPartUnlessToldOtherwise) {
+TEST_F(RunTest, AgentsLearnFromTheirOwnPartByDefault) {
   Scenario team = aquafarm::test::TinyScenario();
   team.ships.count = 2;
   team.ports.cells = {{2, 0}, {2, 1}};

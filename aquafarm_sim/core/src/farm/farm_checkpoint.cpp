@@ -24,7 +24,7 @@ using internal::ForecastsFromJson;
 using internal::ForecastsToJson;
 using internal::Int;
 using internal::Read;
-using internal::TellsRings;
+using internal::RingsMayHaveChanged;
 using internal::TrackFromJson;
 using internal::TrackToJson;
 using internal::Written;
@@ -49,7 +49,7 @@ void HashDisaster(const Disaster& disaster, Hasher& hasher) {
   const Bulletin& bulletin = disaster.bulletin;
   hasher.Add(bulletin.x, bulletin.y);
   hasher.Add(bulletin.heading_deg, bulletin.step);
-  if (!TellsRings(disaster)) return;
+  if (!RingsMayHaveChanged(disaster)) return;
   for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
     hasher.Add(bulletin.radius[k], bulletin.speed);
     for (std::size_t q = 0; disaster.by_quadrant && q < bulletin.quadrant.size(); ++q) {

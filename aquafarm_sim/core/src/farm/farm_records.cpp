@@ -20,9 +20,9 @@ void ReadRings(Reader& a, Disaster& d) {
   d.SnapshotRings();
   if (a.state.contains("bulletin_rings")) {
     a.Fields("bulletin_rings", d.bulletin.radius, d.bulletin.quadrant);
-  } else if (TellsRings(d)) {
+  } else if (RingsMayHaveChanged(d)) {
     throw InputError(
-        "state: disaster: bulletin_rings: missing, expected the rings as the last bulletin told "
+        "state: disaster: bulletin_rings: missing, expected the rings as the last bulletin gave "
         "them, which states saved by older versions lack");
   }
 }

@@ -24,7 +24,7 @@ std::int32_t Int(Enum value) {
 }
 
 // Returns whether the rings may have changed since the last bulletin was issued.
-inline bool TellsRings(const Disaster& disaster) {
+inline bool RingsMayHaveChanged(const Disaster& disaster) {
   return disaster.radius_growth != 0.0F && disaster.bulletin.step != kNone;
 }
 
@@ -177,7 +177,7 @@ struct FieldsOf<EpisodeRecord> {
   }
 };
 
-// The radii of quadrants and those told by the last bulletin are written only where they differ
+// The radii of quadrants and those of the last bulletin are written only where they differ
 // from what the other fields give.
 template <>
 struct FieldsOf<Disaster> {
@@ -205,7 +205,7 @@ struct FieldsOf<Disaster> {
     a.Fields("bulletin_when", b.heading_deg, b.step);
     if constexpr (!Archive::kReads) {
       if (d.by_quadrant) a.Field("quadrants", d.quadrant);
-      if (TellsRings(d)) a.Fields("bulletin_rings", b.radius, b.quadrant);
+      if (RingsMayHaveChanged(d)) a.Fields("bulletin_rings", b.radius, b.quadrant);
     }
   }
 };

@@ -48,21 +48,22 @@ void CollectSensors(const Farm& farm, Cell self, std::vector<Sensor>& sensors) {
 
 // Restores rings, risks and grade to the time of the last bulletin, because later changes are not
 // observable out of sight.
-void RestoreBulletin(const std::vector<Waypoint>& track, const Bulletin& told,
+void RestoreBulletin(const std::vector<Waypoint>& track, const Bulletin& bulletin,
                      ObservableDisaster& belief) {
   if (!track.empty()) {
     belief.waypoint = 0;
     FollowTrack(belief, track, 0);
-    FollowTrack(belief, track, told.step);
+    FollowTrack(belief, track, bulletin.step);
     return;
   }
   if (belief.radius_growth == 0.0F) return;
   for (std::size_t k = 0; k < static_cast<std::size_t>(belief.rings); ++k) {
     if (belief.by_quadrant) {
       SetRing(belief, k,
-              {told.quadrant[0][k], told.quadrant[1][k], told.quadrant[2][k], told.quadrant[3][k]});
+              {bulletin.quadrant[0][k], bulletin.quadrant[1][k], bulletin.quadrant[2][k],
+               bulletin.quadrant[3][k]});
     } else {
-      SetRing(belief, k, told.radius[k]);
+      SetRing(belief, k, bulletin.radius[k]);
     }
   }
 }

@@ -106,10 +106,10 @@ class Builder {
     constexpr std::uint32_t kSoonLearnt = 1'000'000;
     const std::uint32_t states = Encoder(ranch_.scenario).state_count();
     if (states > 0 && states <= kSoonLearnt) return false;
-    Scenario told = ranch_.scenario;
-    told.view.routes = true;
+    Scenario with_routes = ranch_.scenario;
+    with_routes.view.routes = true;
     try {
-      ValidateScenario(told);
+      ValidateScenario(with_routes);
     } catch (const InputError&) {
       return false;  // the farm is too large for distances by water
     }

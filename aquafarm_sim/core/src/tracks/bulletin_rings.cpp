@@ -18,21 +18,21 @@ std::array<double, kQuadrantCount> ReadQuadrants(
     std::int32_t wind_kt, const std::array<double, kQuadrantCount>& fallback, ParseContext& place) {
   const JsonObject object(value, path, place);
   std::array<double, kQuadrantCount> radius_km = fallback;
-  std::size_t said = 0;
+  std::size_t given = 0;
   for (std::size_t q = 0; q < keys.size(); ++q) {
     const std::string upper = Upper(keys[q]);
     const auto one = object.TryNumber({keys[q], upper.c_str()}, 0.0, kMaxRadius_km);
     radius_km[q] = one.value_or(fallback[q]);
-    said += one ? 1 : 0;
+    given += one ? 1 : 0;
   }
   const bool all = *std::max_element(fallback.begin(), fallback.end()) > 0.0;
   const std::string wind = std::to_string(wind_kt) + " kt: ";
-  if (said == 0 && !IsBlank(value)) {
+  if (given == 0 && !IsBlank(value)) {
     place.WarnValue(path, wind + "has none of the quadrants " + keys[0] + ", " + keys[1] + ", " +
                               keys[2] + " and " + keys[3]);
-  } else if (said > 0 && said < keys.size()) {
-    place.WarnValue(path, wind + "not every quadrant is said; the others are given " +
-                              (all ? "the radius that is said of all" : "0"));
+  } else if (given > 0 && given < keys.size()) {
+    place.WarnValue(path, wind + "not every quadrant has a radius; the others are given " +
+                              (all ? "the radius of the whole ring" : "0"));
   }
   return radius_km;
 }

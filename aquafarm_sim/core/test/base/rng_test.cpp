@@ -32,7 +32,7 @@ TEST(Rng, EveryPartOfTheKeyMatters) {
   EXPECT_EQ(firsts.size(), 8U);
 }
 
-TEST(Rng, AStreamGoesOnFromAnyPosition) {
+TEST(Rng, AStreamContinuesFromAnyPosition) {
   RandomStream stream({5, 6, RngStream::kExploration, 7});
   std::vector<std::uint32_t> all(23);
   std::generate(all.begin(), all.end(), [&] { return stream.Next(); });

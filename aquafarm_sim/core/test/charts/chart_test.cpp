@@ -104,7 +104,7 @@ TEST(Coast, FillsPolygonsAndLeavesTheirLakes) {
 }
 
 // The projection on the tangent plane maps the far hemisphere onto the ranch.
-TEST(Coast, OfTheFarSideIsNoLandHere) {
+TEST(Coast, OfTheFarSideIsIgnored) {
   const auto land = [](const std::string& ring, GeoPoint origin) {
     const Coast coast = ParseCoast(R"({"type": "Polygon", "coordinates": [)" + ring + "]}", "x");
     return ShareOfLand(coast, GeoFrame(origin, 1000.0), 12, 8).sum();
@@ -186,7 +186,7 @@ TEST(Coast, SpendsItsComparisonsOnTheWholeFile) {
             "an odd number of times is land");
 }
 
-TEST(Coast, RefusesWhatIsNoCoast) {
+TEST(Coast, RefusesOtherDataThanCoasts) {
   const auto refused = [](const std::string& text) {
     try {
       ParseCoast(text, "x");

@@ -48,7 +48,7 @@ Farm At10(const Scenario& scenario = NorthernStorm()) {
   return farm;
 }
 
-TEST(IssueForecast, ChangesWhatAgentsAreToldAndNotTheTruth) {
+TEST(IssueForecast, ChangesWhatAgentsObserveAndNotTheTruth) {
   Farm informed = At10();
   Farm uninformed = At10();
   informed.IssueForecast(0, Eastward());

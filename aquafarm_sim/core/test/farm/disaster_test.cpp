@@ -156,7 +156,7 @@ TEST(Motion, WrapsOrLeavesWhenAsked) {
   EXPECT_EQ(leaving.x, 27.0F);
 }
 
-TEST(Motion, NeverLeavesTheEnlargedMapUnlessTold) {
+TEST(Motion, NeverLeavesTheEnlargedMapByDefault) {
   for (Border border : {Border::kReflect, Border::kWrap}) {
     DisasterSpec spec;
     spec.speed = 3.7F;

@@ -24,7 +24,7 @@ using test::RandomSteps;
 using test::StillDisaster;
 using test::TinyScenario;
 
-TEST(SaveLoad, GoesOnBitForBit) {
+TEST(SaveLoad, ContinuesBitIdentically) {
   Farm farm = MakeFarm(CrowdedScenario(2));
   farm.Reset(11, 4);
   RandomSteps(farm, 37, 1);
@@ -278,11 +278,11 @@ TEST(SaveLoad, AStateOfBeforeBulletinsKeptRingsIsRefused) {
   ASSERT_EQ(Refused(farm, [](json&) {}), "was loaded");
   EXPECT_EQ(
       Refused(farm, [](json& s) { s["disasters"][1].erase("bulletin_rings"); }),
-      "state: disaster: bulletin_rings: missing, expected the rings as the last bulletin told "
+      "state: disaster: bulletin_rings: missing, expected the rings as the last bulletin gave "
       "them, which states saved by older versions lack");
 }
 
-TEST(Hash, TellsApartWhatBulletinsToldOfADisasterThatGrows) {
+TEST(Hash, DependsOnTheBulletinRingsOfAGrowingDisaster) {
   Farm farm = FarmAfterABulletin();
   const auto hash = [](const std::string& told) { return told.substr(0, 12); };
   const std::string other = "state: hash:";
@@ -299,7 +299,7 @@ TEST(Hash, TellsApartWhatBulletinsToldOfADisasterThatGrows) {
       other);
 }
 
-TEST(Hash, TellsTheFutureOfABulletinApart) {
+TEST(Hash, DependsOnTheForecastOfABulletin) {
   Farm a = MakeFarm(CrowdedScenario(1));
   Farm b = MakeFarm(CrowdedScenario(1));
   DisasterSpec spec = StillDisaster(3, 3, {2}, {-20});

@@ -145,7 +145,7 @@ TEST(Step, HoldingStaysAndCostsTheStep) {
   EXPECT_EQ(ship.reward, -1.0F);
 }
 
-TEST(PlaceShip, PutsItOnFreeWaterAloneAndItGoesOnFromThere) {
+TEST(PlaceShip, PutsItOnFreeWaterAloneAndItContinuesFromThere) {
   auto scenario = TinyScenario();
   scenario.ships.count = 2;
   Farm farm = MakeFarm(scenario);

@@ -140,7 +140,7 @@ Farm PlayedBeside(const Scenario& plain, const Scenario& scenario) {
   return told;
 }
 
-TEST(Forecasts, AreWhatShipsAreToldWhileTheTruthFollowsTheTrack) {
+TEST(Forecasts, AreWhatShipsObserveWhileTheTruthFollowsTheTrack) {
   Scenario plain = Forecast();
   plain.view.forecast_error_km.clear();
   const Farm told = PlayedBeside(plain, Forecast());
@@ -240,7 +240,7 @@ TEST(IssuedForecasts, LeadFromWhereTheStormIsToThePointsSaid) {
   EXPECT_EQ(at(200, 288), (Place{25.0F, 20.0F})) << "the newest counts";
 }
 
-TEST(IssuedForecasts, AreToldFromTheFirstIssueUntilTheyRunOut) {
+TEST(IssuedForecasts, AreObservedFromTheFirstIssueUntilTheyExpire) {
   Scenario scenario = ReportedFarm();
   scenario.disasters[0].forecasts[0].step = 10.0F;
   Farm farm = MakeFarm(scenario);
@@ -251,7 +251,7 @@ TEST(IssuedForecasts, AreToldFromTheFirstIssueUntilTheyRunOut) {
   EXPECT_FALSE(HasForecast(farm, 0, 432));
 }
 
-TEST(IssuedForecasts, AreWhatShipsAreToldWhileTheTruthFollowsTheTrack) {
+TEST(IssuedForecasts, AreWhatShipsObserveWhileTheTruthFollowsTheTrack) {
   Scenario plain = ReportedFarm();
   plain.disasters[0].forecasts.clear();
   const Farm told = PlayedBeside(plain, ReportedFarm());

@@ -181,7 +181,7 @@ TEST(Features, HaveTheEnergyUsedWhereItIsInTheReward) {
   EXPECT_NEAR(Feature(farm, "energy_used"), 1.2F / 400.0F, 1e-8F);
 }
 
-TEST(Features, TellSeveralAgentsApartAndWhatTheOthersCarry) {
+TEST(Features, DistinguishSeveralAgentsAndTheCargoOfTheOthers) {
   Scenario scenario = TinyScenario();
   scenario.ships.count = 2;
   Farm farm = MakeFarm(scenario);
@@ -219,7 +219,7 @@ TEST(Features, SayWhereThingsAre) {
   EXPECT_FLOAT_EQ(Feature(farm, "time_left"), 1.0F - 3.0F / 1000.0F);
 }
 
-TEST(Features, TellTheWayByWaterToPortsAndToDevicesThatWait) {
+TEST(Features, HaveTheRouteToPortsAndToDeployedDevices) {
   Scenario scenario = TinyScenario();
   scenario.view.routes = true;
   Farm farm = MakeFarm(scenario);
@@ -303,7 +303,7 @@ void ExpectCoursesInPlay(Scenario scenario) {
   EXPECT_GT(risky, 200);
 }
 
-TEST(Features, TellTheRiskForecastAlongEachCourse) {
+TEST(Features, HaveTheRiskForecastAlongEachCourse) {
   Scenario scenario = CrowdedScenario(1, 0);
   ExpectCoursesInPlay(scenario);
   // Rings by quadrants, of which one is absent in a quadrant; one storm ends before the other.
@@ -317,7 +317,7 @@ TEST(Features, TellTheRiskForecastAlongEachCourse) {
   ExpectCoursesInPlay(scenario);
 }
 
-TEST(Features, TellTheRiskOfTheSeaAlongEachCourse) {
+TEST(Features, HaveTheRiskOfTheSeaAlongEachCourse) {
   Scenario scenario = CrowdedScenario(1, 0);
   scenario.view.lookahead_risk = true;
   scenario.disasters.clear();
@@ -338,7 +338,7 @@ TEST(Features, TellTheRiskOfTheSeaAlongEachCourse) {
 }
 
 // Out of sight a disaster is assumed to have kept the motion of the last bulletin since its issue.
-TEST(Features, TellTheRiskThatAnOldBulletinLeadsToExpect) {
+TEST(Features, HaveTheRiskThatAnOldBulletinLeadsToExpect) {
   Scenario scenario = CrowdedScenario(1, 0);
   scenario.damage.crash_probability = 0.0F;
   scenario.view = {ViewMode::kPartial, 0.5F, 9, 0.0F};

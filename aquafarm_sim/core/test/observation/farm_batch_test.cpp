@@ -138,7 +138,7 @@ TEST(FarmBatch, ThreadsChangeNothing) {
   }
 }
 
-TEST(FarmBatch, SaveAndLoadGoOnBitForBit) {
+TEST(FarmBatch, SaveAndLoadContinueBitIdentically) {
   const auto scenario = Shared(CrowdedScenario(1));
   FarmBatch batch(scenario, 4);
   Buffers buffers(batch);
@@ -196,7 +196,7 @@ TEST(FarmBatch, NeitherStepsNorEpisodesAllocate) {
   ExpectNoAllocation(fixed);
 }
 
-TEST(FarmBatch, AFarmsStateIsUnder1280BytesBesidesItsChart) {
+TEST(FarmBatch, AFarmsStateIsUnder1280BytesWithoutItsChart) {
   Scenario scenario;  // sizes of the paper; all farms share one chart
   scenario.disasters.resize(1);
   ValidateScenario(scenario);

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Ranch, OfManyDevicesTellsNetworksTheWay) {
+TEST(Ranch, OfManyDevicesHasRoutesForNetworks) {
   RanchRequest request = Request();
   request.devices = 3;
   EXPECT_FALSE(BuildRanch(request).scenario.view.routes);
@@ -91,7 +91,7 @@ TEST(Ranch, MayBeCalmAndOnOpenSea) {
   EXPECT_TRUE(Says(ranch.decided, "no shore, so 4 drawn at the edge"));
 }
 
-TEST(Ranch, HasOtherDisastersBesideItsStorm) {
+TEST(Ranch, HasOtherDisastersInAdditionToItsStorm) {
   RanchRequest request = Request();
   request.disasters = {"red_tide:area_km2=120,current_mps=0.3,current_to_deg=45",
                        "wave:height_m=4,radius_km=5,duration_h=48"};
@@ -149,7 +149,7 @@ TEST(Ranch, IsRefusedWithTheReason) {
   EXPECT_NE(Refused(request).find("devices"), std::string::npos);
 }
 
-TEST(Ranch, KnowsItsChartByItsContent) {
+TEST(Ranch, RecognisesItsChartByItsContent) {
   const fs::path folder = fs::temp_directory_path() / ("charts." + std::to_string(getpid()));
   fs::create_directories(folder);
   RanchRequest request = Request();

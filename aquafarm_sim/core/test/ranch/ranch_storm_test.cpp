@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Ranch, TellsItsAgentsWhatTheBulletinsForecast) {
+TEST(Ranch, GivesItsAgentsTheForecastsOfTheBulletins) {
   RanchRequest request = Request();
   request.forecasts = (kData / "bulletin.json").string();
   const BuiltRanch ranch = BuildRanch(request);

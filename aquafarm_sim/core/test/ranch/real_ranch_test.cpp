@@ -66,7 +66,7 @@ TEST(RealExcerpts, OfJmaMakeARanch) {
 }
 
 // The bulletins of the archive contain no forecasts; the storm continues its motion.
-TEST(RealFiles, OfBulletinsHaveNoForecastsToTell) {
+TEST(RealFiles, OfBulletinsHaveNoForecasts) {
   const fs::path data = SharedData();
   if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
   RanchRequest request;

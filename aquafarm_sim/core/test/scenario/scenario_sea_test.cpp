@@ -226,7 +226,7 @@ class SeaFiles : public testing::Test {
   const fs::path folder_;
 };
 
-TEST_F(SeaFiles, AreReadBesideTheScenario) {
+TEST_F(SeaFiles, AreReadFromTheFolderOfTheScenario) {
   const Scenario scenario = LoadScenario(Write("sea.nc"));
   const SeaLayer& warmth = scenario.seas->layers[0];
   EXPECT_EQ(warmth.units, "degC");

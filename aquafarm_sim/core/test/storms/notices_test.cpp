@@ -139,7 +139,7 @@ TEST(Notices, ThatAreWrongAreRefusedWithTheirLine) {
             "x.json:2: alerts: got the newer interface's alerts, which are not read" + expected);
 }
 
-TEST(Notices, BesideAnchoragesAreSaidNotToBeRead) {
+TEST(Notices, NextToAnchoragesAreReportedAsUnread) {
   std::string text = Sample("anchorage.json");
   text.insert(text.find('{') + 1, "\"warning\": [{}],");
   EXPECT_EQ(ParseNotices(text, "x.json").warnings,

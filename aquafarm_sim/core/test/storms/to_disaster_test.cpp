@@ -120,7 +120,7 @@ TEST(ToDisaster, PutsCellsAndStepsInThePlaceOfKilometresAndHours) {
   EXPECT_EQ(disaster.track[0].risks, DefaultGradeRisks()[2]);
 }
 
-TEST(Bulletins, GoOnWithTheNewestForecast) {
+TEST(Bulletins, ContinueWithTheNewestForecast) {
   StormTrack track = WestGoing();
   StormForecast old;
   old.issued = kStart;
@@ -134,7 +134,7 @@ TEST(Bulletins, GoOnWithTheNewestForecast) {
   EXPECT_EQ(whole.fixes[4].time, kStart + 44 * kHour_s);
 }
 
-TEST(Bulletins, GoOnAsTheStormMovesWithoutAForecast) {
+TEST(Bulletins, ContinueAsTheStormMovesWithoutAForecast) {
   StormTrack track = WestGoing();
   track.fixes.back().heading_deg = 0.0;
   track.fixes.back().speed_kmh = 10.0;
@@ -169,7 +169,7 @@ TEST(Bulletins, LastFromNowToTheirEnd) {
   }
 }
 
-TEST(Bulletins, AreToldWithTheirForecast) {
+TEST(Bulletins, AreReportedWithTheirForecast) {
   StormTrack track = WestGoing();
   StormForecast fresh;
   fresh.issued = kStart + 20 * kHour_s;
@@ -238,7 +238,7 @@ TEST(Steps, AreBounded) {
   }
 }
 
-TEST(ClosestApproach, TellsWhenAStormIsNearestAndHowLongItsWindLasts) {
+TEST(ClosestApproach, HasTheTimeOfTheNearestPointAndTheDurationOfTheWind) {
   const Passage passage =
       ClosestApproach(ToRings(WestGoing(), RingReduction::kLargest), kRanch, 0.0);
   EXPECT_EQ(passage.nearest_time, kStart + 10 * kHour_s);

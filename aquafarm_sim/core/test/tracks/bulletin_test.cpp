@@ -81,7 +81,7 @@ TEST(Bulletin, ReadsBeijingTimeAndQuadrants) {
   EXPECT_EQ(fix.Ring(64), nullptr);
 }
 
-TEST(Bulletin, KnowsBothSpellingsAndWhatIsUnknown) {
+TEST(Bulletin, ReadsBothSpellingsAndUnknownValues) {
   const StormFile file = ParseStormFile(Sample("bulletin.json"), "b.json");
   const StormTrack& storm = FindTrack(file, "202106");
   const StormFix& bare = storm.fixes[1];
@@ -159,8 +159,8 @@ TEST(Bulletin, KeepsForecastsAndLandfallsInOrder) {
 TEST(WeatherService, ReadsTextForNumbersInsideAMarkdownFence) {
   const StormFile file = ParseStormFile(Sample("weather_service.json"), "x");
   EXPECT_EQ(file.warnings,
-            std::vector<std::string>{"x:9: track[0].windRadius64: 64 kt: not every quadrant is "
-                                     "said; the others are given 0"});
+            std::vector<std::string>{"x:9: track[0].windRadius64: 64 kt: not every quadrant has "
+                                     "a radius; the others are given 0"});
   const StormTrack& storm = file.tracks.at(0);
   ASSERT_EQ(storm.fixes.size(), 3U);
   EXPECT_EQ(storm.fixes[0].grade, StormGrade::kSuperTyphoon);

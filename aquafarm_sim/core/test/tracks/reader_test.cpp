@@ -37,7 +37,7 @@ TEST(TrackFormat, IsKnownByItsContent) {
 }
 
 // Storms without a number have a serial number that restarts each year.
-TEST(StormFile, TellsStormsOfOneIdApart) {
+TEST(StormFile, DistinguishesStormsOfOneId) {
   const std::string years =
       "66666 0000 01 0012 0000 0 6 (nameless) 20200101\n"
       "2019072500 1 297 1230 1000 12\n"

@@ -27,7 +27,7 @@ TEST(Cma, HasTwoMinuteWindsAndItsGrades) {
   EXPECT_EQ(fix.line, 8);
 }
 
-TEST(Cma, TellsMissingWindsFromWeakOnes) {
+TEST(Cma, DistinguishesMissingWindsFromWeakOnes) {
   const StormFile file = Load("cma.txt");
   const std::vector<StormFix>& fixes = FindTrack(file, "Faye(Gloria)").fixes;
   EXPECT_EQ(fixes[0].wind_mps, 12.0);
@@ -40,7 +40,7 @@ TEST(Cma, TellsMissingWindsFromWeakOnes) {
   EXPECT_EQ(fixes[2].grade, StormGrade::kUnknown);
 }
 
-TEST(Cma, KnowsStormsByNumberOrElseBySerial) {
+TEST(Cma, IdentifiesStormsByNumberOrElseBySerial) {
   const StormFile file = Load("cma.txt");
   ASSERT_EQ(file.tracks.size(), 3U);
   EXPECT_EQ(file.tracks[0].id, "7127,7128");
@@ -73,7 +73,7 @@ TEST(Jma, TurnsAnAsideCircleIntoQuadrants) {
   EXPECT_EQ(fix.Ring(34), nullptr);
 }
 
-TEST(Jma, TellsBlankRadiiFromNone) {
+TEST(Jma, DistinguishesBlankRadiiFromNone) {
   const StormTrack storm = FindTrack(Load("jma.txt"), "2106");
   EXPECT_TRUE(storm.fixes[0].rings.empty());
   EXPECT_EQ(storm.fixes[0].wind_mps, std::nullopt);

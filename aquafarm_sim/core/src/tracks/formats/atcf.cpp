@@ -92,9 +92,9 @@ void ReadRing(const Fields& fields, StormFix& fix, ParseContext& place) {
       TryWhole(At(fields, kRadiusWind), "wind of the radii", 0, 100, place).value_or(0);
   const std::string_view code = At(fields, kRadiusCode);
   if (wind_kt == 0 || code.empty()) return;
-  const std::size_t said = code == "AAA" ? 1 : code.back() == 'S' ? 2 : 4;
+  const std::size_t given = code == "AAA" ? 1 : code.back() == 'S' ? 2 : 4;
   std::array<double, 4> radius{};
-  for (std::size_t i = 0; i < said; ++i) {
+  for (std::size_t i = 0; i < given; ++i) {
     const std::string_view field = At(fields, static_cast<Field>(kRadius1 + i));
     if (field.empty()) ReadWhole(field, "radius", 0, 1500, place);  // rejects a truncated row
     const auto value = TryWhole(field, "radius", 0, 1500, place);

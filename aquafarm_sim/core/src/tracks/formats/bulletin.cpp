@@ -82,9 +82,9 @@ std::optional<std::array<double, kQuadrantCount>> ParseRadii(const JsonObject& p
 
 void ReadRing(const JsonObject& point, std::int32_t wind_kt, JsonObject::Keys whole,
               JsonObject::Keys quadrants, StormFix& fix, ParseContext& place) {
-  const auto said = ParseRadii(point, whole, place);
-  std::array<double, kQuadrantCount> radius = said.value_or(std::array<double, kQuadrantCount>{});
-  bool valid = said.has_value();
+  const auto given = ParseRadii(point, whole, place);
+  std::array<double, kQuadrantCount> radius = given.value_or(std::array<double, kQuadrantCount>{});
+  bool valid = given.has_value();
   const Json* value = point.Find(quadrants);
   if (value != nullptr && value->is_object()) {
     const auto each = ReadQuadrants(*value, Join(point.path(), point.KeyOf(quadrants)),

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "aquafarm/base/angle.h"
 #include "aquafarm_sim/plan_words.h"
 
 namespace aquafarm_agents {
 namespace {
 
+using aquafarm::kPi;
 using aquafarm_msgs::RescuePlan;
 using aquafarm_msgs::RescueStormPoint;
 using aquafarm_sim::LocalText;
@@ -19,7 +21,6 @@ using aquafarm_sim::WithoutRouteText;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kCircleCorners = 72;
 // Heights above the ranch's own markers; rviz's view from above clips at 500 m.
 constexpr double kLine_m = 100.0;

@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "aquafarm/base/angle.h"
+
 namespace aquafarm_viz {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using aquafarm::kPi;
 
 double ToLine(double at, double period) {
   const double rest = std::fmod(std::fmod(at, period) + period, period);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <opencv2/core/types.hpp>
 
+#include "aquafarm/scenario/limits.h"
 #include "aquafarm_viz/scene/rings.h"
 
 namespace aquafarm_viz {
@@ -19,7 +20,6 @@ using aquafarm_msgs::FarmState;
 constexpr double kHour_s = 3600.0;
 constexpr double kErrorLead_h = 24.0;           // between two entries of forecast_error_km
 constexpr double kSameCells = 1.0;              // a disaster this near its track follows it
-constexpr double kWorstRisk = -20.0;            // DisasterState.risks
 constexpr int kHorizon = 10000;                 // [steps]
 constexpr std::size_t kMaxErrorPoints = 4096U;  // of a course with errors
 
@@ -72,7 +72,8 @@ void AddRings(Track& course, const Track& truth) {
     }
     if (point.risks.empty()) point.risks = true_storm.risks;
     // A ring without a risk would count as calm.
-    point.risks.resize(std::max(point.risks.size(), point.radii.size()), kWorstRisk);
+    point.risks.resize(std::max(point.risks.size(), point.radii.size()),
+                       double(aquafarm::kWorstRisk));
   }
 }
 

@@ -11,8 +11,8 @@
 
 namespace aquafarm::agents {
 
-/// Whether the functions below accept an input and a network's weight. Other shapes than those that
-/// they state are a LogicError.
+/// Returns whether the functions below accept an input and a network's weight. They throw
+/// LogicError for shapes other than those in their comments.
 bool CanFuse(const torch::Tensor& input, const torch::Tensor& weight);
 
 /// Q = head(ReLU(Linear(ReLU(Linear(input))))) with weights and biases as in torch::nn::Linear. The

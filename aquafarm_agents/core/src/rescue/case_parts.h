@@ -10,12 +10,12 @@ namespace aquafarm::agents {
 /// Age from which a bulletin is old [h].
 inline constexpr double kOldBulletin_h = 12.0;
 
-/// Reads the storm: sets storm, start, the time that is known, and the central forecast.
+/// Reads the storm. Sets storm, start, known time and central forecast.
 void ReadStorm(const RescueRequest& request, RescueCase& rescue);
-/// Sets name, rings, passage and central forecast from the whole track, and the steps of the
-/// ensemble. Needs storm.file, start, and storm.issued and known_until.
+/// Sets name, rings, passage, central forecast and the steps of the ensemble from the whole track.
+/// Requires storm.file, storm.issued, storm.known_until and start.
 void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase& rescue);
-/// Damage per step of the ensemble, from that per step of the ranch.
+/// Converts the damage per step of the ranch to damage per step of the ensemble.
 double ExposureDamage(const RescueCase& rescue);
 /// Reads ports, devices and ships.
 void ReadFleet(const RescueRequest& request, RescueCase& rescue);

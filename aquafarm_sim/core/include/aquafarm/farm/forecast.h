@@ -13,11 +13,12 @@
 /// The newest forecast of an authority applies. It leads from the current position to the points
 /// that lie in the future. After its last point the disaster keeps the motion between the last two
 /// points, or its present motion if there is one point, until the true track or the disaster ends.
-/// Its rings are those of its points, or the true ones if its points have none. Those of a disaster
-/// without a track grow by radius_growth: from the present step on, or after the last point that
-/// has rings (they never shrink there). Before the first
+/// Its rings are those of its points, or the true ones if its points have none. The rings of a
+/// disaster without a track grow by radius_growth from the present step on. If points have rings,
+/// growth starts after the last of these points, and shrinking is ignored. Before the first
 /// forecast is issued and after the newest one expires, agents observe the current motion of the
-/// storm. The scenario's forecasts end when another track replaces the scenario's.
+/// storm. If a new track replaces that of the scenario, the forecasts of the scenario no longer
+/// apply.
 ///
 /// u is drawn once per episode and disaster, with a mean length of 1 and a random direction.
 /// Successive forecasts of one storm therefore err to the same side, and each is more accurate than
@@ -51,9 +52,9 @@ const IssuedForecast* NewestForecast(const Farm& farm, std::int32_t disaster, st
 void CheckForecast(const Farm& farm, std::int32_t disaster, const IssuedForecast& forecast);
 
 /// Fits a storm to a farm before Farm::SetDisaster. A forecast that is issued in the farm's future
-/// is issued now. With view.forecast_error_km the waypoints after the issue of the newest forecast
-/// are moved by minus the error of the farm's episode, so that the truth is as far from the
-/// forecast as published forecasts are from their storms; otherwise it follows the forecast.
+/// is issued now. Without view.forecast_error_km the true track follows the forecast. With it, the
+/// waypoints after the issue of the newest forecast are moved by minus the error of the farm's
+/// episode. The truth is then as far from the forecast as storms are from published forecasts.
 void FitArrival(const Farm& farm, std::int32_t disaster, DisasterSpec& spec);
 
 /// Returns the newest forecast of a storm, fitted to a farm for Farm::IssueForecast: a forecast

@@ -11,7 +11,7 @@
 
 namespace aquafarm::agents {
 
-/// Farms that an environment has of a larger number, which several processes share.
+/// The farms of one environment if several processes share all farms.
 struct FarmShare {
   std::int32_t first{};  ///< index of its first farm among all
   std::int32_t total{};  ///< number of all farms; 0: the environment has all of them
@@ -22,7 +22,7 @@ class LocalEnvironment final : public Environment {
  public:
   /// @param scenario must have passed ValidateScenario
   /// @param share the farms play the same episodes as in an environment with all farms, and Load
-  ///        takes their part of what all farms have saved
+  ///        takes their part of the saved bytes of all farms
   /// @throws InputError if no layout can be generated for the scenario
   LocalEnvironment(std::shared_ptr<const Scenario> scenario, const EnvironmentOptions& options,
                    const FarmShare& share = {});
@@ -62,11 +62,11 @@ inline FarmShare WholeOr(const FarmShare& share, std::int32_t farms) {
 /// @throws InputError if the ranks cannot have equally many farms
 FarmShare ShareOfRank(std::int32_t farms, int rank, int ranks);
 
-/// Returns the part of `count` farms of what all farms have saved.
+/// Extracts the `count` farms of a share from the saved bytes of all farms.
 /// @throws InputError if the bytes are damaged or have fewer farms
 std::string TakeSavedFarms(const std::string& bytes, const FarmShare& share, std::int32_t count);
 
-/// Joins what environments saved that share the farms, in the order of the farms.
+/// Joins the saved bytes of environments that share the farms. @param parts in order of the farms
 /// @throws InputError if the bytes are damaged
 std::string JoinSavedFarms(const std::vector<std::string>& parts);
 

@@ -380,7 +380,7 @@ TEST(StateMarkers, SayTheLocalTimeOfAFarmWithAPlace) {
   auto state = test::MakeState();
   state.world_time = ros::Time(1627143360, 0);
   EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"status", 0}).text,
-            "2021-07-24 16:16 UTC (00:16 UTC+8)  episode 12  step 17  return -42.5");
+            "2021-07-25 00:16 UTC+8 (24 Jul 16:16 UTC)  episode 12  step 17  return -42.5");
 }
 
 TEST(SpecMarkers, HaveOneLineOfTheKeyForEachSymbolOfDanger) {

@@ -62,10 +62,10 @@ std::string ZoneText(const aquafarm_msgs::FarmSpec& spec) {
 
 std::string WorldTimeText(const aquafarm_msgs::FarmSpec& spec,
                           const aquafarm_msgs::FarmState& state) {
-  std::string text = ClockText(spec, state);
-  if (!spec.has_start_time) return text;
-  if (!spec.has_origin || NauticalZone(spec.origin_longitude_deg) == 0) return text;
-  return text + " (" + LocalTimeText(spec, state.world_time.sec, "%H:%M") + ")";
+  const std::string clock = ClockText(spec, state);
+  if (!spec.has_start_time || !spec.has_origin || ZoneOf(spec) == 0) return clock;
+  const std::time_t utc = state.world_time.sec;
+  return LocalTimeText(spec, utc, "%Y-%m-%d %H:%M") + TimeText(utc, " (%d %b %H:%M UTC)");
 }
 
 std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, double cells_a_step) {

@@ -45,8 +45,8 @@ std::string HoursText(double seconds);
 /// Returns the name of the time zone of LocalTimeText: "UTC+8", or "UTC".
 std::string ZoneText(const aquafarm_msgs::FarmSpec& spec);
 
-/// Returns the time of a state: ClockText, and the local time of a farm with a place and a start
-/// time: "2019-09-30 16:03 UTC (00:03 UTC+8)".
+/// Returns the time of a state: on a farm with a place and a start time the local time, and that of
+/// UTC with its own date, "2019-10-01 00:03 UTC+8 (30 Sep 16:03 UTC)"; else ClockText.
 std::string WorldTimeText(const aquafarm_msgs::FarmSpec& spec,
                           const aquafarm_msgs::FarmState& state);
 

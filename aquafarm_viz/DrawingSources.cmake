@@ -27,5 +27,6 @@ set(AQUAFARM_DRAWING_SOURCES
   src/scene/layers.cpp
   src/scene/nautical.cpp
   src/scene/outlook.cpp
+  src/scene/port_shift.cpp
   src/scene/storm_track.cpp
   src/scene/trail.cpp)

@@ -22,7 +22,9 @@ from processes import (DATA, Program, free_port, newest_checkpoint, program,  # 
 TINY = DATA / "tiny.yaml"
 RANKS_S = 240.0  # limit of two trainers and two sim nodes on a busy machine
 PPO = "hidden_size=16 rollout_size=512 batch_size=128"
-CONSTANT = "learning_rate=0.001 clip_range=0.2 teacher=0"  # no schedule: the limit of steps changes nothing
+# No schedules: the limit of steps changes nothing.
+CONSTANT = "learning_rate=0.001 clip_range=0.2 teacher=0"
+CONSTANT_EXPLORATION = "entropy:0.01"
 
 
 class TrainNodeTest(unittest.TestCase):
@@ -100,8 +102,8 @@ class TrainNodeTest(unittest.TestCase):
 
     def test_a_killed_rank_ends_the_other_and_both_resume_in_the_same_bits(self):
         self.start_sims()
-        options = f"_options:={PPO} {CONSTANT}"
-        first, second = self.ranks("parts", "_steps:=1e12", "_checkpoint_period_s:=0", options)
+        options = (f"_options:={PPO} {CONSTANT}", f"_exploration:={CONSTANT_EXPLORATION}")
+        first, second = self.ranks("parts", "_steps:=1e12", "_checkpoint_period_s:=0", *options)
         first.wait_for(lambda: newest_checkpoint(self.folder / "parts"), "a checkpoint",
                        RANKS_S)
         second.send(signal.SIGKILL)
@@ -110,11 +112,11 @@ class TrainNodeTest(unittest.TestCase):
         self.assertRegex(first.words(), "resume     roslaunch aquafarm_bringup ranks.launch .*"
                                         f" resume:=true run_dir:={self.folder / 'parts'} ranks:=2")
         limit = 10000 + int(newest_checkpoint(self.folder / "parts")[len("step_"):-len(".ckpt")])
-        first, second = self.ranks("parts", f"_steps:={limit}", "_resume:=true", options)
+        first, second = self.ranks("parts", f"_steps:={limit}", "_resume:=true", *options)
         self.assertEqual(0, first.code(RANKS_S), first.words() + second.words())
         self.assertIn("resuming from", first.words())
         whole = self.in_process("whole", "--algorithm", "ppo", "--steps", str(limit), "--farms",
-                                "16", "--ranks", "1",
+                                "16", "--ranks", "1", "--exploration", CONSTANT_EXPLORATION,
                                 *[word for one in f"{PPO} {CONSTANT}".split()
                                   for word in ("--set", one)])
         self.assertEqual(0, whole.code(RANKS_S), whole.words())

@@ -201,6 +201,7 @@ class SimNodeTest(unittest.TestCase):
         static = message("/tf_static", TFMessage).transforms[0]
         self.assertEqual(("earth", "map"), (static.header.frame_id, static.child_frame_id))
         clock = Recorder("/clock", Clock)
+        clock.wait(len, "the present time")  # else it may connect after the moves
         for _ in range(5):
             call("ship_0/move", direction=NORTH)
         call("reset")

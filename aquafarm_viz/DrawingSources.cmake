@@ -28,5 +28,6 @@ set(AQUAFARM_DRAWING_SOURCES
   src/scene/nautical.cpp
   src/scene/outlook.cpp
   src/scene/port_shift.cpp
+  src/scene/shown_actions.cpp
   src/scene/storm_track.cpp
   src/scene/trail.cpp)

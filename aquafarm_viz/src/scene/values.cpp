@@ -148,26 +148,6 @@ Values ReadValues(const PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec)
   return read;
 }
 
-std::vector<cv::Point> ShownActions(const Values& values, int every) {
-  constexpr std::size_t kFew = 12;
-  std::vector<cv::Point> rare;
-  std::vector<cv::Point> shown;
-  for (int y = 0; y < values.height; ++y) {
-    for (int x = 0; x < values.width; ++x) {
-      const std::uint8_t action = values.actions[values.Index(x, y)];
-      if (action > 9) continue;
-      const bool is_sample = x % every == every / 2 && y % every == every / 2;
-      if (is_sample) {
-        shown.emplace_back(x, y);
-      } else if (action >= 8 && rare.size() <= kFew) {
-        rare.emplace_back(x, y);
-      }
-    }
-  }
-  if (rare.size() <= kFew) shown.insert(shown.end(), rare.begin(), rare.end());
-  return shown;
-}
-
 visualization_msgs::MarkerArray MoveMarkers(const Values& values,
                                             const aquafarm_msgs::FarmSpec& spec) {
   constexpr double kMaxAcross = 13.0;

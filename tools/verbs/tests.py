@@ -148,7 +148,7 @@ def ros_variables():
 
 
 def begin_ros_tests(stages, fast):
-    """Starts the tests through ROS. They wait for most of their time, so other stages run meanwhile."""
+    """Starts the tests through ROS. They wait for most of their time, so other stages go on."""
     log = RESULTS / "run_tests.log"
     stages.begin(f"testing through ROS, in parallel with the next stages (log: {log})")
     # Two at a time is what has been tried on two cores.

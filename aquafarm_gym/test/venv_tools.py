@@ -5,7 +5,6 @@ A test program that calls enter_venv() continues in the Python of the virtual en
 folder given by its argument --venv, which is created if necessary. Without access to PyPI the
 test's cases are skipped with a message. Without --venv the running Python is used.
 """
-import fcntl
 import importlib.util
 import os
 import pathlib
@@ -20,21 +19,6 @@ WANTED = ["gymnasium==1.0.0", "pettingzoo==1.25.0", "stable-baselines3==2.4.1",
 LIMIT_S = 150
 
 
-def make_venv(venv):
-    """Creates the virtual environment unless it is there; of several tests only one creates it."""
-    ready = venv / "ready"
-    venv.parent.mkdir(parents=True, exist_ok=True)
-    with open(f"{venv}.lock", "w", encoding="utf-8") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if ready.is_file() and ready.read_text() == " ".join(WANTED):
-            return
-        for command in (["/usr/bin/python3", "-m", "venv", "--clear", "--system-site-packages", venv],
-                        [venv / "bin/python", "-m", "pip", "install", "-q", "--no-deps",
-                         "--timeout", "10", "--retries", "1", *WANTED]):
-            subprocess.run(command, check=True, timeout=LIMIT_S, capture_output=True, text=True)
-        ready.write_text(" ".join(WANTED))
-
-
 def enter_venv():
     """Continues in the virtual environment; returns the reason if it cannot, "" if it is inside."""
     if "--venv" not in sys.argv:
@@ -45,8 +29,16 @@ def enter_venv():
     venv = pathlib.Path(sys.argv[sys.argv.index("--venv") + 1])
     if pathlib.Path(sys.prefix) == venv:
         return ""
+    ready = venv / "ready"
     try:
-        make_venv(venv)
+        if not ready.is_file() or ready.read_text() != " ".join(WANTED):
+            for command in (["/usr/bin/python3", "-m", "venv", "--clear",
+                             "--system-site-packages", venv],
+                            [venv / "bin/python", "-m", "pip", "install", "-q", "--no-deps",
+                             "--timeout", "10", "--retries", "1", *WANTED]):
+                subprocess.run(command, check=True, timeout=LIMIT_S, capture_output=True,
+                               text=True)
+            ready.write_text(" ".join(WANTED))
     except (subprocess.SubprocessError, OSError) as error:
         words = (getattr(error, "stderr", None) or str(error)).strip().splitlines()
         return f"no virtual environment, PyPI is out of reach? {words[-1] if words else error}"

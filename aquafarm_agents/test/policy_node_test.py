@@ -115,7 +115,7 @@ class PolicyNodeTest(unittest.TestCase):
         start_sim(self, self.namespace, PAIR)
         pause = rospy.ServiceProxy(f"{self.namespace}/pause", Pause)
         pause.wait_for_service(60)
-        run = self.drive("_policy:=random", "_episodes:=100")
+        run = self.drive("_policy:=random", "_episodes:=200")
         run.wait_for(lambda: "episode 1" in run.words(), "an episode")
         self.assertTrue(pause(paused=True).ok)
         run.wait_for(lambda: "is paused" in run.words(), "a word of the pause")

@@ -12,12 +12,11 @@ LIMIT_S = 900
 # Each takes seconds on an idle machine. The other fuzz targets are tests of the cores.
 SHORT = ("soak --count 1 --only random",
          "soak --seconds 1 --only planner",
-         pytest.param("kill --count 2 --only tables,sim_node", marks=pytest.mark.slow),
-         pytest.param("kill --count 5 --only networks,recorder,benchmark,ranks,workers --kills 1",
-                      marks=pytest.mark.slow),
+         "kill --count 2 --only tables,sim_node",
+         "kill --count 5 --only networks,recorder,benchmark,ranks,workers --kills 1",
          "resources --count 6",
-         pytest.param("network --count 4", marks=pytest.mark.slow),
-         pytest.param("concurrency --count 1", marks=pytest.mark.slow),
+         "network --count 4",
+         "concurrency --count 1",
          "fuzz --count 1 --only bag,request")
 
 

@@ -9,8 +9,6 @@ import subprocess
 import tempfile
 import unittest
 
-import pytest
-
 TOOLS = pathlib.Path(__file__).resolve().parent.parent
 HEADERS = TOOLS.parent / "aquafarm_sim/core/include"
 WORKSPACE = os.environ.get("AQUAFARM_CAMPAIGNS")  # of ./aquafarm test
@@ -63,7 +61,6 @@ class CheckLocksTest(unittest.TestCase):
         self.assertIn(f"{folder}/compile_commands.json: ", done.stderr)
         self.assertIn("CMAKE_EXPORT_COMPILE_COMMANDS=ON", done.stderr)
 
-    @pytest.mark.slow
     @unittest.skipUnless(WORKSPACE, "only ./aquafarm test says where its build is")
     def test_this_build_uses_guarded_members_under_their_mutexes(self):
         done = check_locks(pathlib.Path(WORKSPACE, "build"))

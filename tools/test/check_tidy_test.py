@@ -11,8 +11,6 @@ import subprocess
 import tempfile
 import unittest
 
-import pytest
-
 TOOLS = pathlib.Path(__file__).resolve().parent.parent
 WORKSPACE = os.environ.get("AQUAFARM_CAMPAIGNS")  # of ./aquafarm test
 CLEAN = "^aquafarm_sim/core/"  # every source of it was checked once; the others were not
@@ -103,7 +101,6 @@ class CheckTidyTest(unittest.TestCase):
             self.assertEqual((2, "--share: got 0, expected 1 or more\n"),
                              (done.returncode, done.stderr))
 
-    @pytest.mark.slow
     @unittest.skipUnless(WORKSPACE, "only ./aquafarm test says where its build is")
     def test_changed_sources_of_this_build_and_the_share_of_today_are_clean(self):
         done = check_tidy(pathlib.Path(WORKSPACE, "build"), "--of", CLEAN)

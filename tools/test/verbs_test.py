@@ -10,7 +10,6 @@ import subprocess
 import sys
 import tempfile
 import threading
-import tomllib
 import unittest
 import unittest.mock
 from unittest import mock
@@ -18,7 +17,6 @@ from unittest import mock
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 from verbs import bench, launch, tests, workspace  # noqa: E402
-from verbs.progress import Progress  # noqa: E402
 
 
 class TestRun(unittest.TestCase):
@@ -41,16 +39,9 @@ class TestRun(unittest.TestCase):
                         path.write_text("<testsuite/>", encoding="utf-8")
                 return code
 
-            class Background(contextlib.nullcontext):
-                def __init__(self, command, *_, **__):
-                    super().__init__(self)
-                    self.wait = lambda: run_child(command)
-
-            with mock.patch.multiple(tests, RESULTS=results, WS=pathlib.Path(folder), Background=Background,
+            with mock.patch.multiple(tests, RESULTS=results, WS=pathlib.Path(folder),
                                      run_child=run_child, enter_ros=lambda: False,
-                                     names_in=lambda *words: ["one_test"],
-                                     build_core=lambda *words, **_: None,
-                                     bootstrap=lambda *words: None,
+                                     build_core=lambda name: None, bootstrap=lambda *words: None,
                                      run_bootstrap=lambda *words: codes.get(words[0], 0)), \
                     contextlib.redirect_stdout(io.StringIO()) as out, \
                     contextlib.redirect_stderr(out):
@@ -60,22 +51,15 @@ class TestRun(unittest.TestCase):
     def test_every_stage_passes(self):
         code, commands, results, _ = self.run_with(fast=False)
         self.assertEqual(0, code)
-        self.assertEqual(["bash", "python3", "ctest", "ctest", "check_workspaces", "check_python",
-                          "run_ros_tests", "python3"],
+        self.assertEqual(["python3", "ctest", "ctest", "run_ros_tests", "check_workspaces",
+                          "check_python", "python3"],
                          [pathlib.Path(line.split()[0]).name for line in commands])
         self.assertFalse({name for name in results if name.startswith("stage-")})
 
-    def test_fast_leaves_out_the_other_workspaces_and_slow_tests_and_says_so(self):
-        _, commands, _, words = self.run_with(fast=True)
+    def test_fast_leaves_out_the_other_workspaces(self):
+        _, commands, _, _ = self.run_with(fast=True)
         self.assertFalse([line for line in commands
                           if "check_workspaces" in line or "check_python" in line])
-        for program, option in (("pytest", " -m not slow"), ("ctest ", " -LE slow"),
-                                ("run_ros_tests", " --fast")):
-            for fast in (True, False):
-                commands = self.run_with(fast)[1]
-                self.assertEqual({fast}, {option in line for line in commands if program in line})
-        self.assertIn("left out: the other kinds of workspace, the wheel, and slow tests: through ROS "
-                      "agent_nodes, ", words)
 
     def test_a_failed_stage_fails_the_whole(self):
         self.assertEqual(1, self.run_with(fast=True, ctest=1)[0])
@@ -92,102 +76,6 @@ class TestRun(unittest.TestCase):
         code, _, _, words = self.run_with(fast=True, **{"--install": 3})
         self.assertEqual(0, code)
         self.assertIn("clang-14 cannot be installed: the check of locks is skipped", words)
-
-
-class TestBackground(unittest.TestCase):
-
-    def test_its_exit_code_is_returned(self):
-        with tests.Background(["bash", "-c", "exit 3"]) as background:
-            self.assertEqual(3, background.wait())
-
-    def test_it_ends_with_its_block(self):
-        with tests.Background(["sleep", "60"]) as background:
-            child = background._child
-        self.assertEqual(-signal.SIGTERM, child.returncode)
-
-
-class TestProgress(unittest.TestCase):
-
-    def ends(self, progress, *names):
-        with contextlib.redirect_stdout(io.StringIO()) as shown:
-            for name in names:
-                progress.end(name)
-        return shown.getvalue()
-
-    def test_each_test_is_shown_once(self):
-        progress = Progress("ROS", ["a", "b", "c"])
-        self.assertEqual("aquafarm: ROS: test 1 of 3: b; about 0 min left\n"
-                         "aquafarm: ROS: test 2 of 3: a; about 0 min left\n",
-                         self.ends(progress, "b", "a", "b", "dog"))
-        self.assertEqual(["c"], progress.waited_for())
-
-    def test_the_time_left_counts_slow_tests_by_their_usual_time(self):
-        with mock.patch("time.monotonic", side_effect=[0, 60, 60]):
-            progress = Progress("ROS", ["slow", "quick"], {"slow": 4 * Progress.USUAL_S})
-            self.assertIn("about 4 min left", self.ends(progress, "quick"))
-
-
-class TestShown(unittest.TestCase):
-    """The tests of a program are shown when they end, and its output is kept."""
-
-    def test_pytest(self):
-        with tempfile.TemporaryDirectory() as folder, \
-                mock.patch.multiple(tests, RESULTS=pathlib.Path(folder), ROOT=pathlib.Path(folder)), \
-                contextlib.redirect_stdout(io.StringIO()) as shown:
-            one = pathlib.Path(folder, "tools/test/one_test.py")
-            one.parent.mkdir(parents=True)
-            one.write_text("import pytest\n@pytest.mark.parametrize('x', ['a b', 'c'])\n"
-                           "def test_that(x):\n    assert x == 'c'\n", encoding="utf-8")
-            stages = tests.Stages()
-            tests.test_tools(stages, fast=False)
-            self.assertTrue(stages.has_failed)
-            self.assertIn("1 failed, 1 passed", pathlib.Path(folder, "tools.log").read_text())
-        self.assertIn("test 1 of 2: one_test.py::test_that[a b]; about 0 min left",
-                      shown.getvalue())
-        self.assertIn("test 2 of 2: ", shown.getvalue())
-
-
-class RunRosTestsTest(unittest.TestCase):
-
-    def run_on(self, folder, names, *words):
-        """Runs it on a makefile with one rule for each test."""
-        rules = {name: f"aquafarm/{name.split()[0]}/CMakeFiles/_run_tests_{name.split()[0]}_rostest_"
-                       f"test_{name.split()[1]}.test" for name in names}
-        made = pathlib.Path(folder, "CMakeFiles/Makefile2")
-        made.parent.mkdir()
-        made.write_text("".join(
-            f"{rule}.dir/all:\n\t@echo 'Built target {pathlib.Path(rule).name}'\n"
-            for rule in rules.values()), encoding="utf-8")
-        done = subprocess.run([ROOT / "tools/run_ros_tests", folder, pathlib.Path(folder, "log"), *words],
-                              capture_output=True, text=True, timeout=60, check=False)
-        return done.returncode, done.stdout.splitlines(), done.stderr
-
-    def slow(self):
-        listed = tomllib.loads((ROOT / "tools/slow_tests.toml").read_text(encoding="utf-8"))
-        return [f"{package} {name}" for package, all_of in listed.items() for name in all_of]
-
-    def test_slow_tests_begin_first_and_fast_leaves_them_out(self):
-        names = ["aquafarm_a quick", *self.slow()]
-        with tempfile.TemporaryDirectory() as folder:
-            code, shown, _ = self.run_on(folder, names)
-        self.assertEqual((0, len(names)), (code, len(shown)))
-        self.assertIn("aquafarm_a quick", shown[-1])
-        with tempfile.TemporaryDirectory() as folder:
-            code, shown, _ = self.run_on(folder, names, "--fast")
-        self.assertEqual((0, ["aquafarm: ROS: test 1 of 1: aquafarm_a quick; about 0 min left"]),
-                         (code, shown))
-
-    def test_a_listed_test_that_is_not_there_is_named(self):
-        with tempfile.TemporaryDirectory() as folder:
-            code, _, err = self.run_on(folder, ["aquafarm_a quick", *self.slow()[1:]])
-        self.assertEqual(1, code)
-        self.assertIn(f"slow_tests.toml: got {self.slow()[0]}, expected tests of the workspace", err)
-
-    def test_a_folder_without_tests_is_named(self):
-        with tempfile.TemporaryDirectory() as folder:
-            code, _, err = self.run_on(folder, [])
-        self.assertEqual(1, code)
-        self.assertIn(f"{folder}: found no test", err)
 
 
 class TestEnd(unittest.TestCase):

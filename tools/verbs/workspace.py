@@ -36,38 +36,31 @@ def run_child(command, goes_on=False, **options):
     A signal to this process ends the command by SIGTERM; the command may need time to save. Then
     this process ends with 128 + the signal's number, unless it `goes_on` to report the end.
     """
-    with subprocess.Popen([str(word) for word in command], **options) as child:
-        return wait_for(child, goes_on)
-
-
-def wait_for(child, goes_on=False):
-    """Waits as run_child does, for a child that has begun."""
     received = []
+    with subprocess.Popen([str(word) for word in command], **options) as child:
+        def end(number, _):
+            received.append(number)
+            child.send_signal(signal.SIGTERM)
 
-    def end(number, _):
-        received.append(number)
-        child.send_signal(signal.SIGTERM)
-
-    before = {number: signal.signal(number, end) for number in ENDING_SIGNALS}
-    try:
-        code = child.wait()
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        before = {number: signal.signal(number, end) for number in ENDING_SIGNALS}
+        try:
+            code = child.wait()
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
     if received and not goes_on:
         sys.exit(128 + received[0])
     return code if code >= 0 else 128 - code
 
 
-def run_bootstrap(*words, before=()):
-    """Runs ./aquafarm for one of its own steps, `before` it a command such as nice; returns its exit
-    code."""
-    return run_child([*before, "bash", ROOT / "aquafarm", *words])
+def run_bootstrap(*words):
+    """Runs ./aquafarm for one of its own steps; returns its exit code."""
+    return run_child(["bash", ROOT / "aquafarm", *words])
 
 
-def bootstrap(*words, before=()):
+def bootstrap(*words):
     """Runs ./aquafarm for one of its own steps; ends this process if that fails."""
-    code = run_bootstrap(*words, before=before)
+    code = run_bootstrap(*words)
     if code != 0:
         sys.exit(code)
 
@@ -76,9 +69,9 @@ def ensure_built():
     bootstrap("--ensure-built")
 
 
-def build_core(name, before=()):
+def build_core(name):
     """Builds a ROS-free core alone with plain cmake."""
-    bootstrap("--core", name, before=before)
+    bootstrap("--core", name)
 
 
 def use_ccache():

@@ -60,7 +60,7 @@ struct Fonts {
   Font title;
 };
 
-/// Returns the tick spacing of an axis [cells]: 1, 2 or 5 times a power of ten, min `least_px`.
+/// Returns the tick spacing of an axis [cells]: 1, 2 or 5 times a power of ten, min `min_px`.
 int TickStep(double cell_px, double min_px);
 
 /// Draws the constant parts of an episode: sea, islands, rocks, axes, legend.

@@ -9,10 +9,11 @@ import numpy as np
 import rosunit
 from matplotlib.text import Text
 
-from aquafarm_benchmark import figures
+from aquafarm_benchmark import figures, route_figure
 from aquafarm_benchmark.protocol import CONTESTANTS
 
 WINDOW = 50
+OPTIMUM = {"clairvoyant": 90.0}
 
 
 def by_name(name):
@@ -44,7 +45,7 @@ class FiguresTest(unittest.TestCase):
                 for line in (axes or self.axes).lines if not line.get_label().startswith("_")}
 
     def test_fig_12a_shows_rewards_by_time_steps(self):
-        figures.plot_rewards_by_steps(self.axes, self.contestants, self.runs, 90.0)
+        figures.plot_rewards_by_steps(self.axes, self.contestants, self.runs, OPTIMUM)
         x, y = self.lines()["SARSA"]
         curve = self.runs["sarsa"][0]["curve"]
         self.assertEqual(71, len(x))
@@ -52,10 +53,11 @@ class FiguresTest(unittest.TestCase):
             self.assertAlmostEqual(sum(curve["steps"][:last + 1]), x[place])
             self.assertAlmostEqual(sum(curve["return"][last - WINDOW + 1:last + 1]) / WINDOW,
                                    y[place])
-        np.testing.assert_array_equal([90.0, 90.0], self.lines()["clairvoyant"][1])
+        reference = [line for line in self.axes.lines if line.get_label() == "_reference"]
+        np.testing.assert_array_equal([90.0, 90.0], reference[0].get_ydata())
 
     def test_fig_12b_shows_the_mean_of_all_episodes_so_far(self):
-        figures.plot_average_rewards(self.axes, self.contestants, self.runs)
+        figures.plot_average_rewards(self.axes, self.contestants, self.runs, OPTIMUM)
         x, y = self.lines()["SARSA"]
         first, second = (run["curve"]["return"] for run in self.runs["sarsa"])
         np.testing.assert_array_equal(np.arange(1, 121), x)
@@ -94,14 +96,15 @@ class FiguresTest(unittest.TestCase):
 
     def test_names_stand_at_the_ends_of_the_lines_and_apart_from_each_other(self):
         self.runs["lstm_dqn"] = self.runs["sarsa"]  # both lines end at the same place
-        figures.plot_repeated(self.axes, self.contestants, self.runs, 90.0)
+        figures._name_ends(self.axes, figures.plot_repeated(self.axes, self.contestants, self.runs,
+                                                            OPTIMUM))
         names = {text.get_text(): text.get_position()[1] for text in self.axes.texts}
-        self.assertEqual({"SARSA, 2 runs", "LSTM-DQN, 2 runs", "clairvoyant"}, set(names))
+        self.assertEqual({"SARSA, 2 runs", "LSTM-DQN, 2 runs", "clairvoyant 90"}, set(names))
         places = sorted(names.values())
         for lower, upper in zip(places, places[1:]):
             self.assertGreaterEqual(upper - lower, 0.06)
         self.assertLessEqual(places[-1], 1.0001)
-        self.assertEqual(names["clairvoyant"], places[-1], "the highest line has the highest name")
+        self.assertEqual(names["clairvoyant 90"], places[-1], "the highest line has the highest name")
 
     def test_lines_to_names_cross_no_name_and_all_names_are_in_reach_of_the_axes(self):
         ends = [(100.0, value, "black", f"learner {i}")
@@ -138,12 +141,42 @@ class FiguresTest(unittest.TestCase):
         for lower, upper in zip(spread, spread[1:]):
             self.assertGreaterEqual(upper - lower, 0.0599)
 
-    def test_the_axis_of_returns_states_its_scale_and_has_ticks_on_both_sides(self):
-        figures.plot_repeated(self.axes, self.contestants, self.runs, 90.0)
-        self.assertIn("linear to ±100, then logarithmic", self.axes.get_ylabel())
-        low, high = self.axes.get_ylim()
-        shown = [tick for tick in self.axes.get_yticks() if low <= tick <= high]
-        self.assertGreaterEqual(len(shown), 3)
+    def drawn(self, draw, *arguments):
+        """Returns the figure that a draw_… function saves."""
+        kept = []
+        with unittest.mock.patch.object(figures, "save", lambda figure, _: kept.append(figure)):
+            draw("nowhere", *arguments)
+        return kept[0]
+
+    def names_of(self, axes):
+        return {text.get_text() for text in axes.texts}
+
+    def test_returns_are_drawn_enlarged_above_zero_and_on_the_whole_range(self):
+        lost = [make_run(1, 120), make_run(2, 120)]
+        for run in lost:
+            run["curve"]["return"] -= 1000.0
+        self.runs["sarsa"] = lost
+        for draw, count in ((figures.draw_repeated, 1), (figures.draw_average_rewards, 1),
+                            (figures.draw_rewards, 2)):
+            figure = self.drawn(draw, self.contestants, self.runs, OPTIMUM)
+            for zoom, whole in zip(figure.axes[:count], figure.axes[count:]):
+                self.assertEqual({"linear"}, {zoom.get_yscale(), whole.get_yscale()})
+                self.assertEqual(0.0, zoom.get_ylim()[0])
+                self.assertGreater(zoom.get_ylim()[1], 90.0)
+                self.assertLess(whole.get_ylim()[0], -990.0)
+                self.assertGreater(whole.get_ylim()[1], 90.0)
+            self.assertTrue(any("SARSA" in name for name in self.names_of(whole)))
+            self.assertTrue(any("LSTM" in name for name in self.names_of(zoom)))
+            self.assertIn("clairvoyant 90", self.names_of(zoom))
+
+    def test_returns_below_zero_only_are_not_enlarged(self):
+        for runs in self.runs.values():
+            for run in runs:
+                run["curve"]["return"] -= 1000.0
+        figure = self.drawn(figures.draw_repeated, self.contestants, self.runs, {})
+        zoom, whole = figure.axes
+        self.assertEqual(zoom.get_ylim(), whole.get_ylim())
+        self.assertEqual({"SARSA, 2 runs", "LSTM-DQN, 2 runs"}, self.names_of(zoom))
 
     def test_fig_13_shows_the_return_per_step(self):
         figures.plot_mean_score(self.axes, self.contestants, self.runs)
@@ -158,17 +191,12 @@ class FiguresTest(unittest.TestCase):
             self.assertAlmostEqual(sum(scores) / 2.0, y[place])
 
     def test_fig_13_has_a_panel_of_lstm_dqn_one_of_sarsa_and_one_of_all(self):
-        panels = []
-
-        def keep(figure, _):
-            panels.extend(set(self.lines(axes)) for axes in figure.axes)
-
-        with unittest.mock.patch.object(figures, "_save", keep):
-            figures.draw_mean_score("nowhere", self.contestants, self.runs)
+        figure = self.drawn(figures.draw_mean_score, self.contestants, self.runs)
+        panels = [set(self.lines(axes)) for axes in figure.axes]
         self.assertEqual([{"LSTM-DQN"}, {"SARSA"}, {"SARSA", "LSTM-DQN"}], panels)
 
     def test_fig_14_shades_a_standard_deviation_of_the_runs(self):
-        figures.plot_repeated(self.axes, self.contestants, self.runs, None)
+        figures.plot_repeated(self.axes, self.contestants, self.runs, {})
         _, y = self.lines()["SARSA, 2 runs"]
         means = [sum(run["curve"]["return"][:WINDOW]) / WINDOW for run in self.runs["sarsa"]]
         self.assertAlmostEqual(sum(means) / 2.0, y[0])
@@ -186,6 +214,31 @@ class FiguresTest(unittest.TestCase):
         _, _, bars = self.axes.containers[0].lines
         segment = bars[0].get_segments()[0]
         self.assertEqual([200.0, 250.0], [segment[0][1], segment[1][1]])
+
+    def test_every_second_cell_has_an_arrow_in_the_direction_of_its_move(self):
+        moves = [[0, 0, "north"], [1, 0, "east"], [2, 2, "south_west"], [3, 3, "pickup"],
+                 [4, 0, "drop_off"]]
+        route_figure.plot_moves(self.axes, moves)
+        arrows, pickups, drop_offs = self.axes.collections
+        np.testing.assert_array_equal([[0, 0], [2, 2]], arrows.get_offsets())
+        np.testing.assert_allclose([0.0, -arrows.V[0] / np.sqrt(2.0)], arrows.U, atol=1e-12)
+        self.assertGreater(arrows.V[0], 0.0)
+        self.assertAlmostEqual(arrows.U[1], arrows.V[1])
+        np.testing.assert_array_equal([[3, 3]], pickups.get_offsets())
+        np.testing.assert_array_equal([[4, 0]], drop_offs.get_offsets())
+
+    def test_a_route_is_split_and_numbered_at_its_stops(self):
+        steps = [{"cell": [0, 0], "action": "east", "aboard": 0},
+                 {"cell": [1, 0], "action": "pickup", "aboard": 0},
+                 {"cell": [1, 0], "action": "west", "aboard": 1},
+                 {"cell": [0, 0], "action": "drop_off", "aboard": 1},
+                 {"cell": [0, 0], "aboard": 0}]
+        self.assertEqual([(False, [[0, 0], [1, 0]]), (True, [[1, 0], [1, 0], [0, 0]]),
+                          (False, [[0, 0], [0, 0]])], route_figure.legs(steps))
+        self.assertEqual(["1  pickup, step 1", "2  drop-off, step 3"],
+                         route_figure.plot_route(self.axes, steps))
+        self.assertEqual({"1": (1, 0), "2": (0, 0)},
+                         {text.get_text(): text.xy for text in self.axes.texts})
 
 
 if __name__ == "__main__":

@@ -7,5 +7,5 @@ cluster   the Dask workers that execute them: of this machine, a scheduler or Sl
 worker    the part of a run that executes on a worker
 measures  convergence, stability, EA, interquartile means and intervals
 results   the table and the result files of a benchmark
-figures   Figs. 11 to 14 and the learning curves
+figures   Figs. 12 to 14 and the learning curves; route_figure: Fig. 11
 """

@@ -398,12 +398,12 @@ def _summarise(one, of_one, best, settings, people):
 
 
 def _conclude(folder, contestants, found, settings, people):
-    from aquafarm_benchmark import figures  # matplotlib takes a second that --help need not wait
+    # matplotlib takes a second that --help need not wait
+    from aquafarm_benchmark import figures, route_figure
 
     everyone = [*contestants, *([human.contestant(people)] if people else []),
                 *([OPTIMUM] if OPTIMUM.name in found else [])]
     best = found[OPTIMUM.name][0] if OPTIMUM.name in found else None
-    optimum = best["return_per_episode"] if best else None
     rows = [_summarise(one, found[one.name], best, settings, people) for one in everyone]
     results.add_ea(rows)
     settings = dict(settings, machine={
@@ -414,11 +414,13 @@ def _conclude(folder, contestants, found, settings, people):
     pictures = folder / "figures"
     pictures.mkdir(exist_ok=True)
     trained = [one for one in contestants if one.learns]
+    references = {one.label: row["return_per_episode"] for one, row in zip(everyone, rows)
+                  if one.name in ("planner", OPTIMUM.name)}
     if trained:
-        figures.draw_rewards(pictures / "rewards.png", trained, found, optimum)
-        figures.draw_average_rewards(pictures / "average_rewards.png", trained, found)
+        figures.draw_rewards(pictures / "rewards.png", trained, found, references)
+        figures.draw_average_rewards(pictures / "average_rewards.png", trained, found, references)
         figures.draw_square_error(pictures / "mean_square_error.png", trained, found)
-        figures.draw_repeated(pictures / "repeated_trainings.png", trained, found, optimum)
+        figures.draw_repeated(pictures / "repeated_trainings.png", trained, found, references)
         figures.draw_mean_score(pictures / "mean_score.png", trained, found)
     figures.draw_evaluation(pictures / "evaluation.png", everyone, rows)
     if any(row["money"] for row in rows):
@@ -426,7 +428,7 @@ def _conclude(folder, contestants, found, settings, people):
     for one in everyone:
         route = folder / "runs" / one.name / "seed_1" / "route.json"
         if route.is_file():  # not of people, nor of learners of another package
-            figures.draw_route(pictures / f"route_{one.name}.png", one.label, route)
+            route_figure.draw_route(pictures / f"route_{one.name}.png", one.label, route)
     print(results.table(rows) + results.money_table(rows))
 
 

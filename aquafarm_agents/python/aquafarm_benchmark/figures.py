@@ -3,36 +3,19 @@
 
 Each plot_… function draws on axes; each draw_… function creates a figure with them and saves it.
 """
-import json
-
 import matplotlib
 
 matplotlib.use("Agg")  # needs no display
 import numpy as np  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
-from matplotlib.patches import Polygon  # noqa: E402
-from matplotlib.ticker import Locator, MaxNLocator, NullLocator  # noqa: E402
 
 from aquafarm_benchmark import losses, measures  # noqa: E402
 
-_DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0),
-               "north_west": (-1, 1), "north_east": (1, 1), "south_west": (-1, -1),
-               "south_east": (1, -1)}
 _DPI = 110
-_MOST_PROBED = 40  # max number of disasters drawn along a route
 
 
-def _rings(disaster):
-    """Yields the outlines of a disaster's rings, which may have a radius for each quadrant."""
-    bearings = np.radians(np.arange(360.0))
-    quadrants = disaster.get("quadrants") or [[radius] * 4 for radius in disaster["radii"]]
-    for ring in quadrants:
-        radii = np.repeat(ring, 90)  # north-east first, clockwise like bearings
-        yield np.column_stack([disaster["x"] + radii * np.sin(bearings),
-                               disaster["y"] + radii * np.cos(bearings)])
-
-
-def _save(figure, path):
+def save(figure, path):
+    """Writes a figure as PNG and closes it."""
     figure.savefig(path, dpi=_DPI, bbox_inches="tight")
     plt.close(figure)
 
@@ -56,41 +39,46 @@ def _smooth(values):
     return np.arange(window, len(values) + 1), measures.moving_mean(values, window)
 
 
-def _show_returns(axes, curves, optimum=None):
-    """Scales the axes to the learnt returns; low returns at the start do not affect the scale."""
-    if optimum is not None:
-        axes.axhline(optimum, color="black", linestyle="--", label="clairvoyant")
-        curves = [*curves, np.array([optimum])]
-    top = max(curve.max() for curve in curves)
-    low = min(np.quantile(curve, 0.02) for curve in curves)
-    _scale_returns(axes)
-    axes.set_ylim(low - 0.2 * abs(low), top + 0.5 * abs(top))
-    axes.axhline(0.0, color="black", linewidth=0.5)
+def _range_of(axes):
+    """Returns the lowest and highest values on the axes; single low returns do not count."""
+    shown = [line.get_ydata() for line in axes.lines]
+    return min(np.quantile(y, 0.02) for y in shown), max(np.max(y) for y in shown)
 
 
-class _ReturnTicks(Locator):
-    """Round returns on both parts of the scale; more of them where few are in view."""
-    ROUND = (50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0)
+def _draw_returns(path, title, plots):
+    """Draws returns on linear scales: the part above 0 enlarged, and below it the whole range. Lines
+    are named at their right end, in the upper axes if that end is there.
 
-    def __call__(self):
-        return self.tick_values(*self.axis.get_view_interval())
+    plots: (function that plots on axes and returns the ends of the lines, ylabel, xlabel), one for
+        each column; the names are those of the last one
+    """
+    figure, rows = plt.subplots(2, len(plots), figsize=(5.5 + 3.0 * len(plots), 7.0),
+                                squeeze=False, layout="constrained", height_ratios=[3, 2],
+                                sharex="col", sharey="row")
+    figure.suptitle(title, fontsize=13)
+    for (plot, ylabel, xlabel), (zoom, whole) in zip(plots, rows.T):
+        for axes in (zoom, whole):
+            ends = plot(axes)
+            axes.axhline(0.0, color="black", linewidth=0.5, label="_zero")
+            axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
+        _label(zoom, "", ylabel and f"{ylabel}\nenlarged: above 0", "")
+        _label(whole, "", ylabel and "whole range", xlabel)
+        low, top = _range_of(whole)
+        margin = 0.05 * (top - low)
+        whole.set_ylim(low - margin, top + margin)
+        if top <= 0.0:  # there is nothing to enlarge
+            zoom.set_ylim(low - margin, top + margin)
+            continue
+        zoom.set_ylim(0.0, 1.07 * top)
+        whole.axhspan(0.0, top + margin, color=_ENLARGED, linewidth=0, zorder=0)
+        zoom.set_facecolor(_ENLARGED)
+    seen = [end for end in ends if zoom.get_ylim()[0] <= end[1]]
+    _name_ends(zoom, seen)
+    _name_ends(whole, [end for end in ends if end not in seen])
+    save(figure, path)
 
-    def tick_values(self, vmin, vmax):
-        ticks = sorted([0.0, *self.ROUND, *(-value for value in self.ROUND)])
-        seen = [tick for tick in ticks if vmin <= tick <= vmax]
-        return seen if len(seen) >= 4 else MaxNLocator(5).tick_values(vmin, vmax)
 
-
-def _scale_returns(axes):
-    """A linear scale up to ±100 and a logarithmic one beyond, which the axis states."""
-    axes.set_yscale("symlog", linthresh=_LINEAR)
-    axes.yaxis.set_major_locator(_ReturnTicks())
-    axes.yaxis.set_minor_locator(NullLocator())
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
-    axes.set_ylabel(f"{axes.get_ylabel()}\n(scale: linear to ±{_LINEAR:.0f}, then logarithmic)")
-
-
-_LINEAR = 100.0  # returns up to this one have a linear scale
+_ENLARGED = "#fbf6e6"  # background of the part of a scale that is shown enlarged
 _NAME_GAP = 0.062  # height of a name, as a share of the axes
 
 
@@ -126,81 +114,66 @@ def _name_ends(axes, ends):
                                   "relpos": (0.0, 0.5), "shrinkA": 1.0, "shrinkB": 0.0})
 
 
-def _optimum_end(ends, optimum):
-    """The end of the line of the optimum, at the right edge of the others."""
-    if optimum is None:
-        return []
-    return [(max(end[0] for end in ends), optimum, "black", "clairvoyant")]
-
-
-def _name_beside(axes):
-    """A legend to the right of the axes, where it covers no line."""
-    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=9)
+def _plot_references(axes, references, end):
+    """Draws returns to compare with, {name: return}, and returns the ends of their lines."""
+    for value in references.values():
+        axes.axhline(value, color="black", linestyle="--", linewidth=1.2, label="_reference")
+    return [(end, value, "black", f"{name} {value:.0f}") for name, value in references.items()]
 
 
 def _runs_text(count):
     return f"{count} {'run' if count == 1 else 'runs'}"
 
 
-def plot_rewards_by_steps(axes, contestants, runs, optimum):
+def plot_rewards_by_steps(axes, contestants, runs, references):
     """Fig. 12a: 50-episode mean return of the first run by time steps taken so far."""
-    curves = []
     for one in contestants:
         curve = runs[one.name][0]["curve"]
         episodes, means = _smooth(curve["return"])
         axes.plot(np.cumsum(curve["steps"])[episodes - 1], means, color=one.colour,
                   label=one.label)
-        curves.append(means)
     axes.set_xscale("log")
-    _show_returns(axes, curves, optimum)
-    _name_beside(axes)
+    return _plot_references(axes, references, axes.get_xlim()[1])
 
 
-def plot_rewards_by_episodes(axes, contestants, runs, optimum):
+def plot_rewards_by_episodes(axes, contestants, runs, references):
     """Return of every episode of the first run, and its 50-episode mean."""
-    curves, ends = [], []
+    ends = []
     for one in contestants:
         curve = runs[one.name][0]["curve"]["return"]
-        axes.plot(np.arange(1, len(curve) + 1), curve, color=one.colour, alpha=0.15, linewidth=0.5)
+        axes.plot(np.arange(1, len(curve) + 1), curve, color=one.colour, alpha=0.12, linewidth=0.5)
         episodes, means = _smooth(curve)
         axes.plot(episodes, means, color=one.colour, label=one.label)
-        curves.append(curve)
         ends.append((episodes[-1], means[-1], one.colour, one.label))
-    _show_returns(axes, curves, optimum)
-    _name_ends(axes, ends + _optimum_end(ends, optimum))
+    return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
-def draw_rewards(path, contestants, runs, optimum):
-    """Fig. 12a by time steps, above the same data by episodes."""
-    figure, (upper, lower) = plt.subplots(2, 1, figsize=(9, 8), layout="constrained")
-    _label(upper, "Return by time steps, first run (Fig. 12a)", "50-episode mean return",
-           "time steps so far (logarithmic scale)")
-    plot_rewards_by_steps(upper, contestants, runs, optimum)
-    _label(lower, "Return by episode, first run: each (thin) and 50-episode mean",
-           "return of an episode")
-    plot_rewards_by_episodes(lower, contestants, runs, optimum)
-    _save(figure, path)
+def draw_rewards(path, contestants, runs, references):
+    """Fig. 12a by time steps, next to the same data by episodes."""
+    data = (contestants, runs, references)
+    _draw_returns(path, "Return of the first run by time steps (Fig. 12a) and by episodes\n"
+                  "thick: mean of 50 episodes, thin: each episode", [
+                      (lambda axes: plot_rewards_by_steps(axes, *data), "return of an episode",
+                       "time steps so far (logarithmic scale)"),
+                      (lambda axes: plot_rewards_by_episodes(axes, *data), "", "episode")])
 
 
-def draw_average_rewards(path, contestants, runs):
+def draw_average_rewards(path, contestants, runs, references):
     """Fig. 12b: mean return of all episodes so far, over all runs."""
-    figure, axes = _axes("Mean return of all episodes so far, all runs (Fig. 12b)",
-                         "mean return so far")
-    plot_average_rewards(axes, contestants, runs)
-    _save(figure, path)
+    _draw_returns(path, "Mean return of all episodes so far, all runs (Fig. 12b)", [
+        (lambda axes: plot_average_rewards(axes, contestants, runs, references),
+         "mean return so far", "episode")])
 
 
-def plot_average_rewards(axes, contestants, runs):
+def plot_average_rewards(axes, contestants, runs, references):
     """Mean over the runs of their mean returns of all episodes so far."""
-    curves, ends = [], []
+    ends = []
     for one in contestants:
         curve = _curves(runs[one.name], "return").mean(axis=0)
         curve = np.cumsum(curve) / np.arange(1, len(curve) + 1)
         axes.plot(np.arange(1, len(curve) + 1), curve, color=one.colour, label=one.label)
-        curves.append(curve)
         ends.append((len(curve), curve[-1], one.colour, one.label))
-    _show_returns(axes, curves)
-    _name_ends(axes, ends)
+    return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
 def draw_square_error(path, contestants, runs):
@@ -211,7 +184,7 @@ def draw_square_error(path, contestants, runs):
     axes.text(0.0, -0.17, "Lower: the value of a step agrees better with its reward and the next "
               "value. Thick: median of the runs,\nshaded: their middle half, thin: each run.",
               transform=axes.transAxes, fontsize=9, va="top")
-    _save(figure, path)
+    save(figure, path)
 
 
 def plot_square_error(axes, contestants, runs):
@@ -255,7 +228,7 @@ def draw_mean_score(path, contestants, runs):
         _label(all_axes[letter], f"Return per step (Fig. 13{letter})",
                f"{measures.WINDOW}-episode mean ± std. deviation")
         plot_mean_score(all_axes[letter], panel, runs)
-    _save(figure, path)
+    save(figure, path)
 
 
 def plot_mean_score(axes, contestants, runs):
@@ -275,9 +248,16 @@ def plot_mean_score(axes, contestants, runs):
 
 def draw_evaluation(path, contestants, rows):
     """Mean return of greedy episodes not used for training, with its 95 % interval."""
-    figure, axes = _axes("Return on episodes never trained on", "return of an episode", "")
-    plot_evaluation(axes, contestants, rows)
-    _save(figure, path)
+    figure, (zoom, whole) = plt.subplots(2, 1, figsize=(8, 6), sharex=True, layout="constrained",
+                                         height_ratios=[3, 2])
+    _label(zoom, "Return on episodes never trained on", "return of an episode\nenlarged: above 0",
+           "")
+    _label(whole, "", "whole range", "")
+    for axes in (zoom, whole):
+        plot_evaluation(axes, contestants, rows)
+    if zoom.get_ylim()[1] > 0.0:
+        zoom.set_ylim(bottom=0.0)
+    save(figure, path)
 
 
 def plot_evaluation(axes, contestants, rows):
@@ -292,7 +272,6 @@ def plot_evaluation(axes, contestants, rows):
         axes.annotate(f"{value:.0f}", (place, max(value, 0.0)), xytext=(0, 8),
                       textcoords="offset points", ha="center")
     axes.axhline(0.0, color="black", linewidth=0.5)
-    _scale_returns(axes)
     axes.margins(y=0.15)
     axes.set_xticks(range(len(contestants)), [one.label for one in contestants], rotation=15)
 
@@ -305,7 +284,7 @@ def draw_losses(path, contestants, rows):
     plot_exceedance(left, contestants, rows)
     _label(right, "Mean loss by kind of device", f"loss per episode [{unit}]", "")
     plot_loss_by_kind(right, contestants, rows)
-    _save(figure, path)
+    save(figure, path)
 
 
 def _with_money(contestants, rows):
@@ -342,26 +321,23 @@ def plot_loss_by_kind(axes, contestants, rows):
     axes.legend(loc="best", title="dark: damaged, light: lost")
 
 
-def draw_repeated(path, contestants, runs, optimum):
+def draw_repeated(path, contestants, runs, references):
     """Fig. 14: 50-episode means over all runs, shaded by ± one standard deviation."""
-    figure, axes = _axes("Repeated trainings (Fig. 14): mean and standard deviation",
-                         "50-episode mean return")
-    plot_repeated(axes, contestants, runs, optimum)
-    _save(figure, path)
+    _draw_returns(path, "Repeated trainings (Fig. 14): mean of the runs ± standard deviation", [
+        (lambda axes: plot_repeated(axes, contestants, runs, references),
+         "50-episode mean return", "episode")])
 
 
-def plot_repeated(axes, contestants, runs, optimum):
+def plot_repeated(axes, contestants, runs, references):
     """Mean over the runs of their 50-episode means, shaded by ± one standard deviation."""
-    curves, ends = [], []
+    ends = []
     for one in contestants:
         smooth = [_smooth(curve) for curve in _curves(runs[one.name], "return")]
         values = np.array([curve for _, curve in smooth])
         name = f"{one.label}, {_runs_text(len(values))}"
         _plot_shaded(axes, smooth[0][0], values, one, name)
-        curves.append(values.mean(axis=0))
-        ends.append((smooth[0][0][-1], curves[-1][-1], one.colour, name))
-    _show_returns(axes, curves, optimum)
-    _name_ends(axes, ends + _optimum_end(ends, optimum))
+        ends.append((smooth[0][0][-1], values.mean(axis=0)[-1], one.colour, name))
+    return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
 def _plot_shaded(axes, episodes, values, one, label):
@@ -372,90 +348,7 @@ def _plot_shaded(axes, episodes, values, one, label):
                       linewidth=0)
 
 
-def draw_route(path, label, route_file):
-    """Fig. 11: the greedy action at each cell as arrows, before and after the first pickup, and the
-    route coloured by time."""
-    route = json.loads(route_file.read_text())
-    panels = [("best_moves_at_start", "with nothing aboard"),
-              ("best_moves_after_pickup", "with a device aboard")]
-    panels = [panel for panel in panels if route[panel[0]]]
-    rows = 2 if panels else 1
-    figure, all_axes = plt.subplots(rows, 2, figsize=(10.5, 5.4 * rows), squeeze=False,
-                                    layout="constrained")
-    all_axes = list(all_axes.flat)
-    for axes, (key, words) in zip(all_axes, panels):
-        _chart(axes, route["chart"])
-        _arrows(axes, route[key])
-        axes.set_title(f"{label}: best move, {words}")
-    axes = all_axes[len(panels)]
-    for empty in all_axes[len(panels) + 1:]:
-        empty.axis("off")
-    _chart(axes, route["chart"])
-    _explain_route(all_axes[-1], axes, bool(panels))
-    _disasters(axes, route["steps"])
-    cells = np.array([step["cell"] for step in route["steps"]])
-    rng = np.random.Generator(np.random.PCG64(1))  # separates repeated visits of a cell
-    shown = cells + rng.uniform(-0.18, 0.18, cells.shape)
-    axes.plot(shown[:, 0], shown[:, 1], color="black", linewidth=0.6, alpha=0.6, zorder=4)
-    points = axes.scatter(shown[:, 0], shown[:, 1], c=np.arange(len(shown)), cmap="plasma", s=26,
-                          zorder=5)
-    figure.colorbar(points, ax=axes, label="step", shrink=0.75)
-    axes.set_title(f"its route: {route['reason'].replace('_', ' ')}, return {route['return']:.1f}")
-    _save(figure, path)
-
-
 def _curves(of_one, column):
     """Returns [runs, episodes] with the length of the shortest run; lengths may differ slightly."""
     length = min(len(run["curve"][column]) for run in of_one)
     return np.array([run["curve"][column][:length] for run in of_one])
-
-
-def _chart(axes, chart):
-    axes.set_aspect("equal")
-    axes.set_xlim(-0.5, chart["width"] - 0.5)
-    axes.set_ylim(-0.5, chart["height"] - 0.5)
-    axes.set_facecolor("#dcecf5")
-    size = 4200.0 / max(chart["width"], chart["height"])
-    for cells, colour, marker, label in (
-            (chart["islands"], "#8d7b4a", "s", "island"), (chart["rocks"], "#555555", "o", "rock"),
-            (chart["ports"], "#1a7f37", "P", "port"),
-            ([device["cell"] for device in chart["devices"]], "#c2185b", "D", "device")):
-        if cells:
-            x, y = zip(*cells)
-            axes.scatter(x, y, color=colour, marker=marker, label=label, zorder=3,
-                         s=size * (1.0 if marker == "s" else 0.5))
-
-
-def _explain_route(empty, chart, has_moves):
-    """Explains the symbols of the other axes on empty ones."""
-    empty.legend(*chart.get_legend_handles_labels(), loc="upper left", frameon=False, fontsize=11,
-                 bbox_to_anchor=(0.05, 0.95), labelspacing=0.9)
-    lines = ["axes: cells, east and north", "", "route: dots from violet (start) to yellow (end)",
-             "red ×: centre of a disaster at the start", "red circles: its rings in each step"]
-    if has_moves:
-        lines = ["arrow: the move that the policy prefers in a cell",
-                 "+ pickup, × drop-off", "", *lines]
-    empty.text(0.05, 0.55, "\n".join(lines), transform=empty.transAxes, va="top", fontsize=11,
-               linespacing=1.4)
-
-
-def _arrows(axes, moves):
-    pointed = [(x, y, *_DIRECTIONS[action]) for x, y, action in moves if action in _DIRECTIONS]
-    if pointed:
-        x, y, dx, dy = np.array(pointed, dtype=float).T
-        length = np.hypot(dx, dy)
-        axes.quiver(x, y, dx / length, dy / length, pivot="mid", scale=32, width=0.004, zorder=4)
-    for letter, action in (("+", "pickup"), ("×", "drop_off")):
-        for x, y, chosen in moves:
-            if chosen == action:
-                axes.text(x, y, letter, ha="center", va="center", weight="bold", zorder=6)
-
-
-def _disasters(axes, steps):
-    every = max(1, len(steps) // _MOST_PROBED)
-    for step in steps[::every]:
-        for disaster in step["disasters"]:
-            for ring in _rings(disaster):
-                axes.add_patch(Polygon(ring, fill=False, color="#b22222", alpha=0.1, zorder=2))
-    for disaster in steps[0]["disasters"]:
-        axes.plot(disaster["x"], disaster["y"], marker="x", color="#b22222", zorder=4)

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws Fig. 11 as PNG from a route file: what a policy prefers in each cell, and its route."""
+import json
+
+import numpy as np
+from matplotlib.patches import Polygon
+
+from aquafarm_benchmark.figures import plt, save
+
+_DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0),
+               "north_west": (-1, 1), "north_east": (1, 1), "south_west": (-1, -1),
+               "south_east": (1, -1)}
+_EVERY = 2  # an arrow stands in each second column and row, so that it can be long enough to see
+_SHOWN_STEPS = 4  # number of steps whose rings are drawn
+_LANE = 0.14  # distance of a leg from the middle of its cells; the next leg has the other side
+# Legs by whether something is aboard; colours of Okabe and Ito (2008).
+_LEGS = {False: ("#0072b2", (0, (4, 1.5)), "nothing aboard"),
+         True: ("#d55e00", "solid", "a device aboard")}
+_STOPS = {"pickup": ("P", "pickup"), "drop_off": ("X", "drop-off")}
+_STOP_STYLE = {"s": 130, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 7}
+
+
+def draw_route(path, label, route_file):
+    """Fig. 11: the greedy action as arrows, before and after the first pickup, and the route."""
+    route = json.loads(route_file.read_text())
+    panels = [("best_moves_at_start", "with nothing aboard"),
+              ("best_moves_after_pickup", "with a device aboard")]
+    panels = [panel for panel in panels if route[panel[0]]]
+    rows = 2 if panels else 1
+    figure, all_axes = plt.subplots(rows, 2, figsize=(10.5, 5.4 * rows), squeeze=False,
+                                    layout="constrained")
+    all_axes = list(all_axes.flat)
+    for axes, (key, words) in zip(all_axes, panels):
+        _chart(axes, route["chart"])
+        plot_moves(axes, route[key])
+        axes.set_title(f"{label}: best move {words}")
+    axes = all_axes[len(panels)]
+    for empty in all_axes[len(panels) + 1:]:
+        empty.axis("off")
+    _chart(axes, route["chart"])
+    _disasters(axes, route["steps"])
+    stops = plot_route(axes, route["steps"])
+    axes.set_title(f"its route: {route['reason'].replace('_', ' ')}, return {route['return']:.1f}")
+    _explain(all_axes[-1], [*all_axes[:len(panels)], axes], stops, bool(panels))
+    save(figure, path)
+
+
+def _chart(axes, chart):
+    axes.set_aspect("equal")
+    axes.set_xlim(-0.5, chart["width"] - 0.5)
+    axes.set_ylim(-0.5, chart["height"] - 0.5)
+    axes.set_facecolor("#eaf3f9")
+    size = 4900.0 / max(chart["width"], chart["height"])
+    for cells, colour, marker, share, label in (
+            (chart["islands"], "#c9b98a", "s", 1.0, "island"),
+            (chart["rocks"], "#8a8a8a", "^", 0.4, "rock"),
+            (chart["ports"], "#1a7f37", "s", 0.6, "port"),
+            ([device["cell"] for device in chart["devices"]], "#c2185b", "D", 0.6, "device")):
+        if cells:
+            x, y = zip(*cells)
+            axes.scatter(x, y, color=colour, marker=marker, label=label, zorder=3, s=size * share)
+
+
+def plot_moves(axes, moves):
+    """The move preferred in each _EVERY-th column and row as an arrow; each preferred stop."""
+    pointed = [(x, y, *_DIRECTIONS[action]) for x, y, action in moves
+               if action in _DIRECTIONS and x % _EVERY == 0 and y % _EVERY == 0]
+    if pointed:
+        x, y, dx, dy = np.array(pointed, dtype=float).T
+        share = 0.75 * _EVERY / np.hypot(dx, dy)
+        axes.quiver(x, y, dx * share, dy * share, pivot="mid", angles="xy", scale_units="xy",
+                    scale=1, width=0.006, headwidth=4.5, color="#34506b", zorder=4)
+    for action, (marker, name) in _STOPS.items():
+        cells = [(x, y) for x, y, chosen in moves if chosen == action]
+        if cells:
+            axes.scatter(*zip(*cells), marker=marker, label=name, **_STOP_STYLE)
+
+
+def legs(steps):
+    """Splits a route at its pickups and drop-offs: [(anything aboard, cells of the leg)]."""
+    found = []
+    for before, after in zip(steps, steps[1:]):
+        if not found or before["action"] in _STOPS:
+            found.append((before["aboard"] > 0 if not found else after["aboard"] > 0,
+                          [before["cell"]]))
+        found[-1][1].append(after["cell"])
+    return found
+
+
+def plot_route(axes, steps):
+    """Draws the legs and numbers the stops of a route; returns a line of text for each stop."""
+    for i, (loaded, cells) in enumerate(legs(steps)):
+        colour, dashes, name = _LEGS[loaded]
+        lane = _LANE if i % 2 else -_LANE
+        x, y = np.array(cells, dtype=float).T
+        axes.plot(x + lane, y - lane, color=colour, linestyle=dashes, linewidth=2.2, zorder=5,
+                  label=name if i < len(_LEGS) else "_leg")
+    lines, here = [], {}
+    for at, step in enumerate(steps):
+        if step.get("action") in _STOPS:
+            x, y = step["cell"]
+            shift = here.setdefault((x, y), 0)  # a cell may be the place of several stops
+            here[x, y] += 1
+            lines.append(f"{len(lines) + 1}  {_STOPS[step['action']][1]}, step {at}")
+            axes.annotate(str(len(lines)), (x, y), xytext=(-10 - 17 * shift, -9), zorder=8,
+                          textcoords="offset points", ha="center", va="center", fontsize=10,
+                          weight="bold", bbox={"boxstyle": "circle,pad=0.15", "facecolor": "white",
+                                               "edgecolor": "black"})
+    return lines
+
+
+def _explain(empty, charts, stops, has_moves):
+    """Explains the symbols of the other axes on empty ones."""
+    symbols = {}
+    for axes in charts:
+        symbols.update(reversed(pair) for pair in zip(*axes.get_legend_handles_labels()))
+    empty.legend(symbols.values(), symbols.keys(), loc="upper left", frameon=False, fontsize=11,
+                 bbox_to_anchor=(0.0, 1.0), labelspacing=0.7, ncols=2)
+    lines = [*stops, "", "red: the disaster's rings in some steps",
+             "axes: cells, east and north"]
+    if has_moves:
+        lines = [f"arrow: the preferred move, in every {_EVERY}nd column and row", "", *lines]
+    empty.text(0.03, 0.68, "\n".join(lines), transform=empty.transAxes, va="top", fontsize=11,
+               linespacing=1.4)
+
+
+def _rings(disaster):
+    """Yields the outlines of a disaster's rings, which may have a radius for each quadrant."""
+    bearings = np.radians(np.arange(360.0))
+    quadrants = disaster.get("quadrants") or [[radius] * 4 for radius in disaster["radii"]]
+    for ring in quadrants:
+        radii = np.repeat(ring, 90)  # north-east first, clockwise like bearings
+        yield np.column_stack([disaster["x"] + radii * np.sin(bearings),
+                               disaster["y"] + radii * np.cos(bearings)])
+
+
+def _disasters(axes, steps):
+    """Draws the rings at the start strongly and those of some later steps faintly."""
+    for at in np.linspace(0, len(steps) - 1, _SHOWN_STEPS).astype(int):
+        style = {"linewidth": 1.6, "alpha": 0.9} if at == 0 else {"linewidth": 0.9, "alpha": 0.5}
+        for disaster in steps[at]["disasters"]:
+            outer = [*_rings(disaster)][-1]
+            for ring in _rings(disaster):
+                axes.add_patch(Polygon(ring, fill=False, color="#b22222", zorder=2, **style))
+            axes.annotate(f"step {at}", outer[90], xytext=(3, 0), textcoords="offset points",
+                          color="#b22222", fontsize=9, va="center", annotation_clip=True)

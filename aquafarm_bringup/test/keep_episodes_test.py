@@ -21,6 +21,20 @@ TRAIN = ["algorithm:=q_learning", "farms:=1", "evaluation_episodes:=0", "random_
          "viz:=false"]
 INDEX = b"index_pos="  # of a bag, 0 until it is closed
 FIRST_CHUNK = 4117  # bytes before it in every bag
+CHUNK = b"op=\x05"
+
+
+def second_chunk(content):
+    """Returns the offset of a bag's second chunk, or None if its header is not complete."""
+    begin = FIRST_CHUNK
+    while begin + 4 <= len(content):
+        data = begin + 4 + int.from_bytes(content[begin:begin + 4], "little")
+        if data > len(content):
+            return None
+        if begin > FIRST_CHUNK and CHUNK in content[begin + 4:data]:
+            return begin
+        begin = data + 4 + int.from_bytes(content[data:data + 4], "little")
+    return None
 
 
 def is_stopped(pid):
@@ -32,6 +46,11 @@ def is_stopped(pid):
         return False
 
 
+def reindex(bag):
+    subprocess.run(["rosbag", "reindex", "--force", str(bag)], check=True, timeout=60,
+                   capture_output=True)
+
+
 class KeepEpisodesTest(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="aquafarm_keep_"))
@@ -40,8 +59,20 @@ class KeepEpisodesTest(unittest.TestCase):
     def bags(self):
         return sorted(self.folder.rglob("episode_*.bag"))
 
+    def cut(self, whole, end):
+        """Writes the first bytes of a bag as a killed recorder leaves them; returns the new bag."""
+        data = bytearray(whole.read_bytes()[:end])
+        place = data.index(INDEX) + len(INDEX)
+        data[place:place + 8] = bytes(8)
+        bag = self.folder / "cut.bag"
+        bag.write_bytes(data)
+        return bag
+
     def half_written(self):
-        """Returns an unfinished bag with a chunk and its index on the disk, or None."""
+        """Returns an unfinished bag that `rosbag reindex` can repair, or None.
+
+        It has the first chunk, all of its index and the header of the second chunk on the disk.
+        """
         for bag in self.folder.rglob("*.partial"):
             try:
                 content = bag.read_bytes()
@@ -49,10 +80,7 @@ class KeepEpisodesTest(unittest.TestCase):
                 continue
             if int.from_bytes(content[content.find(INDEX) + len(INDEX):][:8], "little") != 0:
                 continue  # it is complete but not renamed yet
-            end = FIRST_CHUNK
-            for _ in range(2):  # header and data, each preceded by its length
-                end += 4 + int.from_bytes(content[end:end + 4], "little")
-            if len(content) > end:  # the index after it is written with it
+            if second_chunk(content):
                 return bag
         return None
 
@@ -107,8 +135,7 @@ class KeepEpisodesTest(unittest.TestCase):
         code, words = verify(*self.bags()[-20:])  # there may be hundreds
         self.assertEqual(0, code, words)
         self.assertEqual([cut], list(self.folder.rglob("*.partial")))
-        subprocess.run(["rosbag", "reindex", str(cut)], check=True, timeout=60,
-                       capture_output=True)
+        reindex(cut)
         code, words = verify(cut)
         self.assertEqual(0, code, words)
         # The only missing part may be the index at its end.
@@ -120,21 +147,23 @@ class KeepEpisodesTest(unittest.TestCase):
                    f"record_dir:={self.folder}") as ranch:
             self.assertEqual(0, ranch.exit_code(60), ranch.words())
         whole = self.bags()[0]
-        cut = self.folder / "cut.bag"
-        # State after a kill: chunks without the index that closing writes at the end.
+        # Killed before closing wrote the index, and after all of it but the header that points to it.
         with rosbag.Bag(str(whole)) as bag:
-            end = bag._index_data_pos
-        data = bytearray(whole.read_bytes()[:end])
-        place = data.index(b"index_pos=") + len(b"index_pos=")
-        data[place:place + 8] = bytes(8)
-        cut.write_bytes(data)
+            chunks_end = bag._index_data_pos
+        for end in (chunks_end, whole.stat().st_size):
+            cut = self.cut(whole, end)
+            code, words = verify(cut)
+            self.assertEqual(2, code, words)
+            self.assertIn("its recorder was killed; run 'rosbag reindex' first", words)
+            reindex(cut)
+            code, words = verify(cut)
+            self.assertEqual(0, code, words)
+        # Nothing can be repaired before the index of the first chunk is complete.
+        cut = self.cut(whole, second_chunk(whole.read_bytes()) - 1)
+        reindex(cut)
         code, words = verify(cut)
         self.assertEqual(2, code, words)
-        self.assertIn("its recorder was killed; run 'rosbag reindex' first", words)
-        subprocess.run(["rosbag", "reindex", str(cut)], check=True, timeout=60,
-                       capture_output=True)
-        code, words = verify(cut)
-        self.assertEqual(0, code, words)
+        self.assertIn("cut.bag: damaged: ", words)
 
     def test_a_wrong_choice_ends_the_launch_with_its_line(self):
         with Ranch("evaluate", "policy:=random", "record:=some", "viz:=false") as ranch:

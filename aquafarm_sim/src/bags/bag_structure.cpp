@@ -250,6 +250,9 @@ void CheckIndex(BagRecords& records, std::size_t bytes) {
   Connections connections;
   while (records.position() < index) {
     records.Next();
+    // 'rosbag reindex' leaves what a killed recorder wrote of its index in front of the new index.
+    if (records.Is(BagOp::kConnection)) TakeConnection(records, connections);
+    if (records.Is(BagOp::kConnection) || records.Is(BagOp::kChunkInfo)) continue;
     records.Expect(BagOp::kChunk);
     const std::string where = records.Where();
     all_bytes += records.Get<std::uint32_t>("size");

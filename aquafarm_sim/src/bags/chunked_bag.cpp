@@ -187,8 +187,11 @@ void ChunkedBag::EndChunk() {
 void ChunkedBag::Close() {
   if (!chunk_.empty()) EndChunk();
   const auto position = static_cast<std::uint64_t>(file_.tellp());
-  for (const auto& [topic, connection] : connections_) WriteFile(connection.record);
-  WriteFile(chunk_infos_);
+  // In one call: 'rosbag reindex' loses every chunk if only the first of these records are written.
+  Bytes index;
+  for (const auto& [topic, connection] : connections_) Put(connection.record, index);
+  Put(chunk_infos_, index);
+  WriteFile(index);
   file_.seekp(static_cast<std::streamoff>(kBegin.size()));
   WriteBagHeader(position);
   errno = 0;

@@ -42,6 +42,15 @@ def draw_reliability(data, path):
     plt.close(figure)
 
 
+def finding(storms):
+    """What the back-test found, in a sentence."""
+    as_good = sum(s["saved"] > s["clairvoyant"] - 0.5 for s in storms)
+    share = sum(s["saved"] for s in storms) / sum(s["clairvoyant"] for s in storms)
+    less = sum(s["promised"] < s["saved"] for s in storms)
+    return (f"In {as_good} of {len(storms)} recorded storms the plan saves what a clairvoyant saves "
+            f"({share:.0%} in all);\nin {less} it saves more than it promised before the storm")
+
+
 def draw_back_test(data, path):
     """Saved, promised and clairvoyant value of each recorded storm."""
     storms = data["storms"]
@@ -52,7 +61,7 @@ def draw_back_test(data, path):
     axes.barh(places, [s["at_risk"] for s in storms], color="0.9", label="lost if no ship leaves")
     axes.errorbar([s["saved"] for s in storms], places, xerr=[low, high], fmt="o", color="black",
                   markersize=4, capsize=2, label="saved (mean, smallest to largest)")
-    axes.plot([s["promised"] for s in storms], places, "x", color="tab:blue", label="promised")
+    axes.plot([s["promised"] for s in storms], places, "x", color="tab:blue", label="promised (before the storm)")
     axes.plot([s["clairvoyant"] for s in storms], places, "|", color="tab:red", markersize=11,
               label="clairvoyant")
     axes.set_yticks(list(places), [f"{s['name'] or s['id']} {s['nearest'][:4]}" for s in storms],
@@ -61,6 +70,7 @@ def draw_back_test(data, path):
     axes.set_ylim(0.3, len(storms) + 0.7)
     axes.grid(alpha=0.3, axis="x")
     axes.legend(fontsize=8, ncol=2, loc="lower center", bbox_to_anchor=(0.5, 1.0))  # above the bars
+    figure.suptitle(finding(storms), fontsize=11, y=1.03)
     figure.savefig(path, dpi=DPI, bbox_inches="tight")
     plt.close(figure)
 

@@ -265,6 +265,29 @@ class ReportTest(unittest.TestCase):
             last = [float(row[name]) for row in trained[-50:]]
             self.assertAlmostEqual(sum(last) / 50.0, mean, delta=1e-3 * abs(mean) + 1e-6)
 
+    def test_curves_of_returns_have_lines_of_the_references_and_an_enlarged_part(self):
+        columns = {"return": np.linspace(-300.0, 150.0, 120)}
+        players = [references.Player("RANDOM", [{"return": "-1500"}, {"return": "-1501"}]),
+                   references.Player("a", [{"return": "90"}], is_run=True),
+                   references.Player("planner", fault="took too long"),
+                   references.Player("clairvoyant", [{"return": "278.16"}])]
+
+        def charts(columns):
+            text = curves.show(["a"], [columns], players=players)
+            return {chart["id"]: chart for chart in
+                    json.loads(re.search(r"const CURVES=(.*?);\n", text).group(1))["charts"]}
+
+        found = charts(columns)
+        lines = [{"label": "RANDOM", "value": -1500.5}, {"label": "clairvoyant", "value": 278.2}]
+        self.assertEqual(lines, found["curve_return"]["lines"])
+        self.assertEqual(lines, found["curve_return_part"]["lines"])
+        low, high = found["curve_return_part"]["range"]
+        self.assertEqual(0.0, low)
+        self.assertGreater(high, 278.2)
+        self.assertEqual(found["curve_return"]["rows"], found["curve_return_part"]["rows"])
+        self.assertEqual(["curve_return"], list(charts({"return": columns["return"] - 1000.0})),
+                         "no mean is above 0")
+
     def test_devices_of_episodes_with_other_devices_have_their_own_kinds(self):
         first = [outcomes.Outcome("F0 monitoring", 3, 9, 1.0)]
         second = [outcomes.Outcome("F0 release", None, None, 0.5),

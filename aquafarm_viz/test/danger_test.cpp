@@ -279,20 +279,19 @@ TEST(DangerMarkers, SayWhenAStormOutsideIsClosest) {
   scene.SetTrackTo(-3);
   scene.state.disasters[0].speed = 0.5F;
   EXPECT_EQ(scene.Draw().at({"pointer_label", 0}).text,
-            "typhoon, centre 20 km W\nE, 0.50 cells a step, closest 15 km W in 10 steps");
+            "typhoon, centre 20 km W\nE, 0.50 cells a step, closest 15 km W in 30 min");
 }
 
 TEST(DangerMarkers, FollowTheTrackOfTheScenario) {
   Scene scene;
   scene.SetTrackTo(2);
-  EXPECT_EQ(scene.Draw().at({"alarm", 0}).text,
-            "typhoon over F0: risk -5 now, risk -20 in 10 steps");
+  EXPECT_EQ(scene.Draw().at({"alarm", 0}).text, "typhoon over F0: risk -5 now, risk -20 in 30 min");
   scene.spec.scenario_yaml.replace(scene.spec.scenario_yaml.find("    track:"), 0,
                                    "    ring_winds_kt: [64, 34]\n");
   const auto named = scene.Draw();
   EXPECT_EQ(named.at({"alarm", 0}).text,
-            "typhoon over F0: gale (risk -5) now, hurricane force (risk -20) in 10 steps");
-  EXPECT_EQ(named.at({"danger_label", 0}).text, "F0: gale now, hurricane force in 10 steps");
+            "typhoon over F0: gale (risk -5) now, hurricane force (risk -20) in 30 min");
+  EXPECT_EQ(named.at({"danger_label", 0}).text, "F0: gale now, hurricane force in 30 min");
 }
 
 }  // namespace

@@ -22,6 +22,14 @@ TEST(FreeSpace, ReturnsPlacesThatCoverNeitherUsedPartsNorEachOther) {
   EXPECT_GT(places.size(), 20U);
 }
 
+TEST(FreeSpace, OfACopyIsItsOwn) {
+  FreeSpace space({300, 200});
+  FreeSpace copy = space;
+  copy.Block({10, 10, 20, 20});
+  EXPECT_TRUE(space.IsFree({10, 10, 20, 20}));
+  EXPECT_FALSE(copy.IsFree({10, 10, 20, 20}));
+}
+
 TEST(FreeSpace, KnowsWhatIsFreeAndWhichLabelALineCrosses) {
   FreeSpace space({300, 200});
   EXPECT_TRUE(space.IsFree({10, 10, 20, 20}));

@@ -141,8 +141,8 @@ TEST(Image, ShadesCellsOfARingAndNoneOutside) {
     const cv::Point at(view.ToPixel(x, y));
     return cv::norm(empty(cv::Rect(at, cv::Size(1, 1))), map(cv::Rect(at, cv::Size(1, 1)))) > 10;
   };
-  EXPECT_TRUE(changed(12.0, 8.3));    // 5.7 cells south
-  EXPECT_FALSE(changed(12.0, 7.7));   // 6.3 cells south
+  EXPECT_TRUE(changed(7.97, 9.97));   // 5.7 cells south-west; the label is on the line in the south
+  EXPECT_FALSE(changed(7.54, 9.54));  // 6.3 cells south-west
   EXPECT_TRUE(changed(6.3, 14.0));    // 5.7 cells west
   EXPECT_FALSE(changed(5.7, 14.0));   // 6.3 cells west
   EXPECT_TRUE(changed(12.0, 19.7));   // 5.7 cells north

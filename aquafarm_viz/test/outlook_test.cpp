@@ -57,7 +57,7 @@ TEST(Outlook, OfAPresentCourseNamesEachRingAndItsTime) {
   EXPECT_EQ(outlook.devices[0].arrivals[1].steps, 25.0);
   EXPECT_EQ(outlook.devices[0].arrivals[1].risk, -20.0);
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, risk -5, reaches F3 in about 20 steps");
+            "typhoon, risk -5, reaches F3 in about 1.0 h");
 }
 
 TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
@@ -71,7 +71,13 @@ TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
   EXPECT_EQ(outlook.devices[0].arrivals[0].steps, 10.0);
   scene.spec.has_start_time = true;
   scene.spec.step_duration_s = 1800.0;
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon, risk -5, reaches F3 in 5.0 h");
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
+            "typhoon, risk -5, reaches F3 in 5.0 h, Thu 05:51 UTC")
+      << "5 h after the state's time, 0 h 51 min";
+  scene.spec.has_start_time = false;
+  scene.spec.step_duration_s = 0.0;
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
+            "typhoon, risk -5, reaches F3 in 10 steps");
 }
 
 // The track of kRecorded with the winds of its rings.
@@ -84,15 +90,15 @@ TEST(Outlook, NamesTheWindsOfRingsThatTheScenarioGives) {
   Scene scene;
   scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "typhoon, gale (risk -5), reaches F3 in 10 steps");
-  EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "gale in 10 steps");
-  EXPECT_EQ(RiskText(scene.spec, scene.outlook().devices[0]), "-5 in 10 steps");
+            "typhoon, gale (risk -5), reaches F3 in 30 min");
+  EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "gale in 30 min");
+  EXPECT_EQ(RiskText(scene.spec, scene.outlook().devices[0]), "-5 in 30 min");
   scene.state.step = 8;
   scene.state.disasters[0].x = 24.0F;
   scene.state.devices[0].x = 17;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "typhoon over F3: gale (risk -5) now, storm (risk -20) in 1 step");
-  EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()), "F3: gale now, storm in 1 step");
+            "typhoon over F3: gale (risk -5) now, storm (risk -20) in 3 min");
+  EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()), "F3: gale now, storm in 3 min");
   scene.state.devices[0].x = 22;
   EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "storm now");
 }
@@ -165,8 +171,8 @@ TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
   scene.state.disasters[0].x = 18.0F;
   const Outlook outlook = scene.outlook();
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon over F3: risk -5 now, risk -20 in about 3 steps");
-  EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "-5 now, -20 in 3 steps");
+            "typhoon over F3: risk -5 now, risk -20 in about 9 min");
+  EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "-5 now, -20 in 9 min");
 }
 
 TEST(Outlook, IsInTheHeadLineEvenWhereThereIsLittleSpace) {
@@ -189,8 +195,7 @@ TEST(Outlook, SaysUntilWhenItIsKnown) {
   Scene scene;
   scene.state.disasters[0].x = 212.0F;  // it arrives after the 60 steps of a present course
   EXPECT_FALSE(IsInDanger(scene.outlook()));
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "disasters known until +60 steps");
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "disasters known until +3.0 h");
   scene.state.disasters[0].steps_left = 60;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "");
 }
@@ -357,7 +362,7 @@ TEST(Outlook, GivesTheMotionAndTheClosestApproach) {
       << "the present motion does not say when a storm is closest";
   scene.storms = ReadStormTracks(kRecorded, 1000.0);
   EXPECT_EQ(ApproachText(scene.spec, scene.state.disasters[0], scene.course()),
-            "W, 1.00 cells a step, closest 8.0 km E in 10 steps");
+            "W, 1.00 cells a step, closest 8.0 km E in 30 min");
 }
 
 TEST(FreeSpace, TakesTheNearestPlaceThatCoversNothing) {

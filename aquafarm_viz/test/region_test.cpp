@@ -162,7 +162,7 @@ TEST(RegionWords, OfAStormWithGrowingRings) {
   storms.Add("{step: 0, x: 112, y: 12, radii: [10]}, {step: 20, x: 122, y: 12, radii: [210]}",
              112.0F, 12.0F);
   EXPECT_EQ(storms.words().heading, "REACHES THE RANCH");
-  EXPECT_EQ(storms.words().lines[0], "in 9 steps, centre 100 km E");
+  EXPECT_EQ(storms.words().lines[0], "in 27 min, centre 100 km E");
 }
 
 TEST(RegionWords, AreAboutTheStormThatComesAndNotTheFirst) {
@@ -176,11 +176,11 @@ TEST(RegionWords, AreAboutTheStormThatComesAndNotTheFirst) {
   storms.state.disasters[1].heading_deg = 270;
   storms.state.disasters[1].speed = 1.0F;
   EXPECT_EQ(storms.words().heading, "REGION");
-  EXPECT_EQ(storms.words().lines[1], "reaches it in about 8 steps");
+  EXPECT_EQ(storms.words().lines[1], "reaches it in about 24 min");
   storms.state.disasters[1].x = 212.0F;  // comes nearer, but does not arrive while it is known
   storms.state.disasters[1].steps_left = 90;
   EXPECT_EQ(storms.words().heading, "REGION");
-  EXPECT_EQ(storms.words().lines[1], "known until +60 steps");
+  EXPECT_EQ(storms.words().lines[1], "known until +3.0 h");
 }
 
 TEST(RegionWords, GiveTheWindAtTheClosestApproach) {
@@ -261,7 +261,7 @@ TEST(RegionWords, SayUntilWhenAForecastIsKnown) {
   Storms storms;
   storms.Add(kAway, 112.0F, 12.0F,
              "    forecasts: [{step: 0, points: [{step: 9, x: 142, y: 12, radii: [10]}]}]\n");
-  EXPECT_EQ(storms.words().lines[1], "known until +9 steps");
+  EXPECT_EQ(storms.words().lines[1], "known until +27 min");
 }
 
 // Mean colour of a part of the map.

@@ -2,7 +2,9 @@
 // The key of a picture, its list of devices, and ports next to ships.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <set>
 #include <string>
 #include <vector>
@@ -69,7 +71,7 @@ TEST(Signs, OfAPortStandNextToAShipInIt) {
       EXPECT_EQ(there, layout.view.ToPixel(other.cell.x, other.cell.y)) << "without a ship";
       EXPECT_GE(cv::norm(at - there), 2.0 * layout.port_radius_px()) << PortLetter(port.id);
     }
-    EXPECT_FALSE(BlockSymbols(spec, state, layout).IsFree({cv::Point(at), cv::Size(1, 1)}))
+    EXPECT_FALSE(BlockSymbols(spec, state, {}, layout).IsFree({cv::Point(at), cv::Size(1, 1)}))
         << "labels keep off";
   }
 }
@@ -120,35 +122,86 @@ TEST(Signs, OfRingsHaveTheirKnotsInANarrowPanelToo) {
   }
 }
 
-// A label that lies on a ring would be struck through by its line.
-TEST(Signs, OfRingsAreLabelledNextToTheirLineAndOffTheLand) {
+// Returns the distance of a pixel from each ring of a disaster at y = 8, the nearest ring first.
+std::vector<double> FromRings(cv::Point2d pixel, const aquafarm_msgs::DisasterState& disaster,
+                              const Layout& layout) {
+  const double away = cv::norm(pixel - layout.view.ToPixel(double(disaster.x), 8.0));
+  std::vector<double> found;
+  for (const float radius : disaster.radii) {
+    found.push_back(std::abs(away - double(radius) * layout.view.cell_px()));
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+TEST(Signs, OfRingsAreLabelledOnTheirOwnLineAndOffTheLand) {
   const auto spec = test::MakeSpec();
   const Layout layout = MakeLayout(spec.width, spec.height, kSize);
   auto state = test::MakeState();
   const Fonts fonts(layout.unit);
   for (const float x : {3.0F, 8.0F, 12.0F, -2.0F}) {
-    state.disasters.front().x = x;
-    state.disasters.front().y = 8.0F;
+    auto& disaster = state.disasters.front();
+    disaster.x = x;
+    disaster.y = 8.0F;
     std::vector<Course> courses{CourseOf(spec, state, 0, {})};
-    FreeSpace space = BlockSymbols(spec, state, layout);
+    FreeSpace space = BlockSymbols(spec, state, {}, layout);
     cv::Mat map(layout.map.size(), CV_8UC3, cv::Scalar::all(90));
     LabelRings(map, spec, state, courses, space, layout, fonts);
-    const cv::Point2d centre = layout.view.ToPixel(double(x), 8.0);
     cv::Mat1b written;
     cv::inRange(map, Bgr(layout.style->words), Bgr(layout.style->words), written);
-    std::vector<cv::Point> pixels;
-    cv::findNonZero(written, pixels);
-    EXPECT_GT(pixels.size(), 20U) << x;
-    for (const cv::Point pixel : pixels) {
-      for (const float radius : state.disasters.front().radii) {
-        const double away = cv::norm(cv::Point2d(pixel) - centre);
-        EXPECT_GT(std::abs(away - double(radius) * layout.view.cell_px()), 1.5) << x;
-      }
-      for (const auto& cell : spec.islands) {
-        const cv::Point2d off = cv::Point2d(pixel) - layout.view.ToPixel(cell.x, cell.y);
-        EXPECT_GT(std::max(std::abs(off.x), std::abs(off.y)), 0.45 * layout.view.cell_px()) << x;
+    cv::Mat1b joined;  // one part for each label
+    cv::dilate(written, joined, cv::Mat1b::ones(3, 11));
+    cv::Mat1i parts;
+    cv::Mat sizes;
+    cv::Mat1d middles;
+    const int count = cv::connectedComponentsWithStats(joined, parts, sizes, middles);
+    EXPECT_GT(count, 1) << x;
+    for (int part = 1; part < count; ++part) {
+      EXPECT_LT(FromRings({middles(part, 0), middles(part, 1)}, disaster, layout)[0],
+                8.0 * layout.unit)
+          << x;
+      std::vector<cv::Point> pixels;
+      cv::findNonZero((parts == part) & written, pixels);
+      for (const cv::Point pixel : pixels) {
+        EXPECT_GT(FromRings(pixel, disaster, layout)[1], 1.5) << x << ": the line of another ring";
+        for (const auto& cell : spec.islands) {
+          const cv::Point2d off = cv::Point2d(pixel) - layout.view.ToPixel(cell.x, cell.y);
+          EXPECT_GT(std::max(std::abs(off.x), std::abs(off.y)), 0.45 * layout.view.cell_px()) << x;
+        }
       }
     }
+  }
+}
+
+TEST(Signs, OfDevicesStandNextToTheirDeviceAndNotNearerToARock) {
+  auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  state.disasters.clear();
+  state.ships.clear();
+  state.devices.resize(1);
+  state.devices.front().status = aquafarm_msgs::DeviceState::DEPLOYED;
+  const cv::Point cell(9, 20);
+  state.devices.front().x = cell.x;
+  state.devices.front().y = cell.y;
+  spec.rocks.resize(1);
+  const Layout layout = MakeLayout(spec.width, spec.height, kSize);
+  const Fonts fonts(layout.unit);
+  for (const cv::Point side : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, -1)}) {
+    spec.rocks.front().cell.x = cell.x + side.x;
+    spec.rocks.front().cell.y = cell.y + side.y;
+    FreeSpace space = BlockSymbols(spec, state, {}, layout);
+    cv::Mat map(layout.map.size(), CV_8UC3, cv::Scalar::all(90));
+    LabelDevices(map, spec, state, space, layout, fonts);
+    cv::Mat1b written;
+    cv::inRange(map, Bgr(layout.style->label), Bgr(layout.style->label), written);
+    const cv::Moments moments = cv::moments(written, true);
+    ASSERT_GT(moments.m00, 5.0);
+    const cv::Point2d label(moments.m10 / moments.m00, moments.m01 / moments.m00);
+    const auto away = [&](cv::Point of) {
+      return cv::norm(label - layout.view.ToPixel(of.x, of.y));
+    };
+    EXPECT_LT(away(cell), away(cell + side)) << side;
+    EXPECT_LT(away(cell), 2.0 * layout.view.cell_px()) << side;
   }
 }
 

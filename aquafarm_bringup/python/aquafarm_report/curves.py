@@ -65,16 +65,36 @@ def _library(name):
                           "libjs-dygraphs; run ./aquafarm setup") from None
 
 
-def show(labels, columns, notes=()):
+def enlarged(rows, lines):
+    """Range of the returns above 0 with the lines of references there; None if no mean is there."""
+    top = max((mean for row in rows for mean in row[1:] if mean is not None), default=0.0)
+    if top <= 0.0:
+        return None
+    return [0.0, 1.16 * max([top, *(line["value"] for line in lines)])]
+
+
+def show(labels, columns, notes=(), players=()):
     """Section with one chart for each measure, with a curve for each run; empty without curves.
+    Returns have two: of the whole range, and above 0.
 
     notes: sentences below the introduction
+    players: references, whose mean returns are lines
     """
+    lines = [{"label": one.label, "value": round(float(np.mean(references.column(one, "return"))), 1)}
+             for one in players if one.rows and not one.is_run]
     charts = []
     for name, title in CURVES:
         rows = rows_of(columns, name)
-        if rows:
-            charts.append({"id": f"curve_{name}", "title": title, "rows": rows})
+        if not rows:
+            continue
+        chart = {"id": f"curve_{name}", "title": title, "rows": rows}
+        if name == "return":
+            if part := enlarged(rows, lines):
+                charts.append({"id": "curve_return_part", "title": f"{title}, enlarged: above 0",
+                               "rows": rows, "range": part, "lines": lines})
+                chart["title"] += ", whole range"
+            chart["lines"] = lines
+        charts.append(chart)
     if not charts:
         return ""
     settings = {"labels": ["episode", *labels], "charts": charts,

@@ -84,7 +84,7 @@ def report_run(run, folder, episodes):
     players.insert(1, references.read_player(settings["algorithm"], folder / "evaluation",
                                              is_run=True))
     notes = [curves.gap_note(players[1].label, columns, players[1])] if columns else []
-    training = curves.show([settings["algorithm"]], [columns], notes)
+    training = curves.show([settings["algorithm"]], [columns], notes, players)
     return page.page(
         f"{settings['algorithm']} on {settings['scenario']}",
         page.section("Next to the references", references.show_tiles(players)), tiles, training,

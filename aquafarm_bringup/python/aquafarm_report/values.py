@@ -138,7 +138,7 @@ def draw(text, values, layers, results, path):
     axes[0][0].set_ylabel("north [km]")
     for column, (layer, result) in enumerate(zip(layers, results), start=1):
         name, units, field = layer
-        draw_map(axes[0][column], field, km, "cividis", f"[{unit_text(units)}]")
+        draw_map(axes[0][column], np.where(np.isfinite(values), field, np.nan), km, "cividis", f"[{unit_text(units)}]")
         axes[0][column].set_title(name.replace("_", " "))
         draw_relation(axes[1][column], values, layer, result)
     if layers:

@@ -15,6 +15,14 @@ class FreeSpace {
   /// @param size of the map [pixels]
   explicit FreeSpace(cv::Size size);
 
+  // A copy has its own pixels; copies of cv::Mat share them.
+  FreeSpace(const FreeSpace& other)
+      : used_(other.used_.clone()), labels_(other.labels_), size_(other.size_) {}
+  FreeSpace& operator=(const FreeSpace&) = delete;
+  FreeSpace(FreeSpace&&) = default;
+  FreeSpace& operator=(FreeSpace&&) = default;
+  ~FreeSpace() = default;
+
   /// Marks a part of the map as used. Parts outside the map are ignored.
   void Block(cv::Rect part);
 

@@ -162,7 +162,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
     forecasts.courses.push_back(CourseOf(spec, state, i, p.storms));
   }
   forecasts.outlook = ComputeOutlook(spec, state, forecasts.courses);
-  FreeSpace space = BlockSymbols(spec, state, p.layout);
+  FreeSpace space = BlockSymbols(spec, state, forecasts.outlook, p.layout);
   if (layers.trail && overlays.trail != nullptr) DrawTrails(map, state, *overlays.trail, p.layout);
   const auto marks = p.DrawDisasters(map, spec, state, forecasts, layers.risk);
   if (layers.route && overlays.route != nullptr) DrawRoutes(map, state, *overlays.route, p.layout);

@@ -26,6 +26,7 @@ using aquafarm_msgs::FarmState;
 
 constexpr std::size_t kMaxDangerLabels = 40;  // more are not read, and cost time
 constexpr double kDangerRing = 2.0;           // of the first device in danger [device radii]
+constexpr double kSymbol = 1.2;               // of other devices, with their health
 
 cv::Rect Around(cv::Point2d at, double radius) {
   return {cvFloor(at.x - radius), cvFloor(at.y - radius), cvCeil(2.0 * radius),
@@ -80,7 +81,8 @@ void DrawPlate(cv::Mat& map, cv::Rect plate, const std::string& text, double ris
 
 }  // namespace
 
-FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Layout& layout) {
+FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
+                       const Layout& layout) {
   FreeSpace space(layout.map.size());
   const double gap = 2.0 * layout.unit;
   for (const auto& port : spec.ports) {
@@ -92,7 +94,11 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Layou
     if (!InGrid(spec, device.x, device.y)) continue;
     const cv::Point2d at = layout.view.ToPixel(device.x, device.y);
     if (device.status == DeviceState::DEPLOYED) {
-      space.Block(Around(at, kDangerRing * layout.device_radius_px() + gap));
+      const bool is_marked = std::any_of(
+          outlook.devices.begin(), outlook.devices.end(),
+          [&device](const auto& one) { return one.id == device.id && NextRisk(one) < 0.0; });
+      const double radius = (is_marked ? kDangerRing : kSymbol) * layout.device_radius_px();
+      space.Block(WithBar(at, radius + gap, layout));
     } else if (device.status == DeviceState::DELIVERED &&
                quays.insert({device.x, device.y}).second) {
       space.Block(Around(at, 30.0 * layout.unit));  // the delivered devices stand there in rows
@@ -155,6 +161,17 @@ void LabelDanger(cv::Mat& map, const FarmSpec& spec, const FarmState& state, con
 
 namespace {
 
+// Marks islands and rocks as used, so that a label on water does not seem to name them.
+void BlockLand(const FarmSpec& spec, FreeSpace& space, const Layout& layout) {
+  const double half_cell = 0.5 * layout.view.cell_px();
+  for (const auto& cell : spec.islands) {
+    space.Block(Around(layout.view.ToPixel(cell.x, cell.y), half_cell));
+  }
+  for (const auto& rock : spec.rocks) {
+    space.Block(Around(layout.view.ToPixel(rock.cell.x, rock.cell.y), 0.8 * half_cell));
+  }
+}
+
 // A point of a ring on the map, and the direction away from the centre.
 struct RingPoint {
   cv::Point2d at;
@@ -191,10 +208,10 @@ std::vector<RingPoint> PointsOnMap(const DisasterState& disaster, std::size_t ri
   return points;
 }
 
-// Finds a place for the label of a ring next to its line: outside it, else inside it.
+// Finds a place for the label of a ring: on its line, else outside it, else inside it.
 std::optional<cv::Rect> PlaceBesideRing(const std::vector<RingPoint>& points, cv::Size size,
                                         FreeSpace& space, const Layout& layout) {
-  for (const double side : {1.0, -1.0}) {
+  for (const double side : {0.0, 1.0, -1.0}) {
     for (const RingPoint& point : points) {
       const double away = std::abs(point.outwards.x) * size.width / 2.0 +
                           std::abs(point.outwards.y) * size.height / 2.0 + 6.0 * layout.unit;
@@ -206,26 +223,27 @@ std::optional<cv::Rect> PlaceBesideRing(const std::vector<RingPoint>& points, cv
   return std::nullopt;
 }
 
+// Marks the lines of all rings but one as used.
+void BlockOtherRings(const FarmState& state, const DisasterState& own, std::size_t own_ring,
+                     cv::Size map, FreeSpace& space, const Layout& layout) {
+  for (const DisasterState& disaster : state.disasters) {
+    if (!IsDrawn(disaster)) continue;
+    for (std::size_t ring = 0; ring < disaster.radii.size(); ++ring) {
+      if (&disaster == &own && ring == own_ring) continue;
+      for (const RingPoint& point : PointsOnMap(disaster, ring, map, layout)) {
+        space.Block(Around(point.at, 2.0 * layout.unit));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void LabelRings(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
                 const std::vector<Course>& courses, FreeSpace& space, const Layout& layout,
                 const Fonts& fonts) {
-  FreeSpace water = space;
-  const double half_cell = 0.5 * layout.view.cell_px();
-  for (const auto& cell : spec.islands) {
-    water.Block(Around(layout.view.ToPixel(cell.x, cell.y), half_cell));
-  }
-  for (const auto& rock : spec.rocks) {
-    water.Block(Around(layout.view.ToPixel(rock.cell.x, rock.cell.y), 0.8 * half_cell));
-  }
-  for (const DisasterState& disaster : state.disasters) {  // no label on the line of a ring
-    if (!IsDrawn(disaster)) continue;
-    for (std::size_t ring = 0; ring < disaster.radii.size(); ++ring) {
-      const auto points = PointsOnMap(disaster, ring, map.size(), layout);
-      for (const RingPoint& point : points) water.Block(Around(point.at, 2.0 * layout.unit));
-    }
-  }
+  FreeSpace land = space;
+  BlockLand(spec, land, layout);
   for (std::size_t index = 0; index < state.disasters.size(); ++index) {
     const DisasterState& disaster = state.disasters[index];
     const std::vector<std::int32_t>& winds = courses[index].ring_winds_kt;
@@ -236,8 +254,11 @@ void LabelRings(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
       const std::string text = name + "risk " + Number(double(disaster.risks[ring]), 0);
       const cv::Size size(fonts.bold.Width(text) + layout.Px(13), layout.Px(16));
       const auto points = PointsOnMap(disaster, ring, map.size(), layout);
+      FreeSpace water = land;
+      BlockOtherRings(state, disaster, ring, map.size(), water, layout);
       const auto place = PlaceBesideRing(points, size, water, layout);
       if (!place) continue;  // the key of risks has to do
+      land.Block(*place);
       DrawPlate(map, *place, text, double(disaster.risks[ring]), layout, fonts);
       space.Block(*place);
     }
@@ -261,15 +282,22 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state, F
 
 void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, FreeSpace& space,
                   const Layout& layout, const Fonts& fonts) {
+  FreeSpace water = space;
+  BlockLand(spec, water, layout);
   for (const auto& device : state.devices) {
     if (!IsLabelled(spec, device)) continue;
     const std::string text = DeviceLabel(device.id);
     const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
     const double radius = layout.device_radius_px();
-    const cv::Point2d south_east = layout.view.ToPixel(device.x, device.y) +
-                                   cv::Point2d(2.0 * radius + size.width, 1.5 * radius);
-    const auto place = space.Take(size, south_east, 3.0 * radius + 20.0 * layout.unit);
-    if (place) DrawLabel(map, fonts.bold, text, place->tl(), layout);
+    // The free place that is nearest to the symbol, to its right if there are several.
+    const cv::Point2d east = layout.view.ToPixel(device.x, device.y) + cv::Point2d(radius, 0.0);
+    const double farthest = 3.0 * radius + 20.0 * layout.unit;
+    auto place = water.Take(size, east, farthest);
+    if (!place) place = space.Take(size, east, farthest);
+    if (!place) continue;
+    water.Block(*place);
+    space.Block(*place);
+    DrawLabel(map, fonts.bold, text, place->tl(), layout);
   }
 }
 

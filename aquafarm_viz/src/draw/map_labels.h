@@ -19,7 +19,7 @@ struct Layout;
 
 /// Returns the space of the map that ports, devices, ships and centres of disasters leave.
 FreeSpace BlockSymbols(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
-                       const Layout& layout);
+                       const Outlook& outlook, const Layout& layout);
 
 /// Draws a ring around each device that a ring of a disaster covers or reaches, in the colour of
 /// the risk; the one that is reached first has two.
@@ -32,8 +32,9 @@ void LabelDanger(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                  const aquafarm_msgs::FarmState& state, const Outlook& outlook, FreeSpace& space,
                  const Layout& layout, const Fonts& fonts);
 
-/// Labels each ring of a disaster that crosses the map, next to its line and on water: "risk -5",
-/// or "gale (34 kt), risk -5" where the wind is given. A ring without a free place has none.
+/// Labels each ring of a disaster that crosses the map, on its line, else next to it, on water:
+/// "risk -5", or "gale (34 kt), risk -5" where the wind is given. A ring without a free place has
+/// none.
 /// @param courses  one per disaster of the state
 void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                 const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,

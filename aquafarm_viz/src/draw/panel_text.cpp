@@ -292,9 +292,10 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
     const Rgb color = over ? layout.style->faint : layout.style->GradeText(disaster.grade);
     const std::string motion = MotionText(spec, disaster.heading_deg, disaster.speed);
     const std::string left =
-        over                  ? ""
-        : spec.has_start_time ? "ends in " + HoursText(disaster.steps_left * spec.step_duration_s)
-                              : Count(std::uint64_t(disaster.steps_left)) + " steps left";
+        over ? ""
+        : spec.step_duration_s > 0.0
+            ? "ends in " + HoursText(disaster.steps_left * spec.step_duration_s)
+            : Count(std::uint64_t(disaster.steps_left)) + " steps left";
     const std::string known =
         disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago";
     std::string wind = over ? "" : WindText(courses[i].ahead.front());

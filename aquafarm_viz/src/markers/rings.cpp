@@ -139,7 +139,7 @@ class PatternPainter {
       rings_.push_back(RingMetres(maker, disaster, i));
       const double severity = Severity(disaster.risks[i]);
       colors_.push_back(Color(SeverityColor(severity), 0.55));
-      half_widths_.push_back(period_ * (0.022 + 0.025 * severity));
+      half_widths_.push_back(period_ * (0.011 + 0.014 * severity));
     }
   }
 

@@ -204,7 +204,9 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
 }
 
 std::string AheadText(const FarmSpec& spec, double steps) {
-  if (!spec.has_start_time) return Number(steps, 0) + (steps == 1.0 ? " step" : " steps");
+  if (!(spec.step_duration_s > 0.0)) {
+    return Number(steps, 0) + (steps == 1.0 ? " step" : " steps");
+  }
   const double hours = steps * spec.step_duration_s / 3600.0;
   if (hours < 1.0) return Number(60.0 * hours, 0) + " min";
   return Number(hours, hours < 10.0 ? 1 : 0) + " h";
@@ -216,6 +218,13 @@ namespace {
 std::string NamedRisk(const char* name, double risk) {
   const std::string text = "risk " + Number(risk, 0);
   return *name == '\0' ? text : std::string(name) + " (" + text + ")";
+}
+
+// Returns ", Sun 06:24 UTC+8", the local time in some steps; empty without a start time.
+std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double steps) {
+  if (!spec.has_start_time) return "";
+  const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
+  return ", " + LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
 }
 
 std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
@@ -245,8 +254,8 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
                                  : "";
   if (first.arrivals.empty()) return is_now ? now : KnownText(spec, outlook);
   const RingArrival& next = first.arrivals.front();
-  const std::string when =
-      std::string(" in ") + (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next.steps);
+  const std::string when = std::string(" in ") + (outlook.is_extrapolated ? "about " : "") +
+                           AheadText(spec, next.steps) + ClockAhead(spec, state, next.steps);
   const std::string risk = NamedRisk(next.name, next.risk);
   if (is_now) return now + ", " + risk + when;
   return DisasterName(state.disasters[next.disaster].kind) + ", " + risk + ", reaches " +

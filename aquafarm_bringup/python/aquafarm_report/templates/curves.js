@@ -5,7 +5,7 @@ window.charts = [];
 const DASHES = [null, [9, 4], [2, 3], [12, 4, 2, 4], [5, 5], [1, 6], [14, 6]];
 let moving = false;
 for (const chart of CURVES.charts) {
-  const returns = chart.id === "curve_return";
+  const returns = chart.id.startsWith("curve_return");
   window.charts.push(new Dygraph(document.getElementById(chart.id), chart.rows, {
     labels: CURVES.labels,
     colors: CURVES.colours,
@@ -21,7 +21,8 @@ for (const chart of CURVES.charts) {
     axisLabelColor: "currentColor",
     axisLabelWidth: 60,
     digitsAfterDecimal: returns ? 1 : 3,
-    valueRange: returns ? visible(chart.rows) : null,
+    valueRange: chart.range || (returns ? visible(chart) : null),
+    underlayCallback: (canvas, area, dygraph) => reference(canvas, area, dygraph, chart.lines || []),
     highlightSeriesOpts: {strokeWidth: 3},
     zoomCallback: (from, to) => {
       if (moving) return;
@@ -36,12 +37,43 @@ for (const chart of CURVES.charts) {
   }));
 }
 
-// The range of returns without the lowest tenth: returns of the first episodes are far below.
-function visible(rows) {
-  const values = rows.flatMap(row => row.slice(1)).filter(value => value !== null)
+// Draws a dashed line with a name for each reference in the range of a chart; names above each other
+// are written once, with commas.
+function reference(canvas, area, dygraph, lines) {
+  const seen = lines.map(line => ({...line, y: dygraph.toDomYCoord(line.value)}))
+    .filter(line => line.y >= area.y && line.y <= area.y + area.h)
+    .sort((a, b) => a.y - b.y);
+  canvas.save();
+  canvas.strokeStyle = canvas.fillStyle = getComputedStyle(document.body).color;
+  canvas.font = "13px sans-serif";
+  canvas.textAlign = "right";
+  canvas.setLineDash([6, 4]);
+  const names = [];
+  for (const line of seen) {
+    canvas.beginPath();
+    canvas.moveTo(area.x, line.y);
+    canvas.lineTo(area.x + area.w, line.y);
+    canvas.stroke();
+    const name = `${line.label} ${line.value.toFixed(1)}`;
+    const last = names[names.length - 1];
+    if (last && line.y - last.y < 16) last.text += `, ${name}`;
+    else names.push({y: line.y, text: name});
+  }
+  for (const name of names) {
+    const above = name.y - area.y > 18;
+    canvas.fillText(name.text, area.x + area.w - 6, name.y + (above ? -5 : 26));
+  }
+  canvas.restore();
+}
+
+// The range of returns with the lines of references, without the lowest tenth of the curves: returns
+// of the first episodes are far below.
+function visible(chart) {
+  const values = chart.rows.flatMap(row => row.slice(1)).filter(value => value !== null)
     .sort((a, b) => a - b);
-  const low = values[Math.floor(0.1 * (values.length - 1))];
-  const high = values[values.length - 1];
+  const lines = (chart.lines || []).map(line => line.value);
+  const low = Math.min(values[Math.floor(0.1 * (values.length - 1))], ...lines);
+  const high = Math.max(values[values.length - 1], ...lines);
   const margin = 0.08 * (high - low || 1);
   return [low - margin, high + margin];
 }

@@ -10,8 +10,8 @@
 
 namespace aquafarm {
 
-/// Rejects bytes that are nested deeper than any saved state or checkpoint. Otherwise the parser
-/// would recurse as deep as the bytes specify.
+/// Rejects bytes that are nested deeper than any saved state or checkpoint, because the parser
+/// recurses as deep as the bytes specify.
 class CborDepth final : public nlohmann::json_sax<nlohmann::json> {
  public:
   explicit CborDepth(std::string what) : what_(std::move(what)) {}

@@ -26,7 +26,7 @@ enum class RngStream : std::uint8_t {
 };
 
 /// Set in every evaluation seed, clear in every training seed. Storms of an archive's evaluation
-/// years are drawn for the former only.
+/// years are drawn for evaluation seeds only.
 inline constexpr std::uint64_t kEvaluationSeedBit = 1ULL << 63U;
 constexpr bool IsEvaluationSeed(std::uint64_t seed) { return (seed & kEvaluationSeedBit) != 0; }
 

@@ -12,8 +12,8 @@
 
 namespace aquafarm {
 
-/// Returns the least number of letters to insert, remove or replace to make `b` of `a` (Levenshtein
-/// 1966).
+/// Returns the min number of letters to insert, remove or replace that turns `a` into `b`
+/// (Levenshtein 1966).
 inline std::size_t EditDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

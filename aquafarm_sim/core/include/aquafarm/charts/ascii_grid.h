@@ -28,7 +28,7 @@ struct AsciiGrid {
   std::array<long, 2> Nearest(GeoPoint place) const;
 };
 
-/// @throws InputError "bay.asc:3: cellsize: got '0', expected …"
+/// Parses a text. @throws InputError "bay.asc:3: cellsize: got '0', expected …"
 AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name);
 /// Reads a file as ParseAsciiGrid does. @throws InputError also when it cannot be read
 AsciiGrid LoadAsciiGrid(const std::string& path);

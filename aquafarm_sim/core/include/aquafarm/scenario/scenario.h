@@ -51,8 +51,8 @@ struct PortSpec {
 };
 
 struct ShipSpec {
-  std::int32_t count{1};
-  std::int32_t capacity{1};  ///< max number of devices aboard [decided]
+  std::int32_t count{1};     ///< rescue ships
+  std::int32_t capacity{1};  ///< max number of devices aboard one ship [decided]
 };
 
 /// One device of an explicit placement.
@@ -162,7 +162,7 @@ inline constexpr DamageFactors kEqualDamage = [] {
 }();
 
 struct DamageSpec {
-  float crash_probability{1.0F};
+  float crash_probability{1.0F};  ///< that a crash damages the devices aboard, [0, 1]
   float island_damage{0.2F};      ///< health that devices aboard lose in a crash into an island
   float exposure_damage{0.001F};  ///< health lost per step and unit of |risk|
   /// Factors of exposure_damage. The risk of the sea itself has none.
@@ -208,7 +208,7 @@ struct ViewSpec {
   bool NeedsRoutes() const { return routes || tokens; }
 
   ViewMode mode{ViewMode::kFull};
-  float sensor_radius{5.0F};
+  float sensor_radius{5.0F};         ///< in partial view [cells]
   std::int32_t bulletin_period{20};  ///< [steps]; 0: no bulletins
   float bulletin_noise{0.0F};        ///< max error of the reported centre on each axis [cells]
   bool shared_sight{};               ///< agents are networked and share all observations
@@ -260,7 +260,7 @@ struct FamilySpec {
   Range<std::int32_t> capacity{1, 3};
   Range<std::int32_t> disasters{0, 4};
   float storm_share{0.0F};  ///< share of ranches with the scenario's disasters, not generated ones
-  Range<float> exposure_damage{0.0F, 0.002F};
+  Range<float> exposure_damage{0.0F, 0.002F};  ///< as in DamageSpec
 };
 
 /// A complete description of a farm.
@@ -273,7 +273,7 @@ struct Scenario {
   double step_duration_s{180.0};
   std::optional<GeoPoint> origin;          ///< the centre of the south-west cell (0, 0)
   std::optional<std::int64_t> start_time;  ///< UTC of step 0 [s since 1970]
-  std::int32_t step_limit{5000};           // §4.2
+  std::int32_t step_limit{5000};           ///< max steps of an episode (§4.2)
 
   LayoutMode layout{LayoutMode::kFixed};
   std::uint64_t layout_seed{1};

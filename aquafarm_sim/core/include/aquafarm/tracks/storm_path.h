@@ -4,7 +4,7 @@
 /// A storm in the units of a farm: its rings along its track, in cells and steps. It is computed
 /// once per storm and farm; place_storm.h then displaces it many times at low cost.
 ///
-///   StormTrack ──ToRings──> StormRings ──ToPath──> StormPath ──PlaceStorm──> waypoints
+///   StormTrack ──ToRings──> StormRings ──ToPath──> StormPath ──StormPlacer──> waypoints
 
 #include <array>
 #include <cstdint>

@@ -63,9 +63,9 @@ struct StormRings {
 /// Missing radii are estimated from the wind, or from the lower limit of the grade if the wind is
 /// unknown.
 /// @param winds_kt of the rings, the strongest first; empty: 64, 50 and 34, or 50 and 30 if the
-/// track
-///   has rings of 30 kt only. A ring of 34 kt is derived from a recorded one of 30 kt, if there is
-///   one.
+///   track has rings of 30 kt only. A ring of 34 kt is derived from a recorded one of 30 kt, if
+///   there is one.
+/// @returns one waypoint for each fix of the track
 StormRings ToRings(const StormTrack& track, RingReduction reduction,
                    const std::vector<std::int32_t>& winds_kt = {});
 

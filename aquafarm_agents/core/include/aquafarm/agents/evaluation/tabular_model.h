@@ -7,7 +7,7 @@
 ///   T      [rows, rows], T_ij = Σ_a π(a | i) P(j | i, a), the transition matrix under a policy
 ///   π      [rows, actions]
 ///
-/// Moves, pickup and drop-off have no chance in them, so P(j | i, a) is 0 or 1. Disasters and
+/// Moves, pickup and drop-off are deterministic, so P(j | i, a) is 0 or 1. Disasters and
 /// damage change rewards, not these states; an episode's other ends (disasters over, step limit)
 /// are left out, so only delivering every device leads to the last row, which leads to itself.
 

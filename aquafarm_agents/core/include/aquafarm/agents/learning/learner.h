@@ -22,7 +22,7 @@ class LearnerFailed : public std::runtime_error {
 /// Training statistics of a learner.
 struct LearnerStatus {
   float loss{};         ///< moving average of the squared TD error [reward²]; NaN before the first
-  float exploration{};  ///< ε or temperature
+  float exploration{};  ///< ε, temperature, or mean entropy of a policy [nats]
   float learning_rate{};
 };
 

@@ -13,9 +13,9 @@
 
 namespace aquafarm::agents {
 
-/// The *receding-horizon* policy (kPersistence) plans again at each step and assumes that disasters
-/// keep their headings. The *clairvoyant* policy (kOracle) knows the true future: it plans once per
-/// episode, and again if the farm deviates from the plan.
+/// The *receding-horizon* policy (kPersistence) plans again at each step, on the newest forecast. A
+/// disaster without one keeps its heading. The *clairvoyant* policy (kOracle) knows the future: it
+/// plans once per episode, and again if the farm deviates from the plan.
 class PlannerPolicy final : public Policy {
  public:
   /// @throws InputError if the farm is too large or not supported (see Planner)

@@ -27,7 +27,7 @@ namespace aquafarm::agents {
 /// Observation types (ObservationTypeBits) that PPO reads. @throws InputError if an option is wrong
 std::uint8_t PpoObservationTypes(const std::string& options);
 std::uint8_t MappoObservationTypes(const std::string& options);
-/// @throws InputError if an option is wrong
+/// Makes a learner that has not learnt yet. @throws InputError if an option is wrong
 std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
 std::unique_ptr<Learner> MakeMappo(const EnvironmentSpec& spec, std::uint64_t seed,

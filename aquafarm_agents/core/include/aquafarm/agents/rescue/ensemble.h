@@ -28,8 +28,8 @@ struct EnsembleSpread {
   double along_km{};               ///< standard deviation
   double across_km{};
   double radius70_km{};  ///< 70 % of the members are at most this far from the central forecast
-  double wind_mps{};
-  double size_log{};
+  double wind_mps{};     ///< standard deviation
+  double size_log{};     ///< standard deviation of the logarithm of the radii's factor
 };
 
 /// The members. All arrays are computed by the constructor.

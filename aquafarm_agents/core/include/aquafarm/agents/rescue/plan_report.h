@@ -19,7 +19,7 @@ enum class PlanResult : std::uint8_t {
   kStormStaysAway = 11,  ///< no member of the ensemble reaches a device in the known time
   kStormUnknown = 12,    ///< wind and radii are unknown while the storm is near, or the forecast
                          ///< ended before the present time
-  kBulletinOld = 13,     ///< the bulletin is older than 12 hours, whatever it states
+  kBulletinOld = 13,     ///< the bulletin is older than 12 hours; kStormUnknown comes before it
 };
 
 /// How and from which files a plan was made.

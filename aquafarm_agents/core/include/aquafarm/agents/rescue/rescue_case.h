@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Makes the inputs of a rescue plan from a ranch, a bulletin, and lists of devices and ships.
+/// Makes the inputs of a rescue plan from a ranch, a bulletin and lists of devices and ships.
 /// Works without ROS; reads no clock.
 
 #include <cstdint>
@@ -90,7 +90,7 @@ struct RescueCase {
   std::vector<Cell> Sites() const;
 };
 
-/// @param scenario of the ranch, with grid.origin
+/// Makes a case. @param scenario of the ranch, with grid.origin
 /// @throws InputError "devices.csv:3: F3: got …" for a bad file, a place on land, off the chart or
 ///   out of reach, or a storm that is not known at the start of the plan
 RescueCase MakeRescueCase(std::shared_ptr<const Scenario> scenario, const RescueRequest& request);

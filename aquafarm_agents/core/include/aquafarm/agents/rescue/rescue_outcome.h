@@ -34,7 +34,7 @@ struct DeviceOutcome {
 struct RescuePlan {
   std::vector<ShipRoute> routes;         ///< of the ships that leave
   std::vector<DeviceOutcome> devices;    ///< by device
-  std::vector<float> loss;               ///< by member
+  std::vector<float> loss;               ///< by member, in the currency of the devices' values
   std::vector<float> loss_idle;          ///< by member, if no ship leaves
   std::vector<std::uint8_t> home_count;  ///< by member: devices in port at the end
   double saved{};                        ///< mean value saved, compared with no departure

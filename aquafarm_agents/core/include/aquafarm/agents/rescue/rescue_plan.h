@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The rescue plan: who fetches what, when, and how likely it succeeds (issue: rescue_problem.h).
+/// The rescue plan: who fetches what, when, and how likely it succeeds (inputs: rescue_problem.h).
 ///
 /// A plan is a sequence of trips for each ship. A ship leaves as soon as it is ready, takes the
 /// shortest routes, fetches up to its capacity, and delivers at the nearest open port or at the one

@@ -13,7 +13,7 @@ namespace aquafarm::agents {
 /// @throws InputError if a learner of another package cannot be loaded
 const std::vector<Algorithm>& Algorithms();
 
-/// @throws InputError "algorithm: got 'dqm', expected one of: random, q_learning, sarsa"
+/// Finds it by name. @throws InputError "algorithm: got 'dqm', expected one of: random, …"
 const Algorithm& FindAlgorithm(const std::string& name);
 
 /// Returns the steps of a training without a limit: the algorithm's default, or eight per state of

@@ -49,10 +49,10 @@ int main(int argc, char** argv) {
   std::string policy;
   aquafarm_agents::BagPolicyOptions options;
   CLI::App app(
-      "Asks a saved policy at every state of recorded episodes what it would have done: how often\n"
-      "that is what was done, and what it expects (V, discounted). No ROS need run.\n"
-      "Exit code 0: done; 1: the bag's states are not what its actions give; 2: the bag or the\n"
-      "policy cannot be used; 3: the bag could not be written.",
+      "Compares the recorded actions of a bag with those that a saved policy chooses in the same\n"
+      "states, and prints the policy's expected return (V, discounted). Needs no ROS master.\n"
+      "Exit code 0: compared; 1: a state does not follow from its actions, or steps are missing;\n"
+      "2: the bag or the policy cannot be used; 3: the bag could not be written.",
       "bag_policy");
   app.add_option("bag", bag, "bag with spec and every state")->required();
   app.add_option("policy", policy,
@@ -60,11 +60,11 @@ int main(int argc, char** argv) {
                  "planner, clairvoyant, do_nothing or fetch_by_value")
       ->required();
   app.add_option("-o,--output", options.output,
-                 "write the bag again with what the policy would do (choice) and its values");
+                 "write a copy of the bag with the policy's choices (choice) and values");
   auto* every = app.add_option("--values-every", options.values_every,
                                "steps between two maps of values; 0: none")
                     ->capture_default_str();
-  app.add_option("--values-at", options.values_at, "a map of values at these steps alone")
+  app.add_option("--values-at", options.values_at, "write a map of values at these steps only")
       ->excludes(every);
   app.add_option("--ns", options.ns, "namespace of the ranch (default: the only one in the bag)");
   try {

@@ -24,7 +24,7 @@ ranch with the shipped policy generalist.""",
     "play": """Drives ship 0 from this terminal; the keys are shown at the start. Finished episodes are kept as
 bags in ./played, which ./aquafarm benchmark human:=played compares with the learners.""",
     "record": """Records the ranch's topics to a bag while it is run, trained on or played by a policy.""",
-    "replay": """Shows a recorded bag: only the player, viz and rviz run. policy:=… shows what it would have done.""",
+    "replay": """Shows a recorded bag: only the player, viz and rviz run. policy:=… shows its choices as well.""",
 }
 
 # Verbs that are a program of the workspace with its own arguments and --help.

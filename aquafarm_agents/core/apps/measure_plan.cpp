@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares rescue plans with simulated and recorded storms: are the promised chances kept, what do
-// the plans save? docs/plan.md states the results. No ROS.
+// the plans save? docs/results/rescue_plans.md has the results. No ROS.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -62,9 +62,10 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "scenario file, or the name of a shipped one");
   app.add_option("-a,--algorithm", options.algorithm, "learner by name, or auto");
   app.add_option("-e,--episodes", options.episodes, "limit of episodes; 0: none");
-  app.add_option("-n,--steps", options.steps,
-                 "limit of farm steps; 0: none, or without any limit the algorithm's own, and "
-                 "eight a state of a large table");
+  app.add_option(
+      "-n,--steps", options.steps,
+      "limit of farm steps; 0: none, or without any limit the algorithm's default, but at "
+      "least eight per state of a large table");
   app.add_option("-s,--seed", options.seed, "seed of episodes and exploration");
   app.add_option("-f,--farms", arguments.environment.farms,
                  "number of parallel farms; 0: the algorithm's default, 256 for ppo and mappo, 16 "
@@ -85,7 +86,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "run folder, checkpoint or generalist whose weights the learner begins with "
                  "(ppo, mappo); empty: random weights");
   app.add_option("--credit", options.credit,
-                 "where the scenario shares the reward, agents learn from their own part of it, or "
+                 "if the scenario shares the reward, agents learn from their own part of it, or "
                  "from the sum: own, shared");
   app.add_option("--checkpoint-period", options.checkpoint_period_s, "seconds between checkpoints");
   app.add_option("--evaluate", options.evaluation_episodes,

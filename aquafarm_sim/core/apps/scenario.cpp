@@ -267,7 +267,7 @@ void AddSeaOptions(CLI::App& app, Arguments& arguments) {
          "expression of the fields for each cell's own risk, such as 'warmth > 28 ? -8 : 0'")
       ->needs(sea);
   app.add_option("--notices", ranch.notices,
-                 "warnings or anchorage forecasts (JSON), said where they are in force");
+                 "warnings or anchorage forecasts (JSON); those in force are listed");
   app.add_option("--write-map", arguments.map, "write the chart for map_server to this .yaml");
   app.add_option("-o,--output", arguments.output, "scenario file; empty: only shown");
 }

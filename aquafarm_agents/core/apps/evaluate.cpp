@@ -8,6 +8,7 @@
 
 #include "app.h"
 #include "aquafarm/agents/base/exit_code.h"
+#include "aquafarm/agents/base/storage.h"
 #include "aquafarm/agents/environment/family_environment.h"
 #include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/agents/evaluation/evaluation.h"
@@ -19,6 +20,7 @@
 #include "aquafarm/agents/planning/team_bound.h"
 #include "aquafarm/agents/training/saved_policy.h"
 #include "aquafarm/scenario/limits.h"
+#include "aquafarm/scenario/scenario_yaml.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -29,6 +31,7 @@ struct Arguments {
   std::string output;
   std::string route;
   std::uint64_t route_episode{};
+  std::string ranch;
   std::string values;
   std::int32_t values_episodes{1};
   double values_discount{1.0};
@@ -88,6 +91,18 @@ Farm StartOf(const std::shared_ptr<const Scenario>& scenario, std::uint64_t seed
   Farm farm(scenario);
   farm.Reset(seed, episode);
   return farm;
+}
+
+// Writes the ranch of an episode of a family as a scenario of its own, in which the episode with
+// the same seed and number is the same.
+void WriteRanch(const Arguments& arguments, const std::shared_ptr<const Scenario>& family) {
+  if (!family->family) {
+    throw InputError("--ranch: scenario " + family->name + " is one ranch, expected a family");
+  }
+  Scenario ranch =
+      StartOf(family, EvaluationSeed(arguments.seed), arguments.route_episode).scenario();
+  ranch.name = std::filesystem::path(arguments.ranch).stem().string();
+  WriteFileAtomically(arguments.ranch, ToYaml(ranch));
 }
 
 void PrintOptimum(const std::shared_ptr<const Scenario>& scenario, const Evaluation& evaluation,
@@ -166,6 +181,7 @@ bool WriteRequested(const Arguments& arguments, const SavedPolicy& saved,
     WriteMatrices(arguments.matrices, *scenario, saved.checkpoint, arguments.matrix_policy,
                   arguments.values_discount);
   }
+  if (!arguments.ranch.empty()) WriteRanch(arguments, scenario);
   if (!arguments.route.empty()) {
     const Route route = TraceRoute(scenario, saved.observation_types, make_policy, arguments.seed,
                                    arguments.route_episode, &stop_requested);
@@ -233,7 +249,10 @@ void AddOutputOptions(CLI::App& app, Arguments& arguments) {
       "write an episode's route and actions, and the best move in each cell, to this JSON file; "
       "empty: nothing");
   app.add_option("--route-episode", arguments.route_episode,
-                 "episode that --route and --values are of");
+                 "episode that --route, --values and --ranch are of");
+  app.add_option("--ranch", arguments.ranch,
+                 "write the ranch of an episode of a family as a scenario of its own to this YAML "
+                 "file; empty: nothing");
   app.add_option(
       "--values", arguments.values,
       "write what an episode pays from every cell on, played out, and the scenario's sea "

@@ -376,5 +376,23 @@ TEST_F(Programs, TrainAndEvaluateOnTheShippedFarm) {
   EXPECT_CONTAINS(output_, "does not fit scenario two_squads");
 }
 
+TEST_F(Programs, EvaluateWritesTheRanchOfAnEpisodeOfAFamily) {
+  const std::string ranch = folder_ + "/ranch.yaml";
+  ASSERT_EQ(Run({AQUAFARM_EVALUATE, "generalist", "ranch_family", "-e", "4", "-w", folder_ + "/all",
+                 "--ranch", ranch, "--route-episode", "3"}),
+            0)
+      << output_;
+  ASSERT_EQ(Run({AQUAFARM_EVALUATE, "generalist", ranch, "-e", "4", "-w", folder_ + "/one"}), 0)
+      << output_;
+  // The fourth episode: steps, return, devices, reason and everything else.
+  const auto last_row = [](const std::string& csv) {
+    const std::string text = ReadFile(csv);
+    return text.substr(text.rfind(',' + std::to_string(EvaluationSeed(1000)) + ",3,"));
+  };
+  EXPECT_EQ(last_row(folder_ + "/all.csv"), last_row(folder_ + "/one.csv"));
+  EXPECT_EQ(Run({AQUAFARM_EVALUATE, "generalist", "paper", "-e", "1", "--ranch", ranch}), 2);
+  EXPECT_CONTAINS(output_, "--ranch: scenario paper is one ranch, expected a family");
+}
+
 }  // namespace
 }  // namespace aquafarm::agents::test

@@ -38,8 +38,8 @@ inline std::string LocalText(const aquafarm_msgs::RescuePlan& plan, ros::Time ti
   return {text, std::strftime(text, sizeof(text), same_day ? "%H:%M" : "%d %b %H:%M", &at)};
 }
 
-/// Returns what a ship without a route does. A ship at sea is never told to stay, and one with
-/// devices aboard has a route unless it reaches no port.
+/// Returns what a ship without a route does. A ship at sea never gets the order to stay, and one
+/// with devices aboard has a route unless it reaches no port.
 inline std::string WithoutRouteText(const aquafarm_msgs::RescuePlan& plan,
                                     const aquafarm_msgs::RescueShip& ship) {
   const bool in_port = std::any_of(plan.ports.begin(), plan.ports.end(), [&ship](const auto& port) {

@@ -4,7 +4,7 @@
 /// A rescue plan as rviz markers in frame map, in metres, above those of the ranch.
 ///
 ///     | namespace    | id           | content                                             |
-///     | plan_route   | ship         | way of a ship, in its colour                        |
+///     | plan_route   | ship         | route of a ship, in its colour                      |
 ///     | plan_ship    | ship         | name of the ship and its departure                  |
 ///     | plan_device  | device       | name, probability to come home, time of the pickup  |
 ///     | plan_port    | port         | name                                                |

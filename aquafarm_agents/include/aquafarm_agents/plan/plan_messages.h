@@ -23,7 +23,7 @@ struct PlanMessages {
 /// @throws InputError "plan.json: ...; expected a plan file of version 1"
 PlanMessages ReadPlan(const std::string& json, const std::string& where);
 
-/// Returns the way of a ship in frame map [m], with the time of each cell; no poses if it stays.
+/// Returns the route of a ship in frame map [m], with the time of each cell; no poses if it stays.
 /// The orientation of a pose points to the next cell.
 nav_msgs::Path PathOfShip(const aquafarm_msgs::RescuePlan& plan, std::int32_t ship);
 

@@ -96,7 +96,7 @@ class FarmListener {
   /// Called after farm 0 has stepped or started an episode.
   virtual void OnChange(const ServerView& view) = 0;
   virtual void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) = 0;
-  /// Called when lockstep stops to wait for ships, and when one of them is back.
+  /// Called when lockstep no longer waits for some ships, and when one of them is back.
   virtual void OnPresence(const std::vector<std::int32_t>& /*ships*/, bool /*is_present*/) {}
 };
 

@@ -18,7 +18,7 @@ class PaceClock {
 
   const MessageContext& context() const { return context_; }
 
-  /// Moves the stamp on by one step. A pause scheduled for this step begins.
+  /// Advances the stamp by one step. A pause scheduled for this step begins.
   void Advance();
   /// @param after_steps number of steps until the pause begins; 0: immediately. Ignored if `paused`
   /// is false, which ends a pause and removes a scheduled one.

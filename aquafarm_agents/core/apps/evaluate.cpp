@@ -249,13 +249,13 @@ void AddOutputOptions(CLI::App& app, Arguments& arguments) {
       "write an episode's route and actions, and the best move in each cell, to this JSON file; "
       "empty: nothing");
   app.add_option("--route-episode", arguments.route_episode,
-                 "episode that --route, --values and --ranch are of");
+                 "episode of --route, --values and --ranch");
   app.add_option("--ranch", arguments.ranch,
                  "write the ranch of an episode of a family as a scenario of its own to this YAML "
                  "file; empty: nothing");
   app.add_option(
       "--values", arguments.values,
-      "write what an episode pays from every cell on, played out, and the scenario's sea "
+      "write the return of an episode from every cell, by playing it, and the scenario's sea "
       "to this JSON file; empty: nothing");
   app.add_option("--values-episodes", arguments.values_episodes, "episodes that --values averages")
       ->check(CLI::Range(1, 10000));
@@ -268,8 +268,8 @@ void AddOutputOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--matrix-policy", arguments.matrix_policy,
                  "policy of --matrices: epsilon_greedy:ε (0 is greedy) or boltzmann:T");
   app.add_flag("--bound", arguments.bound,
-               "say what share this is of an upper bound: each device by its best ship, no "
-               "conflicts, the disasters known");
+               "print the share of an upper bound: each device is fetched by its best ship, "
+               "without conflicts, with known disasters");
   app.add_option(
       "--optimum", arguments.optimum,
       "print the share of the clairvoyant optimum over the episodes whose plans have at most "

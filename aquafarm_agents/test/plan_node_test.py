@@ -274,7 +274,7 @@ class PlanNodeTest(unittest.TestCase):
         plan = self.wait(lambda one: one.step == 3, "the third step")
         self.assertEqual(11, plan.ships[0].cell.x)
         self.assertEqual(state.world_time, plan.start)
-        self.assertEqual(["D1", "D3", "D4"], [device.name for device in plan.devices])
+        self.assertEqual(["F0", "F2", "F3"], [device.name for device in plan.devices])
         self.assertAlmostEqual(0.5, plan.devices[0].damage_before)
         service.shutdown()
 

@@ -46,6 +46,42 @@ class PlanFiguresTest(unittest.TestCase):
         self.assertEqual("ship 1", words.numbered_name(plan, 0))
         self.assertEqual("2: Haixing", words.numbered_name(plan, 1))
 
+    def test_an_arrow_at_the_border_points_to_a_storm_off_the_map(self):
+        plan = plan_sample.sample(members=100)
+        ranch = plan["ranch"]
+        middle = [(ranch["width"] - 1) / 2, (ranch["height"] - 1) / 2]
+        start = plan["clock"]["start"]
+        later = document.Clock(plan["clock"]).at(6 * 3600)
+
+        def pointer(east_cells, north_cells):
+            at = [middle[0] + east_cells, middle[1] + north_cells]
+            plan["storm"]["points"] = [{"time": start, "at": at}, {"time": later, "at": [0, 0]}]
+            return chart.storm_pointer(plan, chart.Frame(ranch))
+
+        km = ranch["cell_size_m"] / 1000.0
+        found = pointer(300.0 / km, 0.0)
+        self.assertIn("centre 300 km E at ", found["words"])
+        self.assertEqual(90.0, found["bearing"])
+        frame = chart.Frame(ranch)
+        self.assertAlmostEqual(frame.height / 2, found["xy"][1])
+        self.assertAlmostEqual(frame.width - 30.0, found["xy"][0])
+        south_west = pointer(-300.0 / km, -300.0 / km)
+        self.assertIn("centre 424 km SW at ", south_west["words"])
+        for value, side in zip(south_west["xy"], (frame.width, frame.height)):
+            self.assertTrue(30.0 - 1e-6 <= value <= side - 30.0 + 1e-6)
+        self.assertIsNone(pointer(1.0, 1.0), "the centre is on the map")
+        plan["storm"]["points"] = []
+        self.assertIsNone(chart.storm_pointer(plan, frame), "the centre is unknown")
+
+    def test_no_more_than_everything_can_be_lost(self):
+        plan = plan_sample.sample(members=100)
+        insured = plan["loss"]["insured"]
+        for q95, expected in ((insured, "One time in twenty everything: CNY 5.68 M. "),
+                              (0.5 * insured, "One time in twenty CNY 2.84 M or more. ")):
+            plan["loss"]["with_plan"].update(q95=q95)
+            _, _, remark = words.answers(plan)[2]
+            self.assertIn(expected, remark)
+
 
 if __name__ == "__main__":
     rostest.rosrun("aquafarm_bringup", "plan_figures", "plan_figures_test", sys.argv)

@@ -8,7 +8,7 @@ from scipy.ndimage import gaussian_filter
 
 from .document import Clock
 from .labels import Label, place
-from .words import chance, kind_name, left_reason, left_word, letter
+from .words import chance, compass, kind_name, left_reason, left_word, letter
 
 WIDTH, MAX_HEIGHT = 760.0, 860.0  # of the drawing [px]
 LEVELS = (10, 50, 90)  # isolines [%]
@@ -45,15 +45,39 @@ def chart(plan):
     devices = [_device(plan, frame, device) for device in plan["devices"]]
     ports = [{"letter": letter(port["id"]), "name": port["name"], "xy": frame.px(*port["cell"])}
              for port in plan["ports"]]
+    storm = storm_pointer(plan, frame)
     return {
-        "frame": frame, "coast": _coast(plan["ranch"], frame),
+        "storm": storm, "frame": frame, "coast": _coast(plan["ranch"], frame),
         "rocks": [frame.px(*cell) for cell in plan["ranch"]["rocks"]], "ports": ports,
-        "devices": devices, "routes": routes, "labels": _labels(plan, frame, devices, ports,
-                                                                routes),
+        "devices": devices, "routes": routes,
+        "labels": _labels(plan, frame, devices, ports, routes, storm),
         "ticks": _ticks(plan["ranch"],
                         frame), "scale_bar": _scale_bar(plan["ranch"],
                                                         frame), "hazard": isolines(plan, frame)
     }
+
+
+def storm_pointer(plan, frame):
+    """An arrow at the border of the map towards the storm's centre when the plan begins, and its
+    words; None if the centre is unknown or on the map."""
+    clock, points = Clock(plan["clock"]), plan["storm"]["points"]
+    seconds = [clock.seconds(one["time"]) for one in points]
+    if not seconds or not seconds[0] <= 0.0 <= seconds[-1]:
+        return None
+    ranch = plan["ranch"]
+    at = [np.interp(0.0, seconds, [one["at"][axis] for one in points]) for axis in (0, 1)]
+    east, north = at[0] - (ranch["width"] - 1) / 2, at[1] - (ranch["height"] - 1) / 2
+    inset = 30.0
+    reach = max(abs(east) * frame.scale / (frame.width / 2 - inset),
+                abs(north) * frame.scale / (frame.height / 2 - inset))
+    if reach <= 1.0:
+        return None
+    bearing = math.degrees(math.atan2(east, north))
+    km = math.hypot(east, north) * ranch["cell_size_m"] / 1000
+    name = plan["storm"]["name"] or plan["storm"]["kind"]
+    return {"xy": (frame.width / 2 + east * frame.scale / reach,
+                   frame.height / 2 - north * frame.scale / reach), "bearing": bearing,
+            "words": f"{name}: centre {km:,.0f} km {compass(bearing)} at {clock.time(clock.at(0))}"}
 
 
 def _coast(ranch, frame):
@@ -148,7 +172,7 @@ def samples(line, gap=7.0):
             yield x0 + (x1 - x0) * i / n, y0 + (y1 - y0) * i / n
 
 
-def _labels(plan, frame, devices, ports, routes):
+def _labels(plan, frame, devices, ports, routes, storm):
     points = [(*frame.px(x, y), 4.0) for x, y in plan["ranch"]["land"]]
     points += [(*frame.px(x, y), 8.0) for x, y in plan["ranch"]["rocks"]]
     for one in devices + ports:
@@ -171,6 +195,9 @@ def _labels(plan, frame, devices, ports, routes):
                   badge=badges.get(one["id"], ""),
                   ship=one["ship"] or 0))
     labels += [Label([port["name"]], port["xy"], 13, LABEL_SIZE - 2, name="port") for port in ports]
+    if storm:
+        points.append((*storm["xy"], 60.0))
+        labels.append(Label([storm["words"]], storm["xy"], 20, LABEL_SIZE - 2, name="storm"))
     return place(labels, points, frame.width, frame.height)
 
 

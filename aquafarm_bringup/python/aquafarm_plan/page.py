@@ -62,7 +62,7 @@ def render(plan):
         device_name=lambda i: plan["devices"][i]["name"],
         departures=departures,
         first_s=int(first),
-        compass=compass,
+        compass=words.compass,
         data=_data(plan, clock, drawing, line))
 
 
@@ -95,8 +95,3 @@ def _departures(plan):
             if order["action"] == "fetch":
                 leaves[order["device"]] = route["orders"][0]["time"]
     return leaves
-
-
-def compass(bearing_deg):
-    """The compass point of a bearing."""
-    return ("N", "NE", "E", "SE", "S", "SW", "W", "NW")[round(bearing_deg / 45) % 8]

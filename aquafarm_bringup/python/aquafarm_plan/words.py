@@ -30,6 +30,11 @@ def letter(number):
     return text
 
 
+def compass(bearing_deg):
+    """The compass point of a bearing."""
+    return ("N", "NE", "E", "SE", "S", "SW", "W", "NW")[round(bearing_deg / 45) % 8]
+
+
 def is_unknown(plan):
     """Whether the storm's winds are unknown, so that no number of the plan is an all-clear."""
     return plan["outcome"]["kind"] == "storm_unknown"
@@ -201,7 +206,10 @@ def _lose(plan):
         return ("What do I lose?", f"Nothing in these {plan['ensemble']['members']:,} futures.",
                 _horizon(plan, Clock(plan["clock"])))
     answer = f"{amount(mine['mean'], currency)} of {amount(loss['insured'], currency)} on average."
-    remark = (f"One time in twenty more than {amount(mine['q95'], currency)}. " if mine["q95"] else
+    # All that is insured may be lost; more than that is not at risk.
+    least = amount(mine["q95"] or 0.0, currency)
+    least = f"everything: {least}" if (mine["q95"] or 0.0) >= loss["insured"] else f"{least} or more"
+    remark = (f"One time in twenty {least}. " if mine["q95"] else
               f"In 19 of 20 futures nothing; {amount(mine['cvar05'], currency)} on average in the "
               "worst twentieth. ")
     remark += f"If no ship leaves: {amount(idle['mean'], currency)} on average."

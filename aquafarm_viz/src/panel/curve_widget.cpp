@@ -45,12 +45,15 @@ double DrawName(QPainter& painter, const QPointF& at, const QColor& color, const
 }  // namespace
 
 CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve) {
-  std::vector<double> returns;
-  for (const CurvePoint& point : curve) returns.push_back(point.mean_return);
-  if (returns.empty()) return {0.0, 1.0};
-  std::sort(returns.begin(), returns.end());
-  const double low = returns[returns.size() / 10];
-  const double high = returns.back();
+  if (curve.empty()) return {0.0, 1.0};
+  // The first episodes are long, so they have more points than later ones.
+  const double from = curve.front().episode + 0.1 * (curve.back().episode - curve.front().episode);
+  double low = curve.back().mean_return;
+  double high = low;
+  for (const CurvePoint& point : curve) {
+    high = std::max(high, point.mean_return);
+    if (point.episode >= from) low = std::min(low, point.mean_return);
+  }
   const double margin = 0.06 * std::max(high - low, 1e-6);
   return {low - margin, high + margin};
 }

@@ -15,8 +15,8 @@ struct CurveRange {
   double high{};
 };
 
-/// Returns the range of the mean returns without the lowest tenth, because returns at the start of
-/// a training are far below the rest.
+/// Returns the range of the mean returns after the first tenth of the episodes, because returns at
+/// the start of a training are far below the rest.
 CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve);
 
 /// Returns the multiples of 1, 2 or 5 times a power of ten within a range: as many as fit into

@@ -103,9 +103,8 @@ void ReadDevices(const RescueRequest& request, RescueCase& rescue) {
   std::vector<RescueDevice>& devices = rescue.problem.devices;
   if (request.devices.empty()) {
     for (const PlacedDevice& placed : rescue.layout.devices) {
-      devices.push_back({"D" + std::to_string(devices.size() + 1),
-                         std::string(ToString(placed.kind)), placed.cell,
-                         static_cast<double>(placed.value),
+      devices.push_back({"F" + std::to_string(devices.size()), std::string(ToString(placed.kind)),
+                         placed.cell, static_cast<double>(placed.value),
                          1.0 - static_cast<double>(rescue.scenario->devices.health)});
     }
     return;

@@ -80,8 +80,8 @@ TEST_F(Fleet, DevicesInPortAreLeftOutAndTheOthersKeepTheirNames) {
   fleet_.devices[2].self_propelled = true;
   UseFleet(request_, fleet_, case_);
   ASSERT_EQ(case_.problem.devices.size(), 2U);
-  EXPECT_EQ(case_.problem.devices[0].name, "D2");
-  EXPECT_EQ(case_.problem.devices[1].name, "D4");
+  EXPECT_EQ(case_.problem.devices[0].name, "F1");
+  EXPECT_EQ(case_.problem.devices[1].name, "F3");
   EXPECT_NE(Codes().find("devices_in_port devices_self_propelled"), std::string::npos) << Codes();
 }
 
@@ -93,7 +93,7 @@ TEST_F(Fleet, AShipWithADeviceAboardIsOrderedToDeliverIt) {
   fleet_.devices[2].health = 0.5;
   UseFleet(request_, fleet_, case_);
   ASSERT_EQ(case_.problem.devices.size(), 4U);
-  EXPECT_EQ(case_.problem.devices[2].name, "D3");
+  EXPECT_EQ(case_.problem.devices[2].name, "F2");
   EXPECT_EQ(case_.problem.devices[2].cell, (Cell{14, 4}));
   EXPECT_EQ(case_.problem.devices[2].damage_before, 0.5);
   EXPECT_EQ(case_.warnings.back().code, "devices_aboard");
@@ -156,7 +156,7 @@ TEST_F(Fleet, WindsOnTheWayHomeAreAStopOfTheShip) {
   ASSERT_NE(warning, nullptr) << Codes();
   EXPECT_EQ(warning->severity, "stop");
   EXPECT_EQ(warning->ship, 0);
-  EXPECT_NE(warning->text.find("ship 1 has D3 aboard, and winds stop it on its way home"),
+  EXPECT_NE(warning->text.find("ship 1 has F2 aboard, and winds stop it on its way home"),
             std::string::npos)
       << warning->text;
   EXPECT_EQ(Warning("devices_aboard"), nullptr) << "no note promises the delivery";
@@ -212,7 +212,7 @@ TEST_F(Fleet, ChancesAreUnknownIfTheWindsAre) {
   EXPECT_NE(text.find("deliver at " + case_.problem.ports[2].name + "  [unknown]\n"),
             std::string::npos)
       << text;
-  EXPECT_NE(text.find("D3: unknown\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("F2: unknown\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("100 %"), std::string::npos) << text;
   EXPECT_EQ(text.find("no ship should leave after"), std::string::npos) << text;
   const auto json = nlohmann::json::parse(ToJson(case_, ensemble, report, {}));

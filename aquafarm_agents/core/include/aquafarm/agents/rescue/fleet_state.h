@@ -35,7 +35,7 @@ struct FleetState {
 
 /// Replaces the layout, the ships and the devices of a case by those of a running ranch.
 ///
-/// Devices keep their names D1, D2, … by id. The plan leaves out devices that are in port or
+/// Devices keep their names F0, F1, … by id. The plan leaves out devices that are in port or
 /// self-propelled; notes name them. A device aboard is at its ship's cell, and the ship may leave
 /// at once, whatever `request.depart_s` is (RescueShip::aboard). `damage_before` is 1 minus the
 /// device's health.

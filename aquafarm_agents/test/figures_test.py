@@ -240,6 +240,27 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual({"1": (1, 0), "2": (0, 0)},
                          {text.get_text(): text.xy for text in self.axes.texts})
 
+    def test_devices_that_were_not_fetched_are_marked(self):
+        chart = {"width": 4, "height": 3, "islands": [], "rocks": [], "ports": [[0, 0]],
+                 "devices": [{"cell": [1, 0]}, {"cell": [3, 2]}]}
+        storm = {"x": 3.0, "y": 2.0, "radii": [1.0]}
+        steps = [{"cell": [0, 0], "action": "east", "aboard": 0, "delivered": 0},
+                 {"cell": [1, 0], "action": "pickup", "aboard": 0, "delivered": 0},
+                 {"cell": [1, 0], "action": "west", "aboard": 1, "delivered": 0},
+                 {"cell": [0, 0], "aboard": 1, "delivered": 0}]
+        steps = [{**step, "disasters": [storm]} for step in steps[:3]] + [
+            {**steps[3], "disasters": []}]
+        route = {"chart": chart, "steps": steps}
+        self.assertEqual([[3, 2]], route_figure.devices_left(route))
+        route_figure.plot_unfinished(self.axes, "ranch 7", route)
+        marks = {marks.get_label(): marks.get_offsets().tolist()
+                 for marks in self.axes.collections}
+        self.assertEqual([[3, 2]], marks["device that was not fetched"])
+        self.assertEqual([[0, 0]], marks["ship at the end"])
+        self.assertIn("ring of a disaster in the last step",
+                      [patch.get_label() for patch in self.axes.patches])
+        self.assertEqual("ranch 7: 0 of 2 in port after 3 steps", self.axes.get_title())
+
 
 if __name__ == "__main__":
     rosunit.unitrun("aquafarm_agents", "figures", FiguresTest, sys.argv)

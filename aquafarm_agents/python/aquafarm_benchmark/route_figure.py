@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws Fig. 11 as PNG from a route file: what a policy prefers in each cell, and its route."""
+"""Draws route files as PNG: what a policy prefers in each cell and its route (Fig. 11), and
+episodes that ended with devices at sea."""
 import json
 
 import numpy as np
@@ -45,6 +46,61 @@ def draw_route(path, label, route_file):
     save(figure, path)
 
 
+def devices_left(route):
+    """Returns the cells [x, y] of the devices that no ship of the route fetched."""
+    fetched = [before["cell"] for before, after in zip(route["steps"], route["steps"][1:])
+               if after["aboard"] > before["aboard"]]
+    return [device["cell"] for device in route["chart"]["devices"]
+            if device["cell"] not in fetched]
+
+
+def draw_unfinished(path, routes):
+    """Draws the routes of episodes that ended with devices at sea, with the rings in the last step.
+
+    routes: {name of the ranch: route file}
+    """
+    columns = 3
+    rows = -(-(len(routes) + 1) // columns)  # the last place is for the explanation
+    figure, all_axes = plt.subplots(rows, columns, figsize=(4.2 * columns, 4.3 * rows),
+                                    squeeze=False, layout="constrained")
+    all_axes = list(all_axes.flat)
+    charts = all_axes[:len(routes)]
+    for axes, (name, file) in zip(charts, routes.items()):
+        plot_unfinished(axes, name, json.loads(file.read_text()))
+    for empty in all_axes[len(routes):]:
+        empty.axis("off")
+    symbols = _symbols(charts)
+    all_axes[-1].legend(symbols.values(), symbols.keys(), loc="center", frameon=False, fontsize=11,
+                        labelspacing=0.9)
+    save(figure, path)
+
+
+def plot_unfinished(axes, name, route):
+    """Draws one of these routes."""
+    _chart(axes, route["chart"])
+    last = route["steps"][-1]
+    for disaster in route["steps"][-2]["disasters"]:  # they are over in the last state
+        for ring in _rings(disaster):
+            axes.add_patch(Polygon(ring, color="#b22222", alpha=0.12, zorder=1))
+            axes.add_patch(Polygon(ring, fill=False, color="#b22222", zorder=2, linewidth=1.4,
+                                   label="ring of a disaster in the last step"))
+    _plot_legs(axes, route["steps"])
+    axes.scatter(*zip(*devices_left(route)), s=260, facecolor="none", edgecolor="black",
+                 linewidth=2.2, zorder=8, label="device that was not fetched")
+    axes.scatter(*last["cell"], s=150, marker="*", color="#f0e442", edgecolor="black", zorder=9,
+                 label="ship at the end")
+    axes.set_title(f"{name}: {last['delivered']} of {len(route['chart']['devices'])} in port "
+                   f"after {len(route['steps']) - 1} steps", fontsize=11)
+
+
+def _symbols(charts):
+    """Returns the symbols of axes by their labels."""
+    symbols = {}
+    for axes in charts:
+        symbols.update(reversed(pair) for pair in zip(*axes.get_legend_handles_labels()))
+    return symbols
+
+
 def _chart(axes, chart):
     axes.set_aspect("equal")
     axes.set_xlim(-0.5, chart["width"] - 0.5)
@@ -87,14 +143,18 @@ def legs(steps):
     return found
 
 
-def plot_route(axes, steps):
-    """Draws the legs and numbers the stops of a route; returns a line of text for each stop."""
+def _plot_legs(axes, steps):
     for i, (loaded, cells) in enumerate(legs(steps)):
         colour, dashes, name = _LEGS[loaded]
         lane = _LANE if i % 2 else -_LANE
         x, y = np.array(cells, dtype=float).T
         axes.plot(x + lane, y - lane, color=colour, linestyle=dashes, linewidth=2.2, zorder=5,
                   label=name if i < len(_LEGS) else "_leg")
+
+
+def plot_route(axes, steps):
+    """Draws the legs and numbers the stops of a route; returns a line of text for each stop."""
+    _plot_legs(axes, steps)
     lines, here = [], {}
     for at, step in enumerate(steps):
         if step.get("action") in _STOPS:
@@ -111,9 +171,7 @@ def plot_route(axes, steps):
 
 def _explain(empty, charts, stops, has_moves):
     """Explains the symbols of the other axes on empty ones."""
-    symbols = {}
-    for axes in charts:
-        symbols.update(reversed(pair) for pair in zip(*axes.get_legend_handles_labels()))
+    symbols = _symbols(charts)
     empty.legend(symbols.values(), symbols.keys(), loc="upper left", frameon=False, fontsize=11,
                  bbox_to_anchor=(0.0, 1.0), labelspacing=0.7, ncols=2)
     lines = [*stops, "", "red: the disaster's rings in some steps",

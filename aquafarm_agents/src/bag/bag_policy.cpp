@@ -294,7 +294,7 @@ std::string WhyNoMaps(const agents::SavedPolicy& saved, const aquafarm::Scenario
   if (saved.observation_types == 0)
     return name + " reads no observation, so it has no values or greedy actions";
   if ((saved.observation_types & agents::kStatesBit) != 0) {
-    return name + " plans on the whole farm and has no values and best moves of cells";
+    return name + " reads whole farms, so it has no values and best moves of cells";
   }
   return agents::WhyNoBestMoves(scenario);
 }

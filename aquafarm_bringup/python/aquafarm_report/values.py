@@ -73,7 +73,7 @@ def compare(values, field):
     return result
 
 
-def said(number):
+def signed(number):
     return "-" if number is None else f"{number:+.2f}".replace("-", "−")
 
 
@@ -117,7 +117,7 @@ def draw_relation(axis, values, layer, result):
     axis.set_xlabel(f"{words} [{unit_text(units)}]")
     change = strength(result["spearman_rho"])
     axis.set_title((f"The return {change} with {words}\n" if change else "") +
-                   (f"rank correlation {said(result['spearman_rho'])}, {result['cells']} cells"
+                   (f"rank correlation {signed(result['spearman_rho'])}, {result['cells']} cells"
                     if change else f"{result['cells']} cells: too few or too alike to compare"),
                    fontsize=11)
     axis.grid(alpha=0.3)
@@ -180,7 +180,7 @@ def make(values_file, output):
     temporary = f"{output}.json.part"
     pathlib.Path(temporary).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
     os.replace(temporary, f"{output}.json")
-    return [f"{name}: rank correlation (Spearman) {said(result['spearman_rho'])}, similarity of the "
-            f"maps (SSIM) {said(result['ssim'])}, of the inverted map {said(result['ssim_turned'])}, "
+    return [f"{name}: rank correlation (Spearman) {signed(result['spearman_rho'])}, similarity of the "
+            f"maps (SSIM) {signed(result['ssim'])}, of the inverted map {signed(result['ssim_turned'])}, "
             f"over {result['cells']} cells"
             for (name, _, _), result in zip(layers, results)]

@@ -103,22 +103,22 @@ class Forecast {
       : farm_(farm),
         disaster_(disaster),
         track_(TrackOf(farm, disaster)),
-        said_(NewestForecast(farm, disaster, issued)),
+        newest_(NewestForecast(farm, disaster, issued)),
         issued_(static_cast<float>(issued)),
         first_(IndexAfter(issued_)) {
     const std::array<float, 2> now = PositionAt(farm, disaster, issued);
     now_ = {issued_, now[0], now[1]};
     motion_ = MotionAt(farm, disaster, issued);
-    if (said_ == nullptr) error_ = ForecastErrorVector(farm.seed(), farm.episode(), disaster);
+    if (newest_ == nullptr) error_ = ForecastErrorVector(farm.seed(), farm.episode(), disaster);
   }
 
   std::array<float, 2> At(float step) const {
     const std::size_t next = std::max(IndexAfter(step), first_);
     const Place from = next == first_ ? now_ : Point(next - 1);
-    if (next < (said_ != nullptr ? said_->points.size() : track_.size())) {
+    if (next < (newest_ != nullptr ? newest_->points.size() : track_.size())) {
       return On(from, Point(next), step);
     }
-    if (said_ == nullptr) return {from.x, from.y};
+    if (newest_ == nullptr) return {from.x, from.y};
     const float until = std::min(step, EndAfter(from.step));
     if (next >= 2) return On(Point(next - 2), from, until);
     const float beyond = until - from.step;  // a single point has no last leg
@@ -145,7 +145,7 @@ class Forecast {
     float y{};
   };
 
-  bool HasOwnRings() const { return said_ != nullptr && !said_->points[0].radii.empty(); }
+  bool HasOwnRings() const { return newest_ != nullptr && !newest_->points[0].radii.empty(); }
   bool FollowsTrueRings() const { return !HasOwnRings() && !track_.empty(); }
   const Disaster& Present() const { return farm_.disasters()[static_cast<std::size_t>(disaster_)]; }
   // Returns the step until which a forecast is extrapolated beyond its last point: the end of the
@@ -163,10 +163,10 @@ class Forecast {
     for (std::size_t i = After(issued_, track_); FollowsTrueRings() && i < track_.size(); ++i) {
       steps.push_back(track_[i].step);
     }
-    for (std::size_t i = first_; said_ != nullptr && i < said_->points.size(); ++i) {
-      steps.push_back(said_->points[i].step);
+    for (std::size_t i = first_; newest_ != nullptr && i < newest_->points.size(); ++i) {
+      steps.push_back(newest_->points[i].step);
     }
-    if (said_ != nullptr) steps.push_back(EndAfter(said_->points.back().step));
+    if (newest_ != nullptr) steps.push_back(EndAfter(newest_->points.back().step));
     std::sort(steps.begin(), steps.end());
     steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
     return steps;
@@ -177,7 +177,7 @@ class Forecast {
     if (FollowsTrueRings()) return TruthAt(track_, step);
     const float growth = track_.empty() ? Present().radius_growth : 0.0F;
     if (step > issued_ && HasOwnRings()) {
-      const Waypoint& last = said_->points[IndexAfter(step) - 1];
+      const Waypoint& last = newest_->points[IndexAfter(step) - 1];
       // It is not known that a disaster shrinks after its forecast.
       return Grown(last, std::max(0.0F, growth) * (step - last.step));
     }
@@ -190,10 +190,11 @@ class Forecast {
     return {from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part};
   }
   std::size_t IndexAfter(float step) const {
-    return said_ != nullptr ? After(step, said_->points) : After(step, track_);
+    return newest_ != nullptr ? After(step, newest_->points) : After(step, track_);
   }
   Place Point(std::size_t i) const {
-    if (said_ != nullptr) return {said_->points[i].step, said_->points[i].x, said_->points[i].y};
+    if (newest_ != nullptr)
+      return {newest_->points[i].step, newest_->points[i].x, newest_->points[i].y};
     const Waypoint& point = track_[i];
     const float error = MeanForecastError(farm_.scenario(), point.step - issued_);
     return {point.step, point.x + error * error_[0], point.y + error * error_[1]};
@@ -202,7 +203,7 @@ class Forecast {
   const Farm& farm_;
   std::int32_t disaster_;
   const std::vector<Waypoint>& track_;
-  const IssuedForecast* said_;  // null: uses the displaced true track
+  const IssuedForecast* newest_;  // null: uses the displaced true track
   float issued_;
   std::size_t first_;  // index of the first future point
   Place now_;

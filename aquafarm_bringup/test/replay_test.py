@@ -227,8 +227,8 @@ class ReplayTest(unittest.TestCase):
         run(render, asked, "--step", 17, *layers, "-o", other)
         self.assertNotEqual(other.read_bytes(), one.read_bytes())
         words = run(SCRIPT, "render", self.bag, "--policy", "clairvoyant", *layers, "-o", one)
-        self.assertIn(f"bag_policy: {self.bag}: no maps of values are written: clairvoyant plans "
-                      "on the whole farm", words)
+        self.assertIn(f"bag_policy: {self.bag}: no maps of values are written: clairvoyant reads "
+                      "whole farms", words)
         self.assertIn(f"render: {self.bag}: a policy was asked, but no values/points", words)
 
     def test_without_a_display_there_is_a_line_with_the_way_out(self):

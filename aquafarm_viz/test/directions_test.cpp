@@ -159,13 +159,13 @@ TEST(Image, ShowsAnArrowForEachLegalMoveAtAPort) {
   for (const int bearing : {90, 180, 315}) EXPECT_EQ(changed.count(bearing), 0U) << bearing;
 }
 
-TEST(Image, LabelsDeployedDevicesToTheirSouthEast) {
+TEST(Image, LabelsDeployedDevicesToTheirRight) {
   const auto spec = test::MakeSpec();
   const auto deployed = test::MakeState().devices[0];
   const auto changed = ChangedAround(spec, "labels", deployed.x, deployed.y);
   int pixels = 0;
   for (const auto& [bearing, count] : changed) {
-    EXPECT_TRUE(bearing == 90 || bearing == 135) << bearing;  // of the centre of the octant
+    EXPECT_TRUE(bearing >= 45 && bearing <= 135) << bearing;  // of the centre of the octant
     pixels += count;
   }
   EXPECT_GT(pixels, 20);

@@ -46,7 +46,7 @@ std::size_t SumTree::Find(float mass) const {
 
 template <typename Scalar>
 Replay<Scalar>::Replay(const ReplayOptions& options)
-    : options_(options), moments_(std::max<std::size_t>(2, options.capacity / options.slots)) {
+    : options_(options), max_size_(std::max<std::size_t>(2, options.capacity / options.slots)) {
   const std::size_t all = rows();
   observations_.resize(all * options_.observation_size);
   recurrent_state_.resize(all * options_.recurrent_size);
@@ -60,8 +60,8 @@ Replay<Scalar>::Replay(const ReplayOptions& options)
 template <typename Scalar>
 void Replay<Scalar>::Add(const StepResults& results, const Scalar* observations,
                          const float* recurrent_state) {
-  if (size_ == moments_) {
-    oldest_ = (oldest_ + 1) % moments_;
+  if (size_ == max_size_) {
+    oldest_ = (oldest_ + 1) % max_size_;
   } else {
     ++size_;
   }
@@ -157,7 +157,7 @@ void Replay<Scalar>::Load(const Checkpoint& checkpoint) {
   Place place;
   LoadNumbers<std::uint64_t>(checkpoint, "replay", "replay.place",
                              [&place](const auto& visit) { VisitPlace(place, visit); });
-  if (place.oldest >= moments_ || place.size > moments_) {
+  if (place.oldest >= max_size_ || place.size > max_size_) {
     throw InputError("checkpoint: section 'replay': out of range");
   }
   checkpoint.GetArray("replay.observations", observations_.size(), observations_);

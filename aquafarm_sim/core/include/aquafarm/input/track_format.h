@@ -8,6 +8,7 @@
 
 namespace aquafarm {
 
+/// The formats of storm tracks that aquafarm reads.
 enum class TrackFormat : std::uint8_t {
   kCma,       ///< CMA best track, CHyyyyBST.txt
   kJma,       ///< JMA / RSMC Tokyo best track, bst_*.txt
@@ -18,6 +19,7 @@ enum class TrackFormat : std::uint8_t {
   kArchive,         ///< archive of aquafarm (tracks/archive.h)
 };
 inline constexpr int kTrackFormatCount = 7;
+/// Returns the name of the format in messages, such as "JMA best track".
 std::string_view ToString(TrackFormat value);
 
 /// Detects the format of a text from its content; nullopt if it is not a track file. CMA and JMA

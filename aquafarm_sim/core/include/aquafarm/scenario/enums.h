@@ -17,9 +17,11 @@ enum class DeviceKind : std::uint8_t {
 };
 inline constexpr int kDeviceKindCount = 4;
 
+/// Where a device is: at its place in the sea, on a ship, or in a port.
 enum class DeviceStatus : std::uint8_t { kDeployed, kAboard, kDelivered };
 inline constexpr int kDeviceStatusCount = 3;
 
+/// The kinds of disasters. They differ in the damage that they do to each kind of device.
 enum class DisasterKind : std::uint8_t {
   kTyphoon,
   kStormSurge,
@@ -35,16 +37,23 @@ std::string_view ToString(DeviceKind value);
 std::string_view ToString(DeviceStatus value);
 std::string_view ToString(DisasterKind value);
 
+/// Whether all episodes have the layout of the scenario, or each draws its own.
 enum class LayoutMode : std::uint8_t { kFixed, kPerEpisode };
 inline constexpr int kLayoutModeCount = 2;
+/// How the places of devices are chosen; see `placement` in docs/scenario.md.
 enum class DevicePlacement : std::uint8_t { kUniform, kLinear, kRandom, kExplicit };
 inline constexpr int kDevicePlacementCount = 4;
+/// What a moving disaster does at the border of the enlarged map; see `border` in
+/// docs/scenario.md.
 enum class Border : std::uint8_t { kReflect, kWrap, kLeave };
 inline constexpr int kBorderCount = 3;
+/// Whether ships see the whole map, or only what is near them.
 enum class ViewMode : std::uint8_t { kFull, kPartial };
 inline constexpr int kViewModeCount = 2;
+/// Whether each agent receives its own rewards or the sum of its team.
 enum class RewardSharing : std::uint8_t { kIndividual, kTeam };
 inline constexpr int kRewardSharingCount = 2;
+/// Returns the name used in scenario files.
 std::string_view ToString(LayoutMode value);
 std::string_view ToString(DevicePlacement value);
 std::string_view ToString(Border value);

@@ -16,6 +16,7 @@
 
 namespace aquafarm::agents {
 
+/// How a value changes during a training.
 enum class ScheduleKind : std::uint8_t { kConstant, kLinear, kExponential, kHarmonic };
 inline constexpr int kScheduleKindCount = 4;
 std::string_view ToString(ScheduleKind value);

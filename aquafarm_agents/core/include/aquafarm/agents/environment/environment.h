@@ -107,6 +107,7 @@ bool WantsOwnRewards(std::uint8_t observation_types, EnvironmentSpec& spec);
 /// Replaces each agent's reward by the sum of its own reward terms. @param results with terms
 void UseOwnRewards(StepResults& results);
 
+/// A batch of farms, in this process or behind ROS. It is all that learners see of a farm.
 class Environment {
  public:
   virtual ~Environment() = default;

@@ -28,6 +28,8 @@ namespace aquafarm::agents {
 /// Mask of all actions of the action space.
 inline constexpr ActionMask kAllActions = (1U << kActionCount) - 1;
 
+/// How a learner explores: random actions with probability ε, Boltzmann (Eq. 8), or samples of the
+/// policy with an entropy bonus.
 enum class ExplorationKind : std::uint8_t { kEpsilonGreedy, kBoltzmann, kEntropy };
 inline constexpr int kExplorationKindCount = 3;
 std::string_view ToString(ExplorationKind value);

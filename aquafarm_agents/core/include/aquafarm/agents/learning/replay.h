@@ -39,6 +39,7 @@ class SumTree {
   std::vector<float> nodes_;  // heap order; node 1 is the root
 };
 
+/// Sizes of a replay buffer.
 struct ReplayOptions {
   std::size_t capacity{100000};    ///< transitions
   std::size_t slots{1};            ///< farms × agents
@@ -77,9 +78,9 @@ class Replay {
   /// Adds the chosen actions to the newest time step. @param actions [slots]
   void SetActions(const std::vector<std::uint8_t>& actions);
 
-  /// Number of stored time steps, at most moment_capacity().
+  /// Number of stored time steps, at most max_size().
   std::size_t size() const { return size_; }
-  std::size_t moment_capacity() const { return moments_; }
+  std::size_t max_size() const { return max_size_; }
   std::size_t slots() const { return options_.slots; }
 
   /// True if a transition (or a run of `steps` time steps) begins here: `steps` later time steps
@@ -108,13 +109,13 @@ class Replay {
 
   /// Row of a slot of a time step in the arrays. It is stable while the time step is stored.
   std::size_t Row(std::size_t age, std::size_t slot) const {
-    return ((oldest_ + age) % moments_) * options_.slots + slot;
+    return ((oldest_ + age) % max_size_) * options_.slots + slot;
   }
   /// Age of the time step that contains a row.
   std::size_t Age(std::size_t row) const {
-    return (row / options_.slots + moments_ - oldest_) % moments_;
+    return (row / options_.slots + max_size_ - oldest_) % max_size_;
   }
-  std::size_t rows() const { return moments_ * options_.slots; }
+  std::size_t rows() const { return max_size_ * options_.slots; }
   const Scalar* observation(std::size_t row) const {
     return observations_.data() + row * options_.observation_size;
   }
@@ -135,7 +136,7 @@ class Replay {
 
  private:
   ReplayOptions options_;
-  std::size_t moments_;
+  std::size_t max_size_;
   std::size_t oldest_{};
   std::size_t size_{};
   std::vector<Scalar> observations_;

@@ -22,6 +22,7 @@ class RankLost : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The ranks of a training, which sum their gradients and exchange arrays.
 class ProcessGroup {
  public:
   virtual ~ProcessGroup() = default;

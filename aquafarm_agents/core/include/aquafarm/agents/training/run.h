@@ -52,6 +52,7 @@ struct RunStatus {
   const Learner* learner{};  ///< set during training; valid only during the call
 };
 
+/// What a training run ends with.
 struct RunReport {
   ExitCode code{};
   RunStatus status;

@@ -18,6 +18,7 @@
 
 namespace aquafarm::agents {
 
+/// Limits of a training, and how often it saves and reports.
 struct TrainerOptions {
   std::string algorithm;             ///< name stored in checkpoints
   std::uint64_t seed{1};             ///< seed of the episodes; below kEvaluationSeedBit

@@ -8,12 +8,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -62,48 +65,95 @@ pid_t StartRank(int rank, int ranks, int port, char** argv) {
   _exit(static_cast<int>(ExitCode::kInternal));
 }
 
+/// The ranks of one training. After one was ended by a signal, the others see it within seconds,
+/// except those that still wait for it at the start: they are ended after kLongestWait.
+class LocalRanks {
+ public:
+  LocalRanks(int ranks, char** argv) {
+    const int port = FreePort();
+    for (int rank = 0; rank < ranks && !start_error_; ++rank) {
+      const pid_t pid = StartRank(rank, ranks, port, argv);
+      if (pid > 0) {
+        pids_.push_back(pid);
+      } else {
+        start_error_ = errno;
+      }
+    }
+    if (!start_error_) return;
+    std::fprintf(stderr, "ranks: cannot start rank %zu of %d: %s; start fewer ranks\n",
+                 pids_.size(), ranks, std::strerror(*start_error_));
+    Signal(SIGKILL);
+  }
+
+  /// Waits for the end of all ranks. @returns the exit code of the first that failed
+  int Wait() {
+    while (running() > 0) {
+      if (stop_requested && !is_forwarded_) {
+        is_forwarded_ = true;
+        Signal(SIGINT);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      for (std::size_t rank = 0; rank < pids_.size(); ++rank) Look(rank);
+      EndThoseThatWait();
+    }
+    return start_error_ ? static_cast<int>(ExitCode::kRankLost) : result_;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kLongestWait{10};
+
+  std::ptrdiff_t running() const {
+    return std::count_if(pids_.begin(), pids_.end(), [](pid_t pid) { return pid != 0; });
+  }
+
+  void Signal(int signal) const {
+    for (const pid_t pid : pids_) {
+      if (pid != 0) kill(pid, signal);
+    }
+  }
+
+  // Notes the end of a rank.
+  void Look(std::size_t rank) {
+    pid_t& pid = pids_[rank];
+    int status = 0;
+    if (pid == 0 || waitpid(pid, &status, WNOHANG) != pid) return;
+    pid = 0;
+    if (WIFEXITED(status)) {
+      if (result_ == 0) result_ = WEXITSTATUS(status);
+      return;
+    }
+    if (result_ == 0) result_ = static_cast<int>(ExitCode::kRankLost);
+    if (is_ending_ || start_error_) return;  // by Signal
+    std::fprintf(stderr, "rank %zu was ended by signal %d\n", rank, WTERMSIG(status));
+    if (!killed_at_) killed_at_ = Clock::now();
+  }
+
+  void EndThoseThatWait() {
+    if (is_ending_ || !killed_at_ || Clock::now() - *killed_at_ < kLongestWait) return;
+    if (running() == 0) return;
+    is_ending_ = true;
+    std::fprintf(stderr,
+                 "ranks: %td of %zu have not ended within %d s after another rank; ending them; "
+                 "resume from the last checkpoint\n",
+                 running(), pids_.size(), static_cast<int>(kLongestWait.count()));
+    Signal(SIGKILL);
+  }
+
+  std::vector<pid_t> pids_;  // of the ranks, 0 after the end
+  std::optional<int> start_error_;
+  std::optional<Clock::time_point> killed_at_;  // the first rank that was ended by a signal
+  bool is_forwarded_{};
+  bool is_ending_{};
+  int result_{};
+};
+
 }  // namespace
 
 int RunLocalRanks(int ranks, char** argv) {
   StopOnSignals();
   std::signal(SIGCHLD, SIG_DFL);  // if the caller ignored it, waitpid would find no child
-  const int port = FreePort();
-  std::vector<pid_t> pids;
-  for (int rank = 0; rank < ranks; ++rank) {
-    pids.push_back(StartRank(rank, ranks, port, argv));
-    if (pids.back() > 0) continue;
-    std::fprintf(stderr, "ranks: cannot start rank %d of %d: %s; start fewer ranks\n", rank, ranks,
-                 std::strerror(errno));
-    for (const pid_t pid : pids) {
-      if (pid > 0) kill(pid, SIGKILL);
-    }
-    return static_cast<int>(ExitCode::kRankLost);
-  }
-  int result = 0;
-  bool is_forwarded = false;
-  for (int left = ranks; left > 0;) {
-    if (stop_requested && !is_forwarded) {
-      is_forwarded = true;
-      for (const pid_t pid : pids) {
-        if (pid != 0) kill(pid, SIGINT);
-      }
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    for (int rank = 0; rank < ranks; ++rank) {
-      pid_t& pid = pids[static_cast<std::size_t>(rank)];
-      int status = 0;
-      if (pid == 0 || waitpid(pid, &status, WNOHANG) != pid) continue;
-      const bool has_ended = WIFEXITED(status);
-      if (WIFSIGNALED(status)) {
-        std::fprintf(stderr, "rank %d was ended by signal %d\n", rank, WTERMSIG(status));
-      }
-      const int code = has_ended ? WEXITSTATUS(status) : static_cast<int>(ExitCode::kRankLost);
-      if (result == 0) result = code;
-      pid = 0;
-      --left;
-    }
-  }
-  return result;
+  return LocalRanks(ranks, argv).Wait();
 }
 
 }  // namespace aquafarm::agents

@@ -9,6 +9,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
@@ -39,6 +41,13 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void Kill(int signal) const { kill(pid_, signal); }
+
+  /// The processes that the program has started and that have not ended, in order of their start.
+  std::vector<pid_t> Children() const {
+    const std::string id = std::to_string(pid_);
+    std::ifstream file("/proc/" + id + "/task/" + id + "/children");
+    return {std::istream_iterator<pid_t>(file), {}};
+  }
 
   /// Waits for the end of the program. @returns its exit code, minus the number of the signal that
   /// ended it, or −1000 if it did not end within the limit

@@ -150,6 +150,24 @@ TEST_F(Ranks, AKilledRankEndsTheOthersAndTheRunResumesWithAnyNumber) {
   ExpectThatPartsEndLikeAWhole({"-o", "shards=8"});
 }
 
+TEST_F(Ranks, ARankThatIsKilledAtTheStartEndsTheOthersThatWaitForIt) {
+  Words options = Endless();
+  options.insert(options.end(), {"--ranks", "2", "--rank-start", "1000"});
+  Process process(Train("run", options), OutputPath("run"));
+  std::vector<pid_t> ranks;
+  ASSERT_TRUE(WaitUntil(
+      [&] {
+        ranks = process.Children();
+        return ranks.size() == 2;
+      },
+      kStopped));
+  kill(ranks[1], SIGKILL);  // long before it has loaded libtorch and connects
+  EXPECT_EQ(process.Wait(kStopped), kRankLost) << Output("run");
+  EXPECT_CONTAINS(Output("run"), "rank 1 was ended by signal 9\n");
+  EXPECT_CONTAINS(Output("run"), "ranks: 1 of 2 have not ended within 10 s after another rank");
+  EXPECT_FALSE(std::filesystem::exists(folder_ + "/run"));
+}
+
 TEST_F(Ranks, EndWithAParentThatIgnoredTheEndOfItsChildren) {
   steps_ = "1000";
   Words words{"/usr/bin/env", "--ignore-signal=CHLD"};

@@ -290,7 +290,7 @@ TEST(DangerMarkers, FollowTheTrackOfTheScenario) {
                                    "    ring_winds_kt: [64, 34]\n");
   const auto named = scene.Draw();
   EXPECT_EQ(named.at({"alarm", 0}).text,
-            "typhoon over F0: gale (risk -5) now, hurricane force (risk -20) in 30 min");
+            "typhoon over F0: gale now, hurricane force (64 kt) in 30 min");
   EXPECT_EQ(named.at({"danger_label", 0}).text, "F0: gale now, hurricane force in 30 min");
 }
 

@@ -12,6 +12,7 @@
 #include "draw/map_labels.h"
 #include "draw/symbols.h"
 #include "fixture.h"
+#include "scene/nautical.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -90,17 +91,38 @@ TEST(Outlook, NamesTheWindsOfRingsThatTheScenarioGives) {
   Scene scene;
   scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "typhoon, gale (risk -5), reaches F3 in 30 min");
+            "typhoon, gale (34 kt), reaches F3 in 30 min");
   EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "gale in 30 min");
   EXPECT_EQ(RiskText(scene.spec, scene.outlook().devices[0]), "-5 in 30 min");
   scene.state.step = 8;
   scene.state.disasters[0].x = 24.0F;
   scene.state.devices[0].x = 17;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "typhoon over F3: gale (risk -5) now, storm (risk -20) in 3 min");
+            "typhoon over F3: gale now, storm (50 kt) in 3 min");
   EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()), "F3: gale now, storm in 3 min");
   scene.state.devices[0].x = 22;
   EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "storm now");
+}
+
+TEST(Outlook, NamesTheWorstRingToComeAfterTheNext) {
+  Scene scene;
+  DeviceOutlook device{3, 0.0, 0U, "", {}};
+  device.arrivals = {{10.0, -5.0, "gale", 0U, 34},
+                     {40.0, -10.0, "storm", 0U, 50},
+                     {60.0, -20.0, "hurricane force", 0U, 64}};
+  Outlook outlook;
+  outlook.devices = {device};
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
+            "typhoon, gale (34 kt), reaches F3 in 30 min, hurricane force (64 kt) in 3.0 h");
+  EXPECT_EQ(DangerText(scene.spec, device), "gale in 30 min, hurricane force in 3.0 h");
+  EXPECT_EQ(WorstText(scene.spec, device), "hurricane force in 3.0 h");
+}
+
+TEST(Outlook, StrengthHasMetresPerSecondAndKnots) {
+  TrackPoint point;
+  EXPECT_EQ(StrengthText(point), "");
+  point.wind_mps = 37.0;
+  EXPECT_EQ(StrengthText(point), " 37 m/s (72 kt)");
 }
 
 TEST(Outlook, NamesNoWindThatIsNotGiven) {

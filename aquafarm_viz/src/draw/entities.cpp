@@ -130,26 +130,23 @@ void DrawTrails(cv::Mat& map, const FarmState& state, const Trail& trail, const 
     if (way == nullptr) continue;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
       const double age = double(way->places.size() - 1 - i) / Trail::kLength;
-      const Rgb fresh = state.ships.size() > 1
-                            ? Mix(layout.style->label, ShipColor(ship.id), 0.6)
-                            : Mix(layout.style->label, layout.style->sea_north, 0.1);
-      const Rgb color = Mix(fresh, layout.style->sea_south, 0.15 + 0.75 * age);
+      const Rgb fresh = state.ships.size() > 1 ? Mix(layout.style->label, ShipColor(ship.id), 0.6)
+                                               : layout.style->good;
+      const Rgb color = Mix(fresh, layout.style->sea_south, 0.65 * age);
       DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
                layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color),
-               layout.Px(age < 0.35 ? 2.0 : 1.0));
+               layout.Px(age < 0.35 ? 2.5 : 1.5));
     }
   }
 }
 
 namespace {
 
-// The colour of a part of a ship's route: of its age, or of the ship where there are several.
-Rgb RouteColor(const FarmState& state, std::int32_t ship, double share) {
-  constexpr Rgb kFirst{0x5c, 0x2d, 0x91};
-  constexpr Rgb kMiddle{0xe6, 0x4a, 0x6b};
-  constexpr Rgb kLast{0xff, 0xe0, 0x66};
+// The colour of a part of a ship's route, with its age as shade: green, which no risk has, or of
+// the ship where there are several.
+Rgb RouteColor(const FarmState& state, std::int32_t ship, double share, const Style& style) {
   if (state.ships.size() > 1) return Mix(kPaper, ShipColor(ship), 0.25 + 0.75 * share);
-  return share < 0.5 ? Mix(kFirst, kMiddle, 2.0 * share) : Mix(kMiddle, kLast, 2.0 * share - 1.0);
+  return Mix(style.good, style.sea_south, 0.55 * (1.0 - share));
 }
 
 }  // namespace
@@ -159,7 +156,7 @@ void DrawRouteSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, const Far
   constexpr int kParts = 12;
   for (int i = 0; i < kParts; ++i) {
     const auto at = [&](int part) { return from + (to - from) * (double(part) / kParts); };
-    DrawLine(image, at(i), at(i + 1), Bgr(RouteColor(state, 0, (i + 0.5) / kParts)),
+    DrawLine(image, at(i), at(i + 1), Bgr(RouteColor(state, 0, (i + 0.5) / kParts, *layout.style)),
              layout.Px(2.5));
   }
 }
@@ -171,7 +168,7 @@ void DrawRoutes(cv::Mat& map, const FarmState& state, const Trail& route, const 
     for (std::size_t i = 1; i < way->places.size(); ++i) {
       if (Trail::IsGap(way->places[i - 1], way->places[i])) continue;
       const double share = double(i) / double(way->places.size());
-      const Rgb color = RouteColor(state, ship.id, share);
+      const Rgb color = RouteColor(state, ship.id, share, *layout.style);
       DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
                layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color), layout.Px(2.5));
     }
@@ -205,7 +202,7 @@ void DrawPorts(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const
 }
 
 void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, const Layout& layout) {
-  const double size = std::max(0.9 * layout.view.cell_px(), 12.0 * layout.unit);
+  const double size = std::max(0.5 * layout.view.cell_px(), 10.0 * layout.unit);
   for (const auto& port : ports) {
     const cv::Point2d middle = layout.view.ToPixel(port.cell.x, port.cell.y);
     for (const std::uint8_t action : port.actions) {

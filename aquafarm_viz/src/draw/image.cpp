@@ -124,7 +124,7 @@ struct FarmPainter::Parts {
              const Forecasts& forecasts, const std::vector<CourseMark>& marks, FreeSpace& space) {
     LabelShips(map, spec, state, space, layout, fonts);
     if (layers.risk) LabelDanger(map, spec, state, forecasts.outlook, space, layout, fonts);
-    LabelPointers(map, spec, state, space, layout, fonts);
+    LabelPointers(map, spec, state, forecasts.courses, space, layout, fonts);
     if (layers.labels) LabelDevices(map, spec, state, space, layout, fonts);
     if (layers.risk) LabelRings(map, spec, state, forecasts.courses, space, layout, fonts);
     LabelMarks(map, marks, space, layout, fonts);

@@ -229,8 +229,8 @@ void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
       DrawDeviceSymbol(image, 0, {at, 4.5 * unit, 0.0}, 0.35);
       break;
     case Sign::kTrail:
-      DrawLine(image, at - half, at + half, Bgr(Mix(style.label, style.sea_south, 0.15)),
-               layout.Px(2));
+      DrawLine(image, at - half, at + half, Bgr(state.ships.size() > 1 ? style.label : style.good),
+               layout.Px(2.5));
       break;
     case Sign::kRoute:
       DrawRouteSample(image, at - half, at + half, state, layout);

@@ -265,13 +265,16 @@ void LabelRings(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
   }
 }
 
-void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state, FreeSpace& space,
-                   const Layout& layout, const Fonts& fonts) {
-  for (const auto& disaster : state.disasters) {
+void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
+                   const std::vector<Course>& courses, FreeSpace& space, const Layout& layout,
+                   const Fonts& fonts) {
+  for (std::size_t i = 0; i < state.disasters.size(); ++i) {
+    const DisasterState& disaster = state.disasters[i];
     if (!IsDrawn(disaster)) continue;
     const SignPlace sign = PlaceSign(disaster, layout);
     if (sign.is_inside) continue;
-    const std::string text = DisasterName(disaster.kind) + ", centre " +
+    const std::string text = DisasterName(disaster.kind) + StrengthText(courses[i].ahead.front()) +
+                             ", centre " +
                              DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) + " " +
                              PointFromFarm(spec, disaster.x, disaster.y);
     const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());

@@ -68,12 +68,17 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
        layout.style->words);
   pair("return", Number(state.joint_return, 1),
        state.joint_return < 0.0F ? layout.style->bad : layout.style->good);
-  pair("seed", SeedText(state.seed), layout.style->faint);
+  const std::string full = is_over ? "" : OutlookText(spec, state, outlook);
+  const bool needs_room = !full.empty() && right - fonts.bold.Width(full) >= line.x();
+  const int seed = fonts.small.Width("seed") + fonts.bold.Width(SeedText(state.seed)) + 2 * gap;
+  // The seed gives way to the danger in full.
+  if (!needs_room || right - fonts.bold.Width(full) >= line.x() + seed) {
+    pair("seed", SeedText(state.seed), layout.style->faint);
+  }
   if (state.observer >= 0)
     pair("as seen by ship", std::to_string(state.observer), layout.style->words);
   if (state.paused) line.Put(fonts.bold, "paused", layout.style->GradeText(2), gap);
   if (brief.empty()) return;
-  const std::string full = OutlookText(spec, state, outlook);
   const std::string& danger = right - fonts.bold.Width(full) >= line.x() ? full : brief;
   const int danger_left = std::max(left, right - fonts.bold.Width(danger));
   fonts.bold.Draw(image, danger, {danger_left, layout.Px(36)},
@@ -141,7 +146,9 @@ class Panel {
   cv::Point2d SecondSymbolAt() const { return {double(Middle() + layout_.Px(7)), SymbolAt().y}; }
   cv::Mat& image() { return image_; }
   /// The part between the lists and the legend.
-  cv::Rect Room() const { return {left_, y_ + layout_.Px(8), right_ - left_, end_ - y_}; }
+  cv::Rect Room() const {
+    return {left_, y_ + layout_.Px(8), right_ - left_, end_ - y_ - layout_.Px(8)};
+  }
 
   void Heading(const std::string& text, const std::string& right_text) {
     y_ += layout_.Px(5);
@@ -235,6 +242,7 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
       status = DangerText(spec, one);
       // The symbol shows the kind too.
       if (!panel.Fits(name, status)) name = label;
+      if (!panel.Fits(name, status)) status = WorstText(spec, one);
       if (!panel.Fits(name, status)) status = RiskText(spec, one);
       if (!panel.Fits(name, status)) status = RiskText(spec, one, ", ");
     }

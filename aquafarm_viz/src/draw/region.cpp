@@ -23,7 +23,7 @@ using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr double kSmallestSide = 84.0;  // [design units]
+constexpr double kSmallestSide = 70.0;  // [design units]
 
 bool IsOutside(const FarmSpec& spec, const DisasterState& disaster) {
   return IsDrawn(disaster) && !IsCentreInFarm(spec, disaster);
@@ -33,7 +33,7 @@ bool IsOutside(const FarmSpec& spec, const DisasterState& disaster) {
 double Reach(double farthest_m) {
   double reach = 1000.0;
   while (true) {
-    for (const double factor : {1.0, 2.0, 5.0}) {
+    for (const double factor : {1.0, 2.0, 3.0, 5.0}) {
       if (factor * reach >= farthest_m || reach > 1e7) return factor * reach;
     }
     reach *= 10.0;
@@ -266,9 +266,8 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
   }
   const RegionWords words = RegionText(spec, state, courses);
   const int side = std::min(room.width, room.height - 3 * row_px - layout.Px(4));
-  // The map itself shows what is nearer.
-  const bool is_far = farthest_m > spec.cell_size_m * std::hypot(spec.width, spec.height);
-  const bool is_drawn = is_far && side >= layout.Px(kSmallestSide);
+  // The map itself shows disasters whose centres are inside.
+  const bool is_drawn = farthest_m > 0.0 && side >= layout.Px(kSmallestSide);
   const bool has_course = words.heading != RegionWords().heading;
   if (!is_drawn && !has_course) return;
   fonts.bold.Draw(image, fonts.bold.Fit(words.heading, room.width),

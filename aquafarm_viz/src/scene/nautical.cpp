@@ -82,6 +82,12 @@ std::string WindText(const TrackPoint& point) {
   return point.wind_mps ? Number(*point.wind_mps, 0) + " m/s" : "";
 }
 
+std::string StrengthText(const TrackPoint& point) {
+  constexpr double kKnot_mps = 1852.0 / 3600.0;
+  if (!point.wind_mps) return "";
+  return " " + WindText(point) + " (" + Number(*point.wind_mps / kKnot_mps, 0) + " kt)";
+}
+
 std::string HoursText(double seconds) {
   const double hours = seconds / kHour_s;
   return Number(hours, hours < 10.0 ? 1 : 0) + " h";

@@ -39,6 +39,9 @@ std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, dou
 /// Returns a disaster's max sustained wind, such as "38 m/s"; empty if it is not given.
 std::string WindText(const TrackPoint& point);
 
+/// Returns WindText also in knots, after a space: " 37 m/s (72 kt)"; empty if not given.
+std::string StrengthText(const TrackPoint& point);
+
 /// Returns a duration such as "31 h" or "4.5 h".
 std::string HoursText(double seconds);
 

@@ -79,7 +79,9 @@ void AddStep(const FarmState& state, const std::vector<Course>& courses, int ste
       }
       const double worst = device.arrivals.empty() ? device.risk_now : device.arrivals.back().risk;
       if (risk < worst - kWorse) {
-        device.arrivals.push_back({double(step), risk, NameOf(courses[i], ring), i});
+        const auto& winds = courses[i].ring_winds_kt;
+        device.arrivals.push_back({double(step), risk, NameOf(courses[i], ring), i,
+                                   ring < winds.size() ? winds[ring] : 0});
       }
     }
   }
@@ -214,10 +216,21 @@ std::string AheadText(const FarmSpec& spec, double steps) {
 
 namespace {
 
-// Returns "risk -5", or "gale (risk -5)" where the wind is given.
+// Returns "risk -5", or "gale" where the wind is given.
 std::string NamedRisk(const char* name, double risk) {
-  const std::string text = "risk " + Number(risk, 0);
-  return *name == '\0' ? text : std::string(name) + " (" + text + ")";
+  return *name == '\0' ? "risk " + Number(risk, 0) : name;
+}
+
+// Returns "risk -10", or "storm (50 kt)" where the wind is given.
+std::string RingText(const RingArrival& ring) {
+  return ring.wind_kt > 0 ? aquafarm::RingName(ring.wind_kt) : NamedRisk(ring.name, ring.risk);
+}
+
+// Returns ", hurricane force (64 kt) in 9 h": the worst ring to come, if it is not the next one.
+std::string WorstToCome(const FarmSpec& spec, const DeviceOutlook& device) {
+  if (device.arrivals.size() < 2) return "";
+  const RingArrival& worst = device.arrivals.back();
+  return ", " + RingText(worst) + " in " + AheadText(spec, worst.steps);
 }
 
 // Returns ", Sun 06:24 UTC+8", the local time in some steps; empty without a start time.
@@ -256,10 +269,11 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
   const RingArrival& next = first.arrivals.front();
   const std::string when = std::string(" in ") + (outlook.is_extrapolated ? "about " : "") +
                            AheadText(spec, next.steps) + ClockAhead(spec, state, next.steps);
-  const std::string risk = NamedRisk(next.name, next.risk);
-  if (is_now) return now + ", " + risk + when;
+  const std::string risk = RingText(next);
+  const std::string worst = WorstToCome(spec, first);
+  if (is_now) return now + ", " + risk + when + worst;
   return DisasterName(state.disasters[next.disaster].kind) + ", " + risk + ", reaches " +
-         DeviceLabel(first.id) + when;
+         DeviceLabel(first.id) + when + worst;
 }
 
 std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
@@ -278,8 +292,19 @@ std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
   if (!has_names) return RiskText(spec, device);
   const std::string now = before.empty() ? "" : before + " now";
   if (after.empty()) return now;
-  return now + (now.empty() ? "" : ", ") + after + " in " +
-         AheadText(spec, device.arrivals.front().steps);
+  const std::string next = now + (now.empty() ? "" : ", ") + after + " in " +
+                           AheadText(spec, device.arrivals.front().steps);
+  const RingArrival& worst = device.arrivals.back();
+  if (*worst.name == '\0' || worst.name == after) return next;
+  return next + ", " + worst.name + " in " + AheadText(spec, worst.steps);
+}
+
+std::string WorstText(const FarmSpec& spec, const DeviceOutlook& device) {
+  if (device.arrivals.empty() || *device.arrivals.back().name == '\0') {
+    return DangerText(spec, device);
+  }
+  return device.arrivals.back().name + std::string(" in ") +
+         AheadText(spec, device.arrivals.back().steps);
 }
 
 std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {

@@ -21,6 +21,7 @@ struct RingArrival {
   double risk{};           ///< risk within the ring, below 0
   const char* name{""};    ///< of the ring's wind, such as "gale"; empty: not given
   std::size_t disaster{};  ///< index in FarmState.disasters
+  std::int32_t wind_kt{};  ///< of the ring; 0: not given
 };
 
 /// The danger to one deployed device.
@@ -62,9 +63,9 @@ std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 
 /// Returns the outlook in one sentence, such as "typhoon, risk -10, reaches F3 in 6.5 h" or
 /// "typhoon over F2: risk -5 now, risk -20 in 6.5 h"; where the winds of the rings are given
-/// "typhoon over F2: gale (risk -5) now, storm (risk -10) in 6.5 h". Without such a danger
-/// "disasters known until +12 h" if a course ends before its disaster; else empty, also if the
-/// outlook is not known.
+/// "typhoon over F2: gale now, storm (50 kt) in 6.5 h". If a worse ring than this one follows, it
+/// is named too: ", hurricane (64 kt) in 9 h". Without such a danger "disasters known until +12 h"
+/// if a course ends before its disaster; else empty, also if the outlook is not known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
 
@@ -79,8 +80,12 @@ std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook&
 
 /// Returns the danger to a device in a few characters: "-10 in 6.5 h", "-5 now" if a ring covers
 /// it, "-5 now, -20 in 6.5 h" if a worse one follows; empty if no ring covers or reaches it. Where
-/// the winds of the rings are given: "gale now, storm in 6.5 h".
+/// the winds of the rings are given: "gale now, storm in 6.5 h", and the worst ring to come if it
+/// is another one: ", hurricane in 9 h".
 std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
+
+/// Returns the worst ring to come: "hurricane force in 9 h"; DangerText if its wind is not given.
+std::string WorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
 
 /// Returns DangerText without names of winds.
 /// @param between  text between risk and time

@@ -58,7 +58,7 @@ TEST(Outlook, OfAPresentCourseNamesEachRingAndItsTime) {
   EXPECT_EQ(outlook.devices[0].arrivals[1].steps, 25.0);
   EXPECT_EQ(outlook.devices[0].arrivals[1].risk, -20.0);
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, risk -5, reaches F3 in about 1.0 h");
+            "typhoon, risk -5, reaches F3 in about 1.0 h, risk -20 in 1.2 h");
 }
 
 TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {

@@ -28,7 +28,10 @@ class TestRun(unittest.TestCase):
             results = pathlib.Path(folder, "results")
             commands = []
 
-            def run_child(command, **_):
+            def run_children(commands, **_):
+                return [run_child(command) for command, _ in commands]
+
+            def run_child(command):
                 words = [str(word) for word in command]
                 commands.append(" ".join(words))
                 name = pathlib.Path(words[0]).name
@@ -40,7 +43,8 @@ class TestRun(unittest.TestCase):
                 return code
 
             with mock.patch.multiple(tests, RESULTS=results, WS=pathlib.Path(folder),
-                                     run_child=run_child, enter_ros=lambda: False,
+                                     run_child=run_child, run_children=run_children,
+                                     enter_ros=lambda: False,
                                      build_core=lambda name: None, bootstrap=lambda *words: None,
                                      run_bootstrap=lambda *words: codes.get(words[0], 0)), \
                     contextlib.redirect_stdout(io.StringIO()) as out, \
@@ -113,6 +117,14 @@ class TestChild(unittest.TestCase):
         with self.assertRaises(SystemExit) as ended:
             workspace.run_child(["sleep", "60"])
         self.assertEqual(130, ended.exception.code)
+
+    def test_a_signal_reaches_all_children(self):
+        threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGTERM)).start()
+        loop = "for i in {1..600}; do sleep 0.1; done"
+        codes = workspace.run_children(
+            [(["bash", "-c", f"trap 'exit {code}' TERM; {loop}"], {}) for code in (4, 5)],
+            goes_on=True)
+        self.assertEqual([4, 5], codes)
 
     def test_a_killed_child_has_the_code_of_a_shell(self):
         self.assertEqual(137, workspace.run_child(["bash", "-c", "kill -9 $$"]))

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """./aquafarm test: builds and runs every test."""
+import contextlib
+import dataclasses
 import os
+import pathlib
 import shutil
 import sys
 import time
 
 from .workspace import (PYTHON, ROOT, WS, bootstrap, build_core, enter_ros, run_bootstrap, run_child,
-                        say, use_ccache)
+                        run_children, say, use_ccache)
 
 RESULTS = WS / "results"
 CORES = ("aquafarm_sim", "aquafarm_agents")
@@ -24,6 +27,18 @@ LAST_LINES = 20
 WHEEL_END_S = 55 * 60
 
 
+@dataclasses.dataclass
+class Step:
+    """A command that runs tests."""
+    name: str
+    command: list
+    log: pathlib.Path
+    xml: pathlib.Path | None = None  # the results that it writes; None: only its exit code counts
+    is_shown: bool = False  # otherwise its output goes to the log
+    has_session: bool = False  # one of its own, which has its own share of the processor
+    variables: dict = dataclasses.field(default_factory=dict)  # of the environment
+
+
 class Stages:
     """The stages of a test run: when each begins, and which broke off."""
 
@@ -39,15 +54,22 @@ class Stages:
         seconds = self.seconds()
         say(f"{seconds // 60:2d}:{seconds % 60:02d} {what}")
 
-    def run(self, command, log=None, **variables):
-        """Runs a command that exits with 0 if all its tests pass."""
-        environment = dict(os.environ, **variables)
-        if log is None:
-            code = run_child(command, env=environment)
-        else:
-            with open(log, "w", encoding="utf-8") as words:
-                code = run_child(command, env=environment, stdout=words, stderr=words)
-        self.has_failed |= code != 0
+    def run(self, *steps):
+        """Runs steps at the same time. Each exits with 0 if all its tests pass."""
+        with contextlib.ExitStack() as stack:
+            commands = []
+            for step in steps:
+                options = {"env": dict(os.environ, **step.variables),
+                           "start_new_session": step.has_session}
+                if not step.is_shown:
+                    words = stack.enter_context(open(step.log, "w", encoding="utf-8"))
+                    options.update(stdout=words, stderr=words)
+                commands.append((step.command, options))
+            codes = run_children(commands)
+        for step, code in zip(steps, codes):
+            self.has_failed |= code != 0
+            if code != 0 if step.xml is None else is_empty(step.xml):
+                self.break_off(step.name, step.log)
 
     def break_off(self, name, log):
         """A stage that breaks off counts as a failed test; otherwise its missing cases would not be
@@ -79,52 +101,57 @@ def build(stages):
     RESULTS.mkdir(parents=True)
 
 
-def test_tools(stages):
-    stages.begin("testing the tools")
-    xml, log = RESULTS / "tools.xml", RESULTS / "tools.log"
-    stages.run([PYTHON, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={xml}",
-                *sorted(ROOT.glob("tools/test/*_test.py"))], log, AQUAFARM_CAMPAIGNS=str(WS))
-    if is_empty(xml):
-        stages.break_off("tools", log)
+def tools_step():
+    xml = RESULTS / "tools.xml"
+    return Step("tools", [PYTHON, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={xml}",
+                          *sorted(ROOT.glob("tools/test/*_test.py"))],
+                RESULTS / "tools.log", xml, variables={"AQUAFARM_CAMPAIGNS": str(WS)})
 
 
-def test_cores(stages):
+def core_step(core):
     jobs = os.environ.get("AQUAFARM_JOBS") or str(len(os.sched_getaffinity(0)))
-    for core in CORES:
-        stages.begin(f"testing {core}/core without ROS")
-        xml, log = RESULTS / f"ctest-{core}.xml", RESULTS / f"{core}.log"
-        stages.run(["ctest", "--test-dir", WS / "core" / core, "-j", jobs, "--timeout", "900",
-                    "--output-on-failure", "-Q", "--output-log", log, "--output-junit", xml])
-        if is_empty(xml):
-            stages.break_off(f"{core} core", log)
+    xml, log = RESULTS / f"ctest-{core}.xml", RESULTS / f"{core}.log"
+    return Step(f"{core} core", ["ctest", "--test-dir", WS / "core" / core, "-j", jobs,
+                                 "--timeout", "900", "--output-on-failure", "-Q",
+                                 "--output-log", log, "--output-junit", xml],
+                log, xml)
 
 
-def test_through_ros(stages):
+def ros_step(log):
+    # Two at a time is what has been tried on two cores; a rostest waits for most of its time.
+    jobs = min(2, len(os.sched_getaffinity(0)))
+    return Step("tests through ROS",
+                [ROOT / "tools/run_ros_tests", WS / "build", log, "--jobs",
+                 os.environ.get("AQUAFARM_TEST_JOBS") or str(jobs)], log, is_shown=True,
+                variables={"CTEST_OUTPUT_ON_FAILURE": "1",
+                           "ROS_TEST_RESULTS_DIR": str(WS / "build/test_results")})
+
+
+def workspaces_step():
+    xml = RESULTS / "workspaces.xml"
+    return Step("another kind of workspace",
+                [ROOT / "tools/check_workspaces", WS / "workspaces", xml],
+                RESULTS / "workspaces.log", xml, is_shown=True, has_session=True)
+
+
+def test_through_ros(stages, *others):
     enter_ros()
     log = RESULTS / "build_tests.log"
     stages.begin(f"building the tests through ROS (log: {log})")
     if run_bootstrap("--build-tests", log) != 0:
         stages.break_off("build of the tests through ROS", log)
     log = RESULTS / "run_tests.log"
-    stages.begin(f"testing through ROS (log: {log})")
-    # Two at a time is what has been tried on two cores; a rostest waits for most of its time.
-    jobs = min(2, len(os.sched_getaffinity(0)))
-    # Failed tests are found in the results; an exit code other than 0 means that it broke off.
-    code = run_child([ROOT / "tools/run_ros_tests", WS / "build", log, "--jobs",
-                      os.environ.get("AQUAFARM_TEST_JOBS") or str(jobs)],
-                     env=dict(os.environ, CTEST_OUTPUT_ON_FAILURE="1",
-                              ROS_TEST_RESULTS_DIR=str(WS / "build/test_results")))
-    if code != 0:
-        stages.break_off("tests through ROS", log)
+    what = " and ".join(["testing through ROS", *(f"in {step.name}" for step in others)])
+    stages.begin(f"{what} (log: {log})")
+    stages.run(ros_step(log), *others)
 
 
 def test_wheel(stages):
     log = RESULTS / "python.log"
     stages.begin(f"testing the wheel with tools from PyPI, as far as there is time (log: {log})")
-    stages.run([ROOT / "tools/check_python", WS / "python", "--short", "--limit",
-                max(1, WHEEL_END_S - stages.seconds()), "--xml", RESULTS / "python.xml"], log)
-    if is_empty(RESULTS / "python.xml"):
-        stages.break_off("wheel", log)
+    xml = RESULTS / "python.xml"
+    stages.run(Step("wheel", [ROOT / "tools/check_python", WS / "python", "--short", "--limit",
+                              max(1, WHEEL_END_S - stages.seconds()), "--xml", xml], log, xml))
 
 
 def run(fast):
@@ -132,14 +159,13 @@ def run(fast):
     test failed."""
     stages = Stages()
     build(stages)
-    test_tools(stages)
-    test_cores(stages)
-    test_through_ros(stages)
+    stages.begin("testing the cores without ROS, and the tools, which mostly wait")
+    stages.run(tools_step(), *map(core_step, CORES))
+    # ROS tests mostly wait, too.
+    test_through_ros(stages, *([] if fast else [workspaces_step()]))
     if not fast:
-        stages.begin("building and running in the other kinds of workspace")
-        stages.run([ROOT / "tools/check_workspaces", WS / "workspaces", RESULTS / "workspaces.xml"])
         test_wheel(stages)
     stages.begin("adding up the results")
-    stages.run([PYTHON, ROOT / "tools/sum_results.py", RESULTS, *WS.glob("core/*/test_results"),
-                WS / "build/test_results"])
-    return int(stages.has_failed)
+    code = run_child([PYTHON, ROOT / "tools/sum_results.py", RESULTS,
+                      *WS.glob("core/*/test_results"), WS / "build/test_results"])
+    return int(stages.has_failed or code != 0)

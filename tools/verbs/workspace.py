@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The workspace: its folders, its build by ./aquafarm, its ROS environment, child processes."""
+import contextlib
 import os
 import pathlib
 import random
@@ -30,27 +31,41 @@ def say(line):
     print(f"aquafarm: {line}", flush=True)
 
 
-def run_child(command, goes_on=False, **options):
-    """Runs a command to its end and returns its exit code, 128 + N if signal N ended it.
+def run_children(commands, goes_on=False):
+    """Runs commands at the same time to their ends and returns their exit codes, 128 + N for a
+    command that signal N ended.
 
-    A signal to this process ends the command by SIGTERM; the command may need time to save. Then
-    this process ends with 128 + the signal's number, unless it `goes_on` to report the end.
+    commands: pairs of a command and the options of Popen. A signal to this process ends each command
+    by SIGTERM; it may need time to save. Then this process ends with 128 + the signal's number,
+    unless it `goes_on` to report the end.
     """
-    received = []
-    with subprocess.Popen([str(word) for word in command], **options) as child:
-        def end(number, _):
-            received.append(number)
+    received, children = [], []
+
+    def end(number, _):
+        received.append(number)
+        for child in children:
             child.send_signal(signal.SIGTERM)
 
-        before = {number: signal.signal(number, end) for number in ENDING_SIGNALS}
-        try:
-            code = child.wait()
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
+    before = {number: signal.signal(number, end) for number in ENDING_SIGNALS}
+    try:
+        with contextlib.ExitStack() as stack:
+            for command, options in commands:
+                words = [str(word) for word in command]
+                children.append(stack.enter_context(subprocess.Popen(words, **options)))
+                if received:  # between the last child and this one
+                    children[-1].send_signal(signal.SIGTERM)
+            codes = [child.wait() for child in children]
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
     if received and not goes_on:
         sys.exit(128 + received[0])
-    return code if code >= 0 else 128 - code
+    return [code if code >= 0 else 128 - code for code in codes]
+
+
+def run_child(command, goes_on=False, **options):
+    """Runs one command as run_children does; returns its exit code."""
+    return run_children([(command, options)], goes_on)[0]
 
 
 def run_bootstrap(*words):

@@ -280,9 +280,9 @@ std::vector<FeatureGroup> FeatureGroups(const Scenario& scenario) {
   // Only where the reward depends on it.
   const bool costs_energy = scenario.energy && scenario.energy->weight > 0.0;
   if (costs_energy) groups.push_back({"energy", {"energy_used"}, WriteEnergy});
-  if (scenario.view.routes) groups.push_back({"waterways", RouteNames(scenario), WriteRoutes});
+  if (scenario.view.routes) groups.push_back({"routes", RouteNames(scenario), WriteRoutes});
   if (scenario.view.lookahead_risk)
-    groups.push_back({"courses", LookaheadRiskNames(), WriteLookaheadRisks});
+    groups.push_back({"lookahead_risk", LookaheadRiskNames(), WriteLookaheadRisks});
   if (scenario.view.kinds) groups.push_back({"kinds", KindNames(scenario), WriteKinds});
   const auto is_empty = [](const FeatureGroup& group) { return group.names.empty(); };
   groups.erase(std::remove_if(groups.begin(), groups.end(), is_empty), groups.end());

@@ -61,7 +61,7 @@ class Writer {
     for (const DisasterSpec& disaster : plan_.presets) WritePreset(disaster);
     WriteDamage();
     WriteEnergy();
-    Line(plan_.routes ? "view: {mode: full, waterways: true}" : "view: {mode: full}");
+    Line(plan_.routes ? "view: {mode: full, routes: true}" : "view: {mode: full}");
     if (!plan_.layers.empty()) WriteSeas();
     return std::move(yaml_);
   }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <sstream>
 
 #include "aquafarm/base/hash.h"
@@ -87,11 +88,31 @@ namespace {
 
 constexpr std::size_t kMaxFileBytes = 4U << 20U;  // 10,000 waypoints or a sea need under 2 MiB
 
-std::string Write(const Scenario& scenario) {
-  internal::YamlWriter writer;
+std::string Write(const Scenario& scenario, bool old_names) {
+  internal::YamlWriter writer(old_names);
   internal::WorldFrame unused;
   internal::VisitScenario(writer, scenario, unused);
   return writer.text();
+}
+
+// Puts a line for each key that has an old name into `notices`.
+Scenario Parse(const std::string& text, const std::string& origin_name,
+               std::vector<std::string>& notices) {
+  if (text.size() > kMaxFileBytes) {
+    throw InputError(origin_name + ": got more than " + std::to_string(kMaxFileBytes) +
+                     " bytes, expected a scenario file");
+  }
+  Scenario scenario;
+  notices = internal::ReadYaml(
+      text, origin_name, "a scenario",
+      [&](internal::YamlReader& reader) {
+        internal::WorldFrame frame;
+        frame.folder = std::filesystem::path(origin_name).parent_path().string();
+        internal::VisitScenario(reader, scenario, frame);
+      },
+      [&scenario] { ValidateScenario(scenario); });
+  scenario.hash = HashScenario(scenario);
+  return scenario;
 }
 
 }  // namespace
@@ -106,28 +127,18 @@ Scenario LoadScenario(const std::string& path) {
                      ": cannot read: " + (errno != 0 ? std::strerror(errno) : "not a plain file"));
   }
   text.resize(static_cast<std::size_t>(file.gcount()));
-  return ParseScenario(text, path);
-}
-
-Scenario ParseScenario(const std::string& text, const std::string& origin_name) {
-  if (text.size() > kMaxFileBytes) {
-    throw InputError(origin_name + ": got more than " + std::to_string(kMaxFileBytes) +
-                     " bytes, expected a scenario file");
-  }
-  Scenario scenario;
-  internal::ReadYaml(
-      text, origin_name, "a scenario",
-      [&](internal::YamlReader& reader) {
-        internal::WorldFrame frame;
-        frame.folder = std::filesystem::path(origin_name).parent_path().string();
-        internal::VisitScenario(reader, scenario, frame);
-      },
-      [&scenario] { ValidateScenario(scenario); });
-  scenario.hash = HashScenario(scenario);
+  std::vector<std::string> notices;
+  Scenario scenario = Parse(text, path, notices);
+  for (const std::string& line : notices) std::cerr << line << '\n';
   return scenario;
 }
 
-std::string ToYaml(const Scenario& scenario) { return Write(scenario); }
+Scenario ParseScenario(const std::string& text, const std::string& origin_name) {
+  std::vector<std::string> unused;
+  return Parse(text, origin_name, unused);
+}
+
+std::string ToYaml(const Scenario& scenario) { return Write(scenario, /*old_names=*/false); }
 
 std::uint64_t HashScenario(const Scenario& scenario) {
   Scenario rules = scenario;
@@ -140,7 +151,8 @@ std::uint64_t HashScenario(const Scenario& scenario) {
       for (Waypoint& point : forecast.points) point.wind_mps.reset();
     }
   }
-  return HashBytes(Write(rules));
+  // By the names of version 0.1.0, so that bags and checkpoints of that version keep their hashes.
+  return HashBytes(Write(rules, /*old_names=*/true));
 }
 
 std::int64_t ParseUtc(const std::string& name, const std::string& text) {

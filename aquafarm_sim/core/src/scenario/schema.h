@@ -147,8 +147,8 @@ void VisitView(Archive& a, S& s) {
     b.Field("forecast_error_km", s.view.forecast_error_km,
             ListOf<Interval<float>>{{0.0F, 10000.0F}, Archive::kReads ? 3U : 0U, 3});
     b.Always();
-    b.Field("waterways", s.view.routes, AnyFlag{});
-    b.Field("courses", s.view.lookahead_risk, AnyFlag{});
+    b.Renamed("routes", "waterways", s.view.routes, AnyFlag{});
+    b.Renamed("lookahead_risk", "courses", s.view.lookahead_risk, AnyFlag{});
     VisitViewKinds(b, s.view);
     b.When(Archive::kReads || s.view.disaster_slots > 0, "");
     b.Field("disaster_slots", s.view.disaster_slots, Interval<std::int32_t>{0, kMaxDisasters});
@@ -279,6 +279,10 @@ class FieldChecker {
 
   template <typename T, typename Domain>
   void Field(const char* key, const T& value, const Domain& domain, Need = Need::kOptional) const {
+    Check(Join(path_, key), value, domain);
+  }
+  template <typename T, typename Domain>
+  void Renamed(const char* key, const char*, const T& value, const Domain& domain) const {
     Check(Join(path_, key), value, domain);
   }
   template <typename Visit>

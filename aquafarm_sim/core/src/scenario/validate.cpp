@@ -253,7 +253,7 @@ void CheckPlaces(const Scenario& scenario) {
       static_cast<std::uint64_t>(scenario.CellCount()) *
       static_cast<std::uint64_t>(scenario.PortCount() + scenario.FetchableCount());
   if (scenario.view.NeedsRoutes() && routes > kMaxRoutes) {
-    throw FieldError(scenario.view.tokens ? "view.tokens" : "view.waterways",
+    throw FieldError(scenario.view.tokens ? "view.tokens" : "view.routes",
                      "needs " + Format(routes) +
                          " routes (cells times ports and devices), expected at most " +
                          Format(kMaxRoutes));

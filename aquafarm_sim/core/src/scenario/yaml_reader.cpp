@@ -132,6 +132,17 @@ void YamlReader::When(bool used, const char* condition) {
   condition_ = condition;
 }
 
+bool YamlReader::IsOld(const char* key, const char* old_key) {
+  if (nodes_.count(old_key) == 0) return false;
+  const std::string path = Join(path_, old_key);
+  if (nodes_.count(key) > 0) {
+    throw FieldError(path, "got both " + Join(path_, key) + " and " + path +
+                               ", its old name; expected one of them");
+  }
+  lines_.PutOld({path, key});
+  return true;
+}
+
 const YAML::Node* YamlReader::Take(const char* key) {
   const auto found = nodes_.find(key);
   if (!used_) {
@@ -197,8 +208,10 @@ std::size_t YamlReader::ReadName(const std::string& path, const YAML::Node& node
   throw Refusal(path, node, "one of " + List(names) + DidYouMean(text, names));
 }
 
-void ReadYaml(const std::string& text, const std::string& origin_name, const std::string& what,
-              const std::function<void(YamlReader&)>& visit, const std::function<void()>& check) {
+std::vector<std::string> ReadYaml(const std::string& text, const std::string& origin_name,
+                                  const std::string& what,
+                                  const std::function<void(YamlReader&)>& visit,
+                                  const std::function<void()>& check) {
   CheckText(text, origin_name);
   const YAML::Node document = ParseDocument(text, origin_name, what);
   LineMap lines;
@@ -213,6 +226,12 @@ void ReadYaml(const std::string& text, const std::string& origin_name, const std
   } catch (const YAML::Exception& error) {
     throw InputError(Place(origin_name, error.mark.line + 1) + "invalid YAML: " + error.msg);
   }
+  std::vector<std::string> notices;
+  for (const OldName& old : lines.old_names()) {
+    notices.push_back(Place(origin_name, lines.Find(old.path)) + old.path + " is now called '" +
+                      old.new_key + "'; the old name still works");
+  }
+  return notices;
 }
 
 }  // namespace aquafarm::internal

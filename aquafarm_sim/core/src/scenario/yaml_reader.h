@@ -10,15 +10,24 @@
 
 namespace aquafarm::internal {
 
-/// Line numbers of the keys read so far, by path.
+/// A key that was read by its old name.
+struct OldName {
+  std::string path;
+  std::string new_key;
+};
+
+/// Line numbers of the keys read so far, by path, and those with an old name.
 class LineMap {
  public:
   void Put(const std::string& path, const YAML::Node& node);
   /// Returns the line of a path, or of the nearest enclosing block; 0 if unknown.
   int Find(std::string path) const;
+  void PutOld(OldName name) { old_names_.push_back(std::move(name)); }
+  const std::vector<OldName>& old_names() const { return old_names_; }
 
  private:
   std::map<std::string, int> lines_;
+  std::vector<OldName> old_names_;
 };
 
 /// Archive that fills structs from a block of keys. Finish rejects keys that were not visited.
@@ -44,6 +53,12 @@ class YamlReader {
     } else if (need == Need::kRequired && used_) {
       throw FieldError(path, "missing, expected " + Expected(value, domain));
     }
+  }
+
+  /// As Field, for a key that has an old name, which is still read.
+  template <typename T, typename Domain>
+  void Renamed(const char* key, const char* old_key, T& value, const Domain& domain) {
+    Field(IsOld(key, old_key) ? old_key : key, value, domain);
   }
 
   template <typename Visit>
@@ -86,6 +101,9 @@ class YamlReader {
     child.Finish();
   }
 
+  /// Returns whether the block has a key by its old name, and remembers that.
+  /// @throws FieldError if it has both names
+  bool IsOld(const char* key, const char* old_key);
   /// Returns the node of a key, or nullptr if it is absent.
   const YAML::Node* Take(const char* key);
   static void CheckList(const std::string& path, const YAML::Node& node,
@@ -190,8 +208,11 @@ class YamlReader {
 /// Reads a YAML text that consists of one block of keys. `visit` reads the keys, the remaining keys
 /// are rejected, and `check` then validates the result.
 /// @param what description of such a file for messages, for example "a scenario"
+/// @return a line for the user for each key that has an old name
 /// @throws InputError "file:line: key: …"
-void ReadYaml(const std::string& text, const std::string& origin_name, const std::string& what,
-              const std::function<void(YamlReader&)>& visit, const std::function<void()>& check);
+std::vector<std::string> ReadYaml(const std::string& text, const std::string& origin_name,
+                                  const std::string& what,
+                                  const std::function<void(YamlReader&)>& visit,
+                                  const std::function<void()>& check);
 
 }  // namespace aquafarm::internal

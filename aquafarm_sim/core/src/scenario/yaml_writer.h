@@ -9,6 +9,9 @@ namespace aquafarm::internal {
 class YamlWriter {
  public:
   static constexpr bool kReads = false;
+  /// @param old_names  whether renamed keys get their old names
+  explicit YamlWriter(bool old_names = false) : old_names_(old_names) {}
+
   static bool Has(const char*, bool fallback) { return fallback; }
   void When(bool used, const char*) { used_ = used; }
   void Always() { used_ = true; }
@@ -28,6 +31,10 @@ class YamlWriter {
   }
   void Field(const char* key, const std::string& value, LinesOf, Need = Need::kOptional) {
     if (used_) Block(key, value);
+  }
+  template <typename T, typename Domain>
+  void Renamed(const char* key, const char* old_key, const T& value, const Domain& domain) {
+    Field(old_names_ ? old_key : key, value, domain);
   }
   template <typename Visit>
   void Struct(const char* key, const Visit& visit) {
@@ -90,6 +97,7 @@ class YamlWriter {
   void Block(const char* key, const std::string& lines);
 
   std::string text_;
+  bool old_names_;
   std::size_t depth_{0};
   bool dash_{false};
   bool used_{true};

@@ -50,6 +50,23 @@ TEST_P(InvalidScenario, IsRefusedInTheWordsOfItsFirstLine) {
   }
 }
 
+TEST(RenamedKey, IsReadByItsOldNameWithOneLineThatGivesTheNewOne) {
+  const std::string start = "name: x\nlayout: {ports: {count: 1}, devices: {count: 1}}\nview:\n";
+  const fs::path path = fs::path(testing::TempDir()) / "old_names.yaml";
+  std::ofstream(path) << start << "  waterways: true\n  courses: true\n";
+  testing::internal::CaptureStderr();
+  const Scenario scenario = LoadScenario(path.string());
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            path.string() +
+                ":4: view.waterways is now called 'routes'; the old name still works\n" +
+                path.string() +
+                ":5: view.courses is now called 'lookahead_risk'; the old name still works\n");
+  EXPECT_TRUE(scenario.view.routes && scenario.view.lookahead_risk);
+  const std::string text = ToYaml(scenario);
+  EXPECT_EQ(text.find("waterways"), std::string::npos);
+  EXPECT_EQ(ParseScenario(text, "new.yaml").hash, scenario.hash);
+}
+
 std::vector<fs::path> InvalidFiles() {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(AQUAFARM_CORE_DIR "/test/invalid_scenarios")) {

@@ -95,7 +95,7 @@ TEST(DangerMarkers, HaveLabelsInTheFarmThatCoverNeitherEachOtherNorDevices) {
     scene.state.devices.push_back(test::MakeDevice(i, 0, 0, 11 + i, 1.0F));
   }
   const auto markers = scene.Draw();
-  const auto half = [](const Marker& label) { return 0.25 * label.scale.z * label.text.size(); };
+  const auto half = [](const Marker& label) { return 0.22 * label.scale.z * label.text.size(); };
   for (int i = 0; i < 4; ++i) {
     const Marker& label = markers.at({"danger_label", i});
     EXPECT_GE(label.pose.position.x - half(label), -501.0);
@@ -291,7 +291,27 @@ TEST(DangerMarkers, FollowTheTrackOfTheScenario) {
   const auto named = scene.Draw();
   EXPECT_EQ(named.at({"alarm", 0}).text,
             "typhoon over F0: gale now, hurricane force (64 kt) in 30 min");
-  EXPECT_EQ(named.at({"danger_label", 0}).text, "F0: gale now, hurricane force in 30 min");
+  EXPECT_EQ(named.at({"danger_label", 0}).text, "F0: hurricane force in 30 min");
+}
+
+TEST(DangerMarkers, PutAHeadlineThatIsWiderThanTheFarmInTwoLines) {
+  Scene scene;
+  scene.SetTrackTo(2);
+  scene.spec.scenario_yaml.replace(scene.spec.scenario_yaml.find("    track:"), 0,
+                                   "    ring_winds_kt: [64, 34]\n");
+  scene.spec.has_start_time = scene.spec.has_origin = true;
+  scene.spec.origin_longitude_deg = 122.7;
+  scene.spec.step_duration_s = 3600.0;
+  scene.state.world_time = ros::Time(1627143360, 0);
+  const Marker alarm = scene.Draw().at({"alarm", 0});
+  const double side_m = 25000.0;
+  std::size_t from = 0;
+  for (std::size_t end = 0; end != std::string::npos; from = end + 1) {
+    end = alarm.text.find('\n', from);
+    // A letter is at most 0.56 of the height wide on average.
+    const auto letters = double(std::min(end, alarm.text.size()) - from);
+    EXPECT_LT(0.45 * letters * alarm.scale.z, 1.1 * side_m) << alarm.text;
+  }
 }
 
 }  // namespace

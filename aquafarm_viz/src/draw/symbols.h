@@ -60,9 +60,6 @@ struct Fonts {
   Font title;
 };
 
-/// Returns the tick spacing of an axis [cells]: 1, 2 or 5 times a power of ten, min `min_px`.
-int TickStep(double cell_px, double min_px);
-
 /// Draws the constant parts of an episode: sea, islands, rocks, axes, legend.
 cv::Mat DrawBackground(const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                        const Fonts& fonts, ImageSize size);

@@ -106,10 +106,8 @@ TEST(Outlook, NamesTheWindsOfRingsThatTheScenarioGives) {
 
 TEST(Outlook, NamesTheWorstRingToComeAfterTheNext) {
   Scene scene;
-  DeviceOutlook device{3, 0.0, 0U, "", {}};
-  device.arrivals = {{10.0, -5.0, "gale", 0U, 34},
-                     {40.0, -10.0, "storm", 0U, 50},
-                     {60.0, -20.0, "hurricane force", 0U, 64}};
+  DeviceOutlook device{3, 0.0, 0U, 0, {}};
+  device.arrivals = {{10.0, -5.0, 0U, 34}, {40.0, -10.0, 0U, 50}, {60.0, -20.0, 0U, 64}};
   Outlook outlook;
   outlook.devices = {device};
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),

@@ -59,16 +59,18 @@ TEST(Region, FindsWhereAStormIsNearest) {
   EXPECT_EQ(ClosestApproach(spec, track, 20.0).step, 20.0) << "it moves away";
 }
 
-TEST(Region, IsShownForAFarDisasterAlone) {
+TEST(Region, IsShownForADisasterWhoseCentreIsOutsideAlone) {
   auto spec = test::MakeSpec();
   auto state = test::MakeState();
   state.disasters = {test::MakeDisaster(0, 12.0F, 12.0F)};
   const cv::Mat near = Panel(DrawFarm(spec, state, kSize));
-  state.disasters[0].x = 34.0F;
+  state.disasters[0].x = 13.0F;
   EXPECT_LT(cv::norm(near, Panel(DrawFarm(spec, state, kSize)), cv::NORM_INF), 1.0)
-      << "the map's pointer is enough";
-  state.disasters[0].x = 300.0F;
-  EXPECT_GT(cv::norm(near, Panel(DrawFarm(spec, state, kSize))), 1000.0);
+      << "the map shows it";
+  for (const float outside : {34.0F, 300.0F}) {
+    state.disasters[0].x = outside;
+    EXPECT_GT(cv::norm(near, Panel(DrawFarm(spec, state, kSize))), 1000.0) << outside;
+  }
   state.disasters[0].steps_left = 0;
   auto calm = state;
   calm.disasters[0].x = 12.0F;

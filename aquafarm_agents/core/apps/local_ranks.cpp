@@ -65,27 +65,27 @@ pid_t StartRank(int rank, int ranks, int port, char** argv) {
   _exit(static_cast<int>(ExitCode::kInternal));
 }
 
-/// The ranks of one training. After one was ended by a signal, the others see it within seconds,
-/// except those that still wait for it at the start: they are ended after kLongestWait.
+// The ranks of one training. After one was ended by a signal, the others see it within seconds,
+// except those that still wait for it at the start: they are ended after kLongestWait.
 class LocalRanks {
  public:
   LocalRanks(int ranks, char** argv) {
     const int port = FreePort();
-    for (int rank = 0; rank < ranks && !start_error_; ++rank) {
+    for (int rank = 0; rank < ranks; ++rank) {
       const pid_t pid = StartRank(rank, ranks, port, argv);
       if (pid > 0) {
         pids_.push_back(pid);
-      } else {
-        start_error_ = errno;
+        continue;
       }
+      std::fprintf(stderr, "ranks: cannot start rank %d of %d: %s; start fewer ranks\n", rank,
+                   ranks, std::strerror(errno));
+      result_ = static_cast<int>(ExitCode::kRankLost);
+      End();
+      return;
     }
-    if (!start_error_) return;
-    std::fprintf(stderr, "ranks: cannot start rank %zu of %d: %s; start fewer ranks\n",
-                 pids_.size(), ranks, std::strerror(*start_error_));
-    Signal(SIGKILL);
   }
 
-  /// Waits for the end of all ranks. @returns the exit code of the first that failed
+  // Waits for the end of all ranks. Returns the exit code of the first that failed.
   int Wait() {
     while (running() > 0) {
       if (stop_requested && !is_forwarded_) {
@@ -96,7 +96,7 @@ class LocalRanks {
       for (std::size_t rank = 0; rank < pids_.size(); ++rank) Look(rank);
       EndThoseThatWait();
     }
-    return start_error_ ? static_cast<int>(ExitCode::kRankLost) : result_;
+    return result_;
   }
 
  private:
@@ -113,35 +113,37 @@ class LocalRanks {
     }
   }
 
+  void End() {
+    is_ending_ = true;
+    Signal(SIGKILL);
+  }
+
   // Notes the end of a rank.
   void Look(std::size_t rank) {
     pid_t& pid = pids_[rank];
     int status = 0;
     if (pid == 0 || waitpid(pid, &status, WNOHANG) != pid) return;
     pid = 0;
-    if (WIFEXITED(status)) {
-      if (result_ == 0) result_ = WEXITSTATUS(status);
-      return;
+    const bool is_killed = WIFSIGNALED(status);
+    if (result_ == 0) {
+      result_ = is_killed ? static_cast<int>(ExitCode::kRankLost) : WEXITSTATUS(status);
     }
-    if (result_ == 0) result_ = static_cast<int>(ExitCode::kRankLost);
-    if (is_ending_ || start_error_) return;  // by Signal
+    if (!is_killed || is_ending_) return;
     std::fprintf(stderr, "rank %zu was ended by signal %d\n", rank, WTERMSIG(status));
     if (!killed_at_) killed_at_ = Clock::now();
   }
 
   void EndThoseThatWait() {
-    if (is_ending_ || !killed_at_ || Clock::now() - *killed_at_ < kLongestWait) return;
-    if (running() == 0) return;
-    is_ending_ = true;
+    if (is_ending_ || running() == 0) return;
+    if (!killed_at_ || Clock::now() - *killed_at_ < kLongestWait) return;
     std::fprintf(stderr,
                  "ranks: %td of %zu have not ended within %d s after another rank; ending them; "
                  "resume from the last checkpoint\n",
                  running(), pids_.size(), static_cast<int>(kLongestWait.count()));
-    Signal(SIGKILL);
+    End();
   }
 
-  std::vector<pid_t> pids_;  // of the ranks, 0 after the end
-  std::optional<int> start_error_;
+  std::vector<pid_t> pids_;                     // of the ranks, 0 after the end
   std::optional<Clock::time_point> killed_at_;  // the first rank that was ended by a signal
   bool is_forwarded_{};
   bool is_ending_{};

@@ -273,10 +273,7 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     if (!IsDrawn(disaster)) continue;
     const SignPlace sign = PlaceSign(disaster, layout);
     if (sign.is_inside) continue;
-    const std::string text = DisasterName(disaster.kind) + StrengthText(courses[i].ahead.front()) +
-                             ", centre " +
-                             DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) + " " +
-                             PointFromFarm(spec, disaster.x, disaster.y);
+    const std::string text = CentreText(spec, disaster, courses[i]);
     const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
     const auto place = space.Take(size, sign.at, double(map.cols + map.rows));
     if (place) DrawLabel(map, fonts.bold, text, place->tl(), layout);

@@ -40,8 +40,7 @@ void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                 const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
                 FreeSpace& space, const Layout& layout, const Fonts& fonts);
 
-/// Labels the pointers to disasters outside the map: "typhoon, centre 89 km SE", or with its
-/// strength "typhoon 37 m/s (72 kt), centre 89 km SE".
+/// Labels the pointers to disasters outside the map with CentreText.
 void LabelPointers(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                    const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
                    FreeSpace& space, const Layout& layout, const Fonts& fonts);

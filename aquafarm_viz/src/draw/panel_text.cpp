@@ -69,17 +69,16 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
   pair("return", Number(state.joint_return, 1),
        state.joint_return < 0.0F ? layout.style->bad : layout.style->good);
   const std::string full = is_over ? "" : OutlookText(spec, state, outlook);
-  const bool needs_room = !full.empty() && right - fonts.bold.Width(full) >= line.x();
-  const int seed = fonts.small.Width("seed") + fonts.bold.Width(SeedText(state.seed)) + 2 * gap;
-  // The seed gives way to the danger in full.
-  if (!needs_room || right - fonts.bold.Width(full) >= line.x() + seed) {
-    pair("seed", SeedText(state.seed), layout.style->faint);
-  }
+  const int full_left = right - fonts.bold.Width(full);
+  const std::string seed = SeedText(state.seed);
+  const int seed_end = line.x() + fonts.small.Width("seed") + fonts.bold.Width(seed) + 2 * gap;
+  const bool gives_way = !full.empty() && line.x() <= full_left && full_left < seed_end;
+  if (!gives_way) pair("seed", seed, layout.style->faint);
   if (state.observer >= 0)
     pair("as seen by ship", std::to_string(state.observer), layout.style->words);
   if (state.paused) line.Put(fonts.bold, "paused", layout.style->GradeText(2), gap);
   if (brief.empty()) return;
-  const std::string& danger = right - fonts.bold.Width(full) >= line.x() ? full : brief;
+  const std::string& danger = full_left >= line.x() ? full : brief;
   const int danger_left = std::max(left, right - fonts.bold.Width(danger));
   fonts.bold.Draw(image, danger, {danger_left, layout.Px(36)},
                   Bgr(IsInDanger(outlook) ? layout.style->alarm : layout.style->words));

@@ -367,11 +367,9 @@ void LabelPointers(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
   const double radius = 0.8 * maker.thing_m() / maker.cell_m();
   for (const EdgePointer& pointer : pointers) {
     const DisasterState& disaster = state.disasters[pointer.disaster];
-    const std::string text = DisasterName(disaster.kind) +
-                             StrengthText(courses[pointer.disaster].ahead.front()) + ", centre " +
-                             DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) + " " +
-                             PointFromFarm(spec, disaster.x, disaster.y) + "\n" +
-                             ApproachText(spec, disaster, courses[pointer.disaster]);
+    const Course& course = courses[pointer.disaster];
+    const std::string text =
+        CentreText(spec, disaster, course) + "\n" + ApproachText(spec, disaster, course);
     const auto plate = labels.Place(text, pointer.at.x, pointer.at.y, /*must_show=*/true);
     AddText(array, maker, "pointer_label", disaster.id, *plate, text);
     AddLeader(array, maker, "pointer_label", disaster.id,

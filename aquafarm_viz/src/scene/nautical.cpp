@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "aquafarm/tracks/track.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
@@ -83,9 +84,8 @@ std::string WindText(const TrackPoint& point) {
 }
 
 std::string StrengthText(const TrackPoint& point) {
-  constexpr double kKnot_mps = 1852.0 / 3600.0;
   if (!point.wind_mps) return "";
-  return " " + WindText(point) + " (" + Number(*point.wind_mps / kKnot_mps, 0) + " kt)";
+  return " " + WindText(point) + " (" + Number(*point.wind_mps / aquafarm::kMpsPerKnot, 0) + " kt)";
 }
 
 std::string HoursText(double seconds) {

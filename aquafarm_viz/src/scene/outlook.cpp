@@ -51,9 +51,13 @@ RingRisk RiskAt(const TrackPoint& storm, double x, double y) {
   return worst;
 }
 
-const char* NameOf(const Course& course, std::size_t ring) {
-  return ring < course.ring_winds_kt.size() ? aquafarm::WindName(course.ring_winds_kt[ring]) : "";
+// Returns the wind of a ring [kn]; 0 if it is not given.
+std::int32_t WindOf(const Course& course, std::size_t ring) {
+  return ring < course.ring_winds_kt.size() ? course.ring_winds_kt[ring] : 0;
 }
+
+// Returns the name of the wind of a ring; empty if it is not given.
+const char* NameOf(std::int32_t wind_kt) { return wind_kt > 0 ? aquafarm::WindName(wind_kt) : ""; }
 
 // Adds the arrivals of one step to the outlook of each device.
 void AddStep(const FarmState& state, const std::vector<Course>& courses, int step,
@@ -73,15 +77,13 @@ void AddStep(const FarmState& state, const std::vector<Course>& courses, int ste
         if (risk < device.risk_now) {
           device.risk_now = risk;
           device.disaster_now = i;
-          device.name_now = NameOf(courses[i], ring);
+          device.wind_now_kt = WindOf(courses[i], ring);
         }
         continue;
       }
       const double worst = device.arrivals.empty() ? device.risk_now : device.arrivals.back().risk;
       if (risk < worst - kWorse) {
-        const auto& winds = courses[i].ring_winds_kt;
-        device.arrivals.push_back({double(step), risk, NameOf(courses[i], ring), i,
-                                   ring < winds.size() ? winds[ring] : 0});
+        device.arrivals.push_back({double(step), risk, i, WindOf(courses[i], ring)});
       }
     }
   }
@@ -181,7 +183,7 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
   for (const DeviceState& device : state.devices) {
     if (device.status == DeviceState::DEPLOYED && InGrid(spec, device.x, device.y)) {
       devices.push_back(&device);
-      outlook.devices.push_back({device.id, 0.0, 0U, "", {}});
+      outlook.devices.push_back({device.id, 0.0, 0U, 0, {}});
     }
   }
   outlook.is_known = devices.size() <= kMaxOutlookDevices;
@@ -216,14 +218,20 @@ std::string AheadText(const FarmSpec& spec, double steps) {
 
 namespace {
 
-// Returns "risk -5", or "gale" where the wind is given.
-std::string NamedRisk(const char* name, double risk) {
-  return *name == '\0' ? "risk " + Number(risk, 0) : name;
-}
-
 // Returns "risk -10", or "storm (50 kt)" where the wind is given.
 std::string RingText(const RingArrival& ring) {
-  return ring.wind_kt > 0 ? aquafarm::RingName(ring.wind_kt) : NamedRisk(ring.name, ring.risk);
+  return ring.wind_kt > 0 ? aquafarm::RingName(ring.wind_kt) : "risk " + Number(ring.risk, 0);
+}
+
+// Returns "risk -5 now", or "gale now" where the wind is given.
+std::string NowText(const DeviceOutlook& device) {
+  const std::string name = NameOf(device.wind_now_kt);
+  return (name.empty() ? "risk " + Number(device.risk_now, 0) : name) + " now";
+}
+
+// Returns "gale in 2 h"; the wind must be given.
+std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
+  return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
 }
 
 // Returns ", hurricane force (64 kt) in 9 h": the worst ring to come, if it is not the next one.
@@ -262,8 +270,7 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
   const DeviceOutlook& first = outlook.devices.front();
   const bool is_now = first.risk_now < 0.0;
   const std::string now = is_now ? DisasterName(state.disasters[first.disaster_now].kind) +
-                                       " over " + DeviceLabel(first.id) + ": " +
-                                       NamedRisk(first.name_now, first.risk_now) + " now"
+                                       " over " + DeviceLabel(first.id) + ": " + NowText(first)
                                  : "";
   if (first.arrivals.empty()) return is_now ? now : KnownText(spec, outlook);
   const RingArrival& next = first.arrivals.front();
@@ -284,27 +291,24 @@ std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
 }
 
 std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
-  const std::string before = device.risk_now < 0.0 ? device.name_now : "";
-  const std::string after = device.arrivals.empty() ? "" : device.arrivals.front().name;
+  const std::string before = device.risk_now < 0.0 ? NameOf(device.wind_now_kt) : "";
+  const std::string after = device.arrivals.empty() ? "" : NameOf(device.arrivals.front().wind_kt);
   // The same ring with a worse risk has no name of its own.
   const bool has_names = (device.risk_now == 0.0 || !before.empty()) &&
                          (device.arrivals.empty() || !after.empty()) && before != after;
   if (!has_names) return RiskText(spec, device);
   const std::string now = before.empty() ? "" : before + " now";
   if (after.empty()) return now;
-  const std::string next = now + (now.empty() ? "" : ", ") + after + " in " +
-                           AheadText(spec, device.arrivals.front().steps);
+  const std::string next =
+      now + (now.empty() ? "" : ", ") + NamedArrival(spec, device.arrivals.front());
   const RingArrival& worst = device.arrivals.back();
-  if (*worst.name == '\0' || worst.name == after) return next;
-  return next + ", " + worst.name + " in " + AheadText(spec, worst.steps);
+  const std::string last = NameOf(worst.wind_kt);
+  return last.empty() || last == after ? next : next + ", " + NamedArrival(spec, worst);
 }
 
 std::string WorstText(const FarmSpec& spec, const DeviceOutlook& device) {
-  if (device.arrivals.empty() || *device.arrivals.back().name == '\0') {
-    return DangerText(spec, device);
-  }
-  return device.arrivals.back().name + std::string(" in ") +
-         AheadText(spec, device.arrivals.back().steps);
+  const bool is_named = !device.arrivals.empty() && device.arrivals.back().wind_kt > 0;
+  return is_named ? NamedArrival(spec, device.arrivals.back()) : DangerText(spec, device);
 }
 
 std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {
@@ -313,6 +317,13 @@ std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const ch
   const RingArrival& next = device.arrivals.front();
   return now + (now.empty() ? "" : ", ") + Number(next.risk, 0) + between +
          AheadText(spec, next.steps);
+}
+
+std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
+                       const Course& course) {
+  return DisasterName(disaster.kind) + StrengthText(course.ahead.front()) + ", centre " +
+         DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) + " " +
+         PointFromFarm(spec, disaster.x, disaster.y);
 }
 
 std::string ApproachText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,

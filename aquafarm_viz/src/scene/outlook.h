@@ -19,7 +19,6 @@ namespace aquafarm_viz {
 struct RingArrival {
   double steps{};          ///< from now, above 0
   double risk{};           ///< risk within the ring, below 0
-  const char* name{""};    ///< of the ring's wind, such as "gale"; empty: not given
   std::size_t disaster{};  ///< index in FarmState.disasters
   std::int32_t wind_kt{};  ///< of the ring; 0: not given
 };
@@ -29,7 +28,7 @@ struct DeviceOutlook {
   std::int32_t id{};
   double risk_now{};                  ///< risk at its cell; 0 outside all rings
   std::size_t disaster_now{};         ///< index of the disaster with this risk; 0 outside all rings
-  const char* name_now{""};           ///< of the wind of that ring; empty: not given
+  std::int32_t wind_now_kt{};         ///< of that ring; 0: not given
   std::vector<RingArrival> arrivals;  ///< each worse than the one before and than risk_now
 };
 
@@ -91,6 +90,11 @@ std::string WorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& 
 /// @param between  text between risk and time
 std::string RiskText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
                      const char* between = " in ");
+
+/// Returns where the centre of a disaster outside the farm is: "typhoon, centre 89 km SE", or with
+/// its strength "typhoon 37 m/s (72 kt), centre 89 km SE".
+std::string CentreText(const aquafarm_msgs::FarmSpec& spec,
+                       const aquafarm_msgs::DisasterState& disaster, const Course& course);
 
 /// Returns the motion of a disaster and, where its course is given and comes nearer, its closest
 /// approach: "NW at 13 km/h, closest 29 km S in 11 h".

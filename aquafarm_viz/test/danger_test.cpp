@@ -58,7 +58,7 @@ TEST(DangerMarkers, NameTheDeviceTheRiskAndTheCentreOutsideTheFarm) {
   Scene scene;
   const auto markers = scene.Draw();
   EXPECT_EQ(markers.at({"alarm", 0}).text, "typhoon over F0: risk -5 now");
-  EXPECT_EQ(markers.at({"danger_label", 0}).text, "F0: -5 now");
+  EXPECT_EQ(markers.at({"danger_label", 0}).text, "F0: risk -5 now");
   EXPECT_EQ(markers.at({"danger_label", 1}).action, Marker::DELETE);
   EXPECT_EQ(markers.at({"danger", 1}).action, Marker::DELETE);
   EXPECT_EQ(markers.at({"pointer_label", 0}).text, "typhoon, centre 20 km W\nstands still");

@@ -14,7 +14,7 @@ from skimage.metrics import structural_similarity  # noqa: E402
 
 MOST_WINDOW = 7  # cells on a side, as in scikit-image
 FEWEST_CELLS = 10
-_COLUMN = 3.8  # width of a map in the figure [inch]
+_COLUMN = 3.3  # width of a map in the figure [inch]
 
 NOTE = ("Spearman's rho is of the ranks over the cells where both are known; neighbouring cells "
         "are alike, so no significance is given. SSIM is the mean structural similarity (Wang et "
@@ -162,8 +162,8 @@ def draw(text, values, layers, results, path):
                           bbox_to_anchor=(-0.05, 0.24)).set_in_layout(False)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
-    figure.suptitle(f"Where does a start of the ship pay, and does the sea explain it? "
-                    f"({text['policy']} on {text['scenario']}, {episodes})")
+    figure.suptitle(f"Where does a start of the ship pay, and does the sea explain it?\n"
+                    f"{text['policy']} on {text['scenario']}, {episodes}")
     temporary = f"{path}.part"
     figure.savefig(temporary, dpi=110, format="png")
     pyplot.close(figure)

@@ -23,6 +23,7 @@ set(AQUAFARM_DRAWING_SOURCES
   src/draw/sea_layer.cpp
   src/draw/style.cpp
   src/scene/directions.cpp
+  src/scene/graticule.cpp
   src/scene/labels.cpp
   src/scene/layers.cpp
   src/scene/nautical.cpp

@@ -14,30 +14,48 @@ matplotlib.use("Agg")  # needs no display
 from matplotlib import pyplot as plt  # noqa: E402
 
 DPI = 110
+KINDS = {"home": "The device comes home", "gales": "Gales reach the device"}
+
+
+def bins_of(data, key):
+    """The bins of promised chances that have 20 cases or more."""
+    return [one for one in data[key]["diagram"] if one["count"] >= 20]
+
+
+def reliability(data):
+    """What the simulated storms say about the promises, in a sentence."""
+    bins = [one for key in KINDS for one in bins_of(data, key)]
+    far = [100 * (one["kept"]["mean"] - one["promised"]) for one in bins]
+    close = sum(abs(one) <= 5 for one in far)
+    return (f"Promised chances are kept: {close} of {len(bins)} groups of promises within 5 points,\n"
+            f"the others {'at most %.0f' % max(map(abs, far))} points off "
+            f"({data['storms']:,} simulated storms)")
 
 
 def draw_reliability(data, path):
     """Promised against kept chances, with 95 % intervals and the limits of the bars."""
-    figure, axes = plt.subplots(1, 2, figsize=(9, 4.6), sharey=True)
-    titles = {"home": "the device comes home", "gales": "gales reach the device"}
-    for one, (key, title) in zip(axes, titles.items()):
-        bins = [b for b in data[key]["diagram"] if b["count"] >= 20]
+    figure, axes = plt.subplots(1, 2, figsize=(9, 5), sharey=True)
+    for one, (key, title) in zip(axes, KINDS.items()):
+        bins = bins_of(data, key)
         x = [100 * b["promised"] for b in bins]
         y = [100 * b["kept"]["mean"] for b in bins]
-        error = [100 * (b["kept"]["mean"] - b["kept"]["low"]) for b in bins]
-        one.plot([0, 100], [0, 100], color="black", linewidth=0.8)
-        one.fill_between([0, 100], [-5, 95], [5, 105], color="0.88", label="within 5 points")
-        one.errorbar(x, y, yerr=error, fmt="o", color="black", markersize=4, capsize=2,
-                     label="20 bins, 95 % interval")
-        one.set_title(title)
-        one.set_xlabel("promised chance [%]")
+        low = [100 * max(0.0, b["kept"]["mean"] - b["kept"]["low"]) for b in bins]
+        high = [100 * max(0.0, b["kept"]["high"] - b["kept"]["mean"]) for b in bins]
+        one.plot([0, 100], [0, 100], color="black", linewidth=0.8, label="kept exactly")
+        one.fill_between([0, 100], [-5, 95], [5, 105], color="0.85", label="within 5 points")
+        one.errorbar(x, y, yerr=[low, high], fmt="o", color="#0b5394", markersize=5, capsize=3,
+                     label="group of promises,\n95 % interval", clip_on=False, zorder=3)
+        one.set_title(title, fontsize=11.5)
+        one.set_xlabel("promised chance [%]", fontsize=11)
         one.set_xlim(0, 100)
         one.set_ylim(0, 100)
         one.set_aspect("equal")
         one.grid(alpha=0.3)
-    axes[0].set_ylabel("share of cases in which it happened [%]")
-    axes[0].legend(loc="upper left", fontsize=8)
-    figure.suptitle(f"{data['storms']} simulated storms, {data['members']} members")
+    axes[0].set_ylabel("share of cases in which it happened [%]", fontsize=11)
+    axes[0].legend(loc="upper left", fontsize=10)
+    for words, x, y in (("more often\nthan promised", 20, 56), ("less often\nthan promised", 80, 30)):
+        axes[1].text(x, y, words, ha="center", fontsize=10, color="0.3")
+    figure.suptitle(reliability(data), fontsize=12.5, y=1.0)
     figure.savefig(path, dpi=DPI, bbox_inches="tight")
     plt.close(figure)
 
@@ -51,26 +69,37 @@ def finding(storms):
             f"({share:.0%} in all);\nin {less} it saves more than it promised before the storm")
 
 
+def name_of(storm):
+    """The name of a storm in one spelling: the two archives differ in capitals."""
+    name = storm["name"] or storm["id"]
+    return f"{name.title() if name.isupper() else name} {storm['nearest'][:4]}"
+
+
 def draw_back_test(data, path):
     """Saved, promised and clairvoyant value of each recorded storm."""
     storms = data["storms"]
-    figure, axes = plt.subplots(figsize=(7, 0.24 * len(storms) + 1.2))
+    figure, axes = plt.subplots(figsize=(7.6, 0.27 * len(storms) + 1.2))
     places = range(len(storms), 0, -1)
     low = [max(0.0, s["saved"] - s["saved_low"]) for s in storms]
     high = [max(0.0, s["saved_high"] - s["saved"]) for s in storms]
-    axes.barh(places, [s["at_risk"] for s in storms], color="0.9", label="lost if no ship leaves")
+    axes.barh(places, [s["at_risk"] for s in storms], color="0.87",
+              label="at stake: lost if no ship leaves")
+    axes.plot([s["clairvoyant"] for s in storms], places, "|", color="#d55e00", markersize=14,
+              markeredgewidth=2.5, label="saved by a clairvoyant")
     axes.errorbar([s["saved"] for s in storms], places, xerr=[low, high], fmt="o", color="black",
-                  markersize=4, capsize=2, label="saved (mean, smallest to largest)")
-    axes.plot([s["promised"] for s in storms], places, "x", color="tab:blue", label="promised (before the storm)")
-    axes.plot([s["clairvoyant"] for s in storms], places, "|", color="tab:red", markersize=11,
-              label="clairvoyant")
-    axes.set_yticks(list(places), [f"{s['name'] or s['id']} {s['nearest'][:4]}" for s in storms],
-                    fontsize=8)
-    axes.set_xlabel("units of value")
+                  markersize=5, capsize=3, label="saved by the plan (mean, range)")
+    axes.plot([s["promised"] for s in storms], places, "x", color="#0072b2", markersize=7,
+              markeredgewidth=1.8, label="promised before the storm")
+    axes.set_yticks(list(places), [name_of(s) for s in storms], fontsize=10)
+    axes.set_xlabel("value of devices", fontsize=11)
+    axes.set_xlim(-4, None)
     axes.set_ylim(0.3, len(storms) + 0.7)
     axes.grid(alpha=0.3, axis="x")
-    axes.legend(fontsize=8, ncol=2, loc="lower center", bbox_to_anchor=(0.5, 1.0))  # above the bars
-    figure.suptitle(finding(storms), fontsize=11, y=1.03)
+    handles, words = axes.get_legend_handles_labels()
+    order = [words.index(word) for word in sorted(words)]
+    axes.legend([handles[i] for i in order], [words[i] for i in order], fontsize=10, ncol=2,
+                loc="lower center", bbox_to_anchor=(0.45, 1.0))  # above the bars
+    figure.suptitle(finding(storms), fontsize=12, y=1.04)
     figure.savefig(path, dpi=DPI, bbox_inches="tight")
     plt.close(figure)
 

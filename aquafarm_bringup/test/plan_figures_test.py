@@ -46,6 +46,25 @@ class PlanFiguresTest(unittest.TestCase):
         self.assertEqual("ship 1", words.numbered_name(plan, 0))
         self.assertEqual("2: Haixing", words.numbered_name(plan, 1))
 
+    def test_the_region_has_few_labels_and_the_rings_where_the_centre_is_nearest(self):
+        plan = plan_sample.sample(members=100)
+        region = figures.region(plan)
+        ring_labels = [label for label in region["labels"] if label.name == "ring"]
+        self.assertEqual(len(plan["rings"]), len(ring_labels), "rings of one time")
+        nearest = document.Clock(plan["clock"]).day_time(plan_sample.stamp(30))
+        self.assertIn(f"Rings at {nearest}", region["caption"])
+        fixes = [label for label in region["labels"] if label.name in ("recorded", "forecast")]
+        self.assertLessEqual(2, len(fixes))
+        self.assertLessEqual(len(fixes), figures.REGION_LABELS)
+
+    def test_the_region_ends_soon_after_the_last_event(self):
+        plan = plan_sample.sample(members=100)
+        plan["clock"]["end"] = plan_sample.stamp(60)
+        clock = document.Clock(plan["clock"])
+        times = [point["time"] for point in figures.region(plan)["points"]]
+        self.assertIn(clock.day_time(plan_sample.stamp(24)), times)
+        self.assertNotIn(clock.day_time(plan_sample.stamp(54)), times)
+
     def test_an_arrow_at_the_border_points_to_a_storm_off_the_map(self):
         plan = plan_sample.sample(members=100)
         ranch = plan["ranch"]

@@ -23,8 +23,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"
 from aquafarm_report import values_topics  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 
-from aquafarm_report.values import (ValuesError, compare, draw_key, draw_relation, make,  # noqa: E402
-                                    read, strength)
+from aquafarm_report.values import (ValuesError, compare, draw_key, draw_places,  # noqa: E402
+                                    draw_relation, make, read, strength)
 
 
 def slope(height=12, width=14):
@@ -124,6 +124,19 @@ class ValuesTest(unittest.TestCase):
         for words in (axis.get_title(), *(text.get_text() for text in axis.texts)):
             for jargon in ("SSIM", "Spearman", "rho", "turned over", "degC"):
                 self.assertNotIn(jargon, words)
+
+    def test_ports_and_devices_are_marked_at_the_middle_of_their_cells(self):
+        _, axis = pyplot.subplots()
+        self.addCleanup(pyplot.close, "all")
+        draw_places(axis, {"ports": [[0, 2], [3, 1]], "devices": [[4, 4]]}, 0.5)
+        marked = {mark.get_label(): mark.get_offsets().tolist() for mark in axis.collections}
+        self.assertEqual({"port": [[0.25, 1.25], [1.75, 0.75]], "device": [[2.25, 2.25]]}, marked)
+
+    def test_a_file_without_ports_is_drawn_without_them(self):
+        _, axis = pyplot.subplots()
+        self.addCleanup(pyplot.close, "all")
+        draw_places(axis, {}, 0.5)
+        self.assertEqual(0, len(axis.collections))
 
     def test_another_file_is_refused(self):
         path = pathlib.Path(self.folder.name) / "x.json"

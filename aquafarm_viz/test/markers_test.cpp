@@ -52,6 +52,51 @@ TEST(SpecMarkers, ShowEveryThingThatStandsStill) {
   EXPECT_DOUBLE_EQ(markers.at({"sea", 0}).scale.x, 25000.0);
 }
 
+TEST(SpecMarkers, HaveAShoreLineWhereLandMeetsWater) {
+  auto spec = test::MakeSpec();
+  spec.islands = {test::MakeCell(5, 5), test::MakeCell(6, 5), test::MakeCell(0, 9)};
+  const Marker shore = ByKey(SpecMarkers(spec, false)).at({"shore", 0});
+  // Two cells next to each other have six borders with water, one at the farm's edge has three.
+  EXPECT_EQ(shore.points.size(), 6U * 9U);
+  for (const auto& point : shore.points) {
+    EXPECT_FALSE(std::abs(point.x - 5500.0) < 100.0 && std::abs(point.y - 5000.0) < 300.0)
+        << "between two cells of land";
+  }
+}
+
+// The texts of the axes with their places in metres, the longitudes first.
+std::map<std::string, std::pair<double, double>> AxisTexts(const aquafarm_msgs::FarmSpec& spec) {
+  std::map<std::string, std::pair<double, double>> texts;
+  for (const auto& marker : SpecMarkers(spec, false).markers) {
+    if (marker.ns != "axis" || marker.text.empty()) continue;
+    texts[marker.text] = {marker.pose.position.x, marker.pose.position.y};
+  }
+  return texts;
+}
+
+TEST(SpecMarkers, NameLongitudesBelowAndLatitudesOnTheLeft) {
+  auto spec = test::MakeSpec();
+  spec.has_origin = true;
+  spec.origin_latitude_deg = 30.1;
+  spec.origin_longitude_deg = 122.6;
+  const auto texts = AxisTexts(spec);
+  const auto east = texts.at("122-40E");
+  const double m_per_degree = 111320.0 * std::cos(30.1 * M_PI / 180.0);
+  EXPECT_NEAR(east.first, (122.0 + 40.0 / 60.0 - 122.6) * m_per_degree, 100.0);
+  EXPECT_LT(east.second, -500.0);
+  const auto north = texts.at("30-10N");
+  EXPECT_LT(north.first, -500.0);
+  EXPECT_NEAR(north.second, (30.0 + 10.0 / 60.0 - 30.1) * 110850.0, 100.0);
+  spec.origin_latitude_deg = -30.1;
+  EXPECT_EQ(AxisTexts(spec).count("30-00S"), 1U);
+}
+
+TEST(SpecMarkers, NumberCellsWithoutAPlace) {
+  const auto texts = AxisTexts(test::MakeSpec());
+  EXPECT_EQ(texts.count("24"), 1U);
+  EXPECT_EQ(texts.count("25"), 0U);
+}
+
 TEST(SpecMarkers, AreInMetresOfFrameMap) {
   auto spec = test::MakeSpec();
   spec.cell_size_m = 250.0;
@@ -319,9 +364,9 @@ TEST(StateMarkers, StayBelowTheHeightAtWhichRvizCutsOff) {
 }
 
 TEST(StateMarkers, HaveTextOfElevenPixelsInAWindowOf1280x720) {
-  // There the view of the whole farm is about 600 pixels high; whole_view.cpp adds 10 % on each
-  // side.
-  constexpr double kView_px = 600.0 / 1.2;
+  // There the view of the whole farm is about 600 pixels high; whole_view.cpp adds 29 % for the
+  // lines above and below the farm.
+  constexpr double kView_px = 600.0 / 1.29;
   // Measured on the screen: capitals have 0.6 of the scale, and 0.69 of the size of Liberation
   // Sans.
   constexpr double kFontSize = 0.6 / 0.69;
@@ -357,7 +402,7 @@ TEST(ValueLegend, HasTheRangeTheColoursAndTheSymbolsWithinTheViewOfTheFarm) {
   for (const auto& marker : draw().markers) {
     words += marker.text + "|";
     const double side_m = 25.0 * spec.cell_size_m;
-    EXPECT_GT(marker.pose.position.y - 0.5 * marker.scale.z, -0.125 * side_m - 500.0)
+    EXPECT_GT(marker.pose.position.y - 0.5 * marker.scale.z, -0.165 * side_m - 500.0)
         << marker.text;
     EXPECT_LT(marker.pose.position.x + 0.3 * marker.scale.z * double(marker.text.size()), side_m);
     if (marker.colors.empty()) continue;

@@ -157,7 +157,7 @@ TEST(Outlook, OfADeviceInARingIsNow) {
   EXPECT_EQ(outlook.devices[0].risk_now, -20.0);
   EXPECT_TRUE(outlook.devices[0].arrivals.empty());
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon over F3: risk -20 now");
-  EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "-20 now");
+  EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "risk -20 now");
 }
 
 TEST(Outlook, ListsTheDeviceThatIsReachedFirst) {
@@ -183,7 +183,7 @@ TEST(Outlook, ListsADeviceInARingBeforeOneThatIsReachedLater) {
   EXPECT_EQ(outlook.devices[1].id, 6) << "on the edge of the inner ring";
   EXPECT_EQ(outlook.devices[2].id, 3) << "reached in 2 steps";
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon over F2: risk -20 now");
-  EXPECT_EQ(ShortOutlookText(scene.spec, outlook), "F2: -20 now");
+  EXPECT_EQ(ShortOutlookText(scene.spec, outlook), "F2: risk -20 now");
 }
 
 TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
@@ -192,7 +192,7 @@ TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
   const Outlook outlook = scene.outlook();
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
             "typhoon over F3: risk -5 now, risk -20 in about 9 min");
-  EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "-5 now, -20 in 9 min");
+  EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "risk -5 now, -20 in 9 min");
 }
 
 TEST(Outlook, IsInTheHeadLineEvenWhereThereIsLittleSpace) {

@@ -8,7 +8,8 @@ from .document import Clock, amount, parse_time
 from .labels import Label, place, shorten
 from .words import is_unknown, letter, numbered_name, order_text
 
-REGION = 430.0  # side of the region's drawing [px]
+REGION = 330.0  # side of the region's drawing [px]
+REGION_LABELS = 4  # most fixes with a label, so that they can be read
 LINE = (1100.0, 104.0)  # width and left margin of the timeline [px]
 HAZARD_HEIGHT, ROW, AXIS = 62.0, 27.0, 48.0
 CURVE = (520.0, 270.0, 58.0, 44.0)  # width, height, left and lower margin of the loss curve [px]
@@ -19,7 +20,8 @@ def region(plan):
     clock, ranch = Clock(plan["clock"]), plan["ranch"]
     cell_km = ranch["cell_size_m"] / 1000
     middle = [(ranch["width"] - 1) / 2, (ranch["height"] - 1) / 2]
-    first, last = clock.start - datetime.timedelta(hours=18), clock.end
+    first = clock.start - datetime.timedelta(hours=12)
+    last = min(clock.end, clock.start + datetime.timedelta(seconds=horizon_s(plan), hours=6))
     points = [p for p in plan["storm"]["points"] if first <= parse_time(p["time"]) <= last]
     points = points or plan["storm"]["points"][-1:]
     if not points:
@@ -42,7 +44,7 @@ def region(plan):
         "xy": px(*p["at"]), "source": p["source"], "time": clock.day_time(p["time"]),
         "wind": p["wind_mps"]
     } for p in points]
-    rings, caption = _region_rings(plan, points, px, scale / cell_km, clock)
+    rings, caption = _region_rings(plan, points, middle, px, scale / cell_km, clock)
     bar = [{"px": n * km / cell_km * scale, "text": f"{n:g} {unit}"}
            for unit, km in (("km", 1), ("nm", 1.852)) for n in [nice(side * cell_km * 0.25 / km)]]
     lines = {
@@ -74,11 +76,11 @@ def _region_labels(plan, drawn, rings, box):
     """The ranch's name, times and winds at the fixes, and names at the rings."""
     centre = (box["x"] + box["w"] / 2, box["y"] + box["h"] / 2)
     labels = [Label(["ranch"], centre, box["w"] / 2 + 2, 14, name="ranch-name")]
-    for one in drawn[::max(1, math.ceil(len(drawn) / 7))]:
+    for one in drawn[::max(1, math.ceil(len(drawn) / REGION_LABELS))]:
         wind = "" if one["wind"] is None else f", {one['wind']:.0f} m/s"
         labels.append(
             Label([one["time"].split(" ", 1)[1] + wind], one["xy"], 6, 12, name=one["source"]))
-    for ring in rings[:len(plan["rings"])]:
+    for ring in rings:
         x, y = ring["xy"][0], ring["xy"][1] + ring["r"]
         labels.append(Label([plan["rings"][ring["ring"]]["name"]], (x, y), 1, 12, name="ring"))
     points = [(*one["xy"], 30.0) for one in drawn] + [(*centre, 90.0)]
@@ -95,15 +97,17 @@ def _parts(points):
             yield source, points[max(part[0] - 1, 0):part[-1] + 1]
 
 
-def _region_rings(plan, points, px, px_per_km, clock):
-    """(rings, caption): rings at two forecast positions at most, so that they stay apart."""
+def _region_rings(plan, points, middle, px, px_per_km, clock):
+    """(rings, caption): the rings at the future fix that is nearest to the ranch."""
     future = [p for p in points if parse_time(p["time"]) > clock.start and any(p["radii_km"])]
-    chosen = future[len(future) // 3::max(1, len(future) // 2)][:2] or [p for p in points[-1:]]
+    if not future:
+        return [], "No radius of its winds is known."
+    nearest = min(future, key=lambda p: math.dist(p["at"], middle))
     rings = [{
-        "xy": px(*p["at"]), "r": radius * px_per_km, "ring": i, "time": clock.day_time(p["time"])
-    } for p in chosen for i, radius in enumerate(p["radii_km"]) if radius]
-    times = " and ".join(clock.day_time(p["time"]) for p in chosen)
-    return rings, f"Rings at {times}." if rings else "No radius of its winds is known."
+        "xy": px(*nearest["at"]), "r": radius * px_per_km, "ring": i,
+        "time": clock.day_time(nearest["time"])
+    } for i, radius in enumerate(nearest["radii_km"]) if radius]
+    return rings, f"Rings at {clock.day_time(nearest['time'])}, the fix nearest to the ranch."
 
 
 def _cone(errors, px, px_per_km):

@@ -14,7 +14,7 @@ from skimage.metrics import structural_similarity  # noqa: E402
 
 MOST_WINDOW = 7  # cells on a side, as in scikit-image
 FEWEST_CELLS = 10
-_COLUMN = 3.8  # width of a map in the figure [inch]
+_COLUMN = 3.3  # width of a map in the figure [inch]
 
 NOTE = ("Spearman's rho is of the ranks over the cells where both are known; neighbouring cells "
         "are alike, so no significance is given. SSIM is the mean structural similarity (Wang et "
@@ -102,6 +102,16 @@ def draw_map(axis, field, km, colours, label):
     axis.set_xlabel("east [km]")
 
 
+def draw_places(axis, text, km):
+    """Marks ports and devices at the start of the episode; nothing where the file has none."""
+    for key, words, shape in (("ports", "port", {"marker": "o", "facecolor": "white"}),
+                              ("devices", "device", {"marker": "^", "facecolor": "#ffd166"})):
+        if cells := text.get(key):
+            x, y = zip(*(((east + 0.5) * km, (north + 0.5) * km) for east, north in cells))
+            axis.scatter(x, y, s=42, edgecolor="black", linewidth=1.2, label=words, zorder=3,
+                         **shape)
+
+
 def draw_relation(axis, values, layer, result):
     """Return against the sea's value, a dot for each cell, with medians of tenths of the cells."""
     name, units, field = layer
@@ -134,22 +144,26 @@ def draw(text, values, layers, results, path):
                                             0.84 * _COLUMN * tall + (3.8 if layers else 1.2)),
                                    height_ratios=[0.84 * _COLUMN * tall, 2.6][:rows])
     draw_map(axes[0][0], values, km, "viridis", "return [points]")
-    axes[0][0].set_title("return by the start's cell")
+    axes[0][0].set_title("Return of a start in each cell")
+    draw_places(axes[0][0], text, km)
     axes[0][0].set_ylabel("north [km]")
     for column, (layer, result) in enumerate(zip(layers, results), start=1):
         name, units, field = layer
-        draw_map(axes[0][column], np.where(np.isfinite(values), field, np.nan), km, "cividis", f"[{unit_text(units)}]")
-        axes[0][column].set_title(name.replace("_", " "))
+        draw_map(axes[0][column], np.where(np.isfinite(values), field, np.nan), km, "cividis",
+                 f"{name.replace('_', ' ')} [{unit_text(units)}]")
+        axes[0][column].set_title(f"The sea: {name.replace('_', ' ')}")
+        draw_places(axes[0][column], text, km)
         draw_relation(axes[1][column], values, layer, result)
     if layers:
         axes[1][1].set_ylabel("return of a start in the cell")
         draw_key(axes[1][0], text)
-        axes[1][0].legend(*axes[1][1].get_legend_handles_labels(), loc="upper left", frameon=False,
-                          bbox_to_anchor=(-0.05, 0.09)).set_in_layout(False)
+        marks = zip(axes[0][0].get_legend_handles_labels(), axes[1][1].get_legend_handles_labels())
+        axes[1][0].legend(*([*one, *other] for one, other in marks), loc="upper left", frameon=False,
+                          bbox_to_anchor=(-0.05, 0.24)).set_in_layout(False)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
-    figure.suptitle(f"{text['policy']} on {text['scenario']}: where a start pays, and the sea "
-                    f"({episodes})")
+    figure.suptitle(f"Where does a start of the ship pay, and does the sea explain it?\n"
+                    f"{text['policy']} on {text['scenario']}, {episodes}")
     temporary = f"{path}.part"
     figure.savefig(temporary, dpi=110, format="png")
     pyplot.close(figure)
@@ -159,11 +173,11 @@ def draw(text, values, layers, results, path):
 def draw_key(axis, text):
     """What the figure shows, in words."""
     axis.axis("off")
-    axis.text(0.0, 1.0, "\n".join((
-        "Upper left: the return if the", "ship starts in this cell and", f"{text['policy']} steers.",
-        "Next to it: the sea. Hatched:", "land, rocks or unknown.", "",
-        "Rank correlation: +1 if the", "return is always larger where", "the sea's value is larger,",
-        "−1 if always smaller, 0 without", "a relation. It does not say", "that one causes the other.")),
+    axis.text(0.0, 1.12, "\n".join((
+        "Return: of the episode if the", f"ship starts there and {text['policy']}",
+        "steers. Hatched: land, rocks or", "unknown.", "",
+        "Rank correlation: +1 if the", "return always rises with the", "sea's value, −1 if it always",
+        "falls, 0 without a relation. It", "does not say that one causes", "the other.")),
               va="top", fontsize=11).set_in_layout(False)
 
 

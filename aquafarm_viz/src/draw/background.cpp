@@ -8,6 +8,7 @@
 #include "aquafarm_viz/base/checks.h"
 #include "draw/legend.h"
 #include "draw/symbols.h"
+#include "scene/graticule.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -60,7 +61,7 @@ void PaintSeaAndLand(cv::Mat& map, const FarmSpec& spec, const Layout& layout) {
 
 void DrawGrid(cv::Mat& map, const Layout& layout) {
   const MapView& view = layout.view;
-  const int step = view.cell_px() >= 8.0 ? 1 : TickStep(view.cell_px(), 24.0);
+  const int step = view.cell_px() >= 8.0 ? 1 : CellTickStep(24.0 / view.cell_px());
   for (int x = step; x < view.width(); x += step) {
     const int column = cvRound(view.ToPixel(x - 0.5, 0).x);
     Tint(map, {column, 0, 1, map.rows}, Bgr(layout.style->grid), 0.08);
@@ -97,57 +98,28 @@ std::string DegreesText(int minutes, char positive, char negative) {
          (minutes < 0 ? negative : positive);
 }
 
-// Calls draw(minutes, position) for each tick of an axis that begins at `start_deg` and has
-// `px_per_deg` pixels a degree.
-template <typename Draw>
-void ForTicks(double start_deg, double px_per_deg, int length_px, double min_px, Draw draw) {
-  int step = 1;
-  for (const int minutes : {1, 2, 5, 10, 15, 30, 60, 120, 300, 600}) {
-    step = minutes;
-    if (px_per_deg * minutes / 60.0 >= min_px) break;
-  }
-  const auto first = static_cast<int>(std::ceil(start_deg * 60.0 / step));
-  for (int tick = first;; ++tick) {
-    const double at = (tick * step / 60.0 - start_deg) * px_per_deg;
-    if (at > length_px) break;
-    draw(tick * step, at);
-  }
-}
-
-// Latitude and longitude in the plane that touches the ellipsoid at cell (0, 0). Over 100 km the
-// error is below 1 % of the distance.
 void DrawGeographicAxes(cv::Mat& image, const FarmSpec& spec, const Layout& layout,
                         const Fonts& fonts) {
-  const double latitude = spec.origin_latitude_deg * CV_PI / 180.0;
-  const double m_per_lat = 111132.95 - 559.85 * std::cos(2.0 * latitude);  // WGS 84 [m/degree]
-  const double m_per_lon = 111412.88 * std::cos(latitude) - 93.5 * std::cos(3.0 * latitude);
-  const double px_per_m = layout.view.cell_px() / spec.cell_size_m;
-  const double half_m = spec.cell_size_m / 2.0;
-  const double west = spec.origin_longitude_deg - half_m / m_per_lon;
-  const double south = spec.origin_latitude_deg - half_m / m_per_lat;
-  ForTicks(west, m_per_lon * px_per_m, layout.map.width, 60.0 * layout.unit,
-           [&](int minutes, double at) {
-             LabelColumn(image, DegreesText(minutes, 'E', 'W'), at, layout, fonts);
-             Tint(image,
-                  {layout.map.x + cvRound(at), layout.map.y + layout.map.height, 1, layout.Px(3)},
-                  Bgr(layout.style->faint), 1.0);
-           });
-  ForTicks(south, m_per_lat * px_per_m, layout.map.height, 34.0 * layout.unit,
-           [&](int minutes, double at) {
-             LabelRow(image, DegreesText(minutes, 'N', 'S'), layout.map.height - at, layout, fonts);
-             Tint(image,
-                  {layout.map.x - layout.Px(3), layout.map.y + layout.map.height - cvRound(at),
-                   layout.Px(3), 1},
-                  Bgr(layout.style->faint), 1.0);
-           });
+  const double cell_px = layout.view.cell_px();
+  const int bottom = layout.map.y + layout.map.height;
+  for (const auto& [minutes, cells] : LongitudeTicks(spec, 60.0 * layout.unit / cell_px)) {
+    const double at = cells * cell_px;
+    LabelColumn(image, DegreesText(minutes, 'E', 'W'), at, layout, fonts);
+    Tint(image, {layout.map.x + cvRound(at), bottom, 1, layout.Px(3)}, Bgr(layout.style->faint),
+         1.0);
+  }
+  for (const auto& [minutes, cells] : LatitudeTicks(spec, 34.0 * layout.unit / cell_px)) {
+    const double at = cells * cell_px;
+    LabelRow(image, DegreesText(minutes, 'N', 'S'), layout.map.height - at, layout, fonts);
+    Tint(image, {layout.map.x - layout.Px(3), bottom - cvRound(at), layout.Px(3), 1},
+         Bgr(layout.style->faint), 1.0);
+  }
 }
 
 void DrawAxes(cv::Mat& image, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
-  if (spec.has_origin && std::abs(spec.origin_latitude_deg) < 85.0) {
-    return DrawGeographicAxes(image, spec, layout, fonts);
-  }
+  if (HasGraticule(spec)) return DrawGeographicAxes(image, spec, layout, fonts);
   const MapView& view = layout.view;
-  const int step = TickStep(view.cell_px(), 34.0 * layout.unit);
+  const int step = CellTickStep(34.0 * layout.unit / view.cell_px());
   for (int x = 0; x < view.width(); x += step) {
     LabelColumn(image, std::to_string(x), view.ToPixel(x, 0).x, layout, fonts);
   }

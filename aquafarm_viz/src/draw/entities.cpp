@@ -124,53 +124,40 @@ void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, d
               Bgr(Mix(color, kInk, 0.55)), rim);
 }
 
-void DrawTrails(cv::Mat& map, const FarmState& state, const Trail& trail, const Layout& layout) {
-  for (const auto& ship : state.ships) {
-    const ShipTrail* way = ship.visible ? trail.Find(ship.id) : nullptr;
-    if (way == nullptr) continue;
-    for (std::size_t i = 1; i < way->places.size(); ++i) {
-      const double age = double(way->places.size() - 1 - i) / Trail::kLength;
-      const Rgb fresh = state.ships.size() > 1 ? Mix(layout.style->label, ShipColor(ship.id), 0.6)
-                                               : layout.style->good;
-      const Rgb color = Mix(fresh, layout.style->sea_south, 0.65 * age);
-      DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
-               layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color),
-               layout.Px(age < 0.35 ? 2.5 : 1.5));
-    }
-  }
-}
-
 namespace {
 
-// The colour of a part of a ship's route, with its age as shade: green, which no risk has, or of
-// the ship where there are several.
-Rgb RouteColor(const FarmState& state, std::int32_t ship, double share, const Style& style) {
-  if (state.ships.size() > 1) return Mix(kPaper, ShipColor(ship), 0.25 + 0.75 * share);
-  return Mix(style.good, style.sea_south, 0.55 * (1.0 - share));
+// The colour of a part of a ship's path: green, which no risk has, or that of the ship where there
+// are several. It fades into the sea.
+// @param age  0: now, 1: the oldest part
+Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
+  const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.6) : style.good;
+  return Mix(fresh, style.sea_south, 0.45 * age);
 }
 
 }  // namespace
 
-void DrawRouteSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, const FarmState& state,
-                     const Layout& layout) {
+void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, const FarmState& state,
+                    const Layout& layout) {
   constexpr int kParts = 12;
   for (int i = 0; i < kParts; ++i) {
     const auto at = [&](int part) { return from + (to - from) * (double(part) / kParts); };
-    DrawLine(image, at(i), at(i + 1), Bgr(RouteColor(state, 0, (i + 0.5) / kParts, *layout.style)),
-             layout.Px(2.5));
+    const Rgb color = PathColor(state, 0, 1.0 - (i + 0.5) / kParts, *layout.style);
+    DrawLine(image, at(i), at(i + 1), Bgr(color), layout.Px(2.5));
   }
 }
 
-void DrawRoutes(cv::Mat& map, const FarmState& state, const Trail& route, const Layout& layout) {
+void DrawPaths(cv::Mat& map, const FarmState& state, const Trail& paths, const Layout& layout) {
   for (const auto& ship : state.ships) {
-    const ShipTrail* way = ship.visible ? route.Find(ship.id) : nullptr;
+    const ShipTrail* way = ship.visible ? paths.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
-      if (Trail::IsGap(way->places[i - 1], way->places[i])) continue;
-      const double share = double(i) / double(way->places.size());
-      const Rgb color = RouteColor(state, ship.id, share, *layout.style);
-      DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
-               layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color), layout.Px(2.5));
+      const auto& from = way->places[i - 1];
+      const auto& to = way->places[i];
+      if (Trail::IsGap(from, to)) continue;
+      const double age = 1.0 - double(i) / double(way->places.size());
+      const Rgb color = PathColor(state, ship.id, age, *layout.style);
+      DrawLine(map, layout.view.ToPixel(from.x, from.y), layout.view.ToPixel(to.x, to.y),
+               Bgr(color), layout.Px(2.5));
     }
   }
 }

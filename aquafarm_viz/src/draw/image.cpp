@@ -163,9 +163,9 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   }
   forecasts.outlook = ComputeOutlook(spec, state, forecasts.courses);
   FreeSpace space = BlockSymbols(spec, state, forecasts.outlook, p.layout);
-  if (layers.trail && overlays.trail != nullptr) DrawTrails(map, state, *overlays.trail, p.layout);
+  if (layers.trail && overlays.trail != nullptr) DrawPaths(map, state, *overlays.trail, p.layout);
   const auto marks = p.DrawDisasters(map, spec, state, forecasts, layers.risk);
-  if (layers.route && overlays.route != nullptr) DrawRoutes(map, state, *overlays.route, p.layout);
+  if (layers.route && overlays.route != nullptr) DrawPaths(map, state, *overlays.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
   if (layers.directions) {
     if (!p.directions) p.directions = LegalDirections(spec);

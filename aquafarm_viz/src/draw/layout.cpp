@@ -75,14 +75,6 @@ MapPlace PlaceMap(int width, int height, ImageSize size) {
   return {layout.map, layout.view};
 }
 
-int TickStep(double cell_px, double min_px) {
-  for (int power = 1;; power *= 10) {
-    for (const int factor : {1, 2, 5}) {
-      if (factor * power * cell_px >= min_px) return factor * power;
-    }
-  }
-}
-
 void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Point top_left,
                const Layout& layout) {
   const cv::Point base = top_left + cv::Point(0, font.cap_height());

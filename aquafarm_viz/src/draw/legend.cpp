@@ -170,9 +170,8 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
              return way != nullptr && way->places.size() > 1;
            });
   };
-  const bool has_route = layers.route && has_way(overlays.route);
-  add(has_route, Sign::kRoute);
-  add(!has_route && layers.trail && has_way(overlays.trail), Sign::kTrail);
+  add((layers.route && has_way(overlays.route)) || (layers.trail && has_way(overlays.trail)),
+      Sign::kPath);
   bool has_heading = false;
   bool has_pointer = false;
   for (const auto& disaster : state.disasters) {
@@ -195,8 +194,7 @@ const char* SignWords(Sign sign) {
       return "in danger";
     case Sign::kDelivered:
       return "in port";
-    case Sign::kTrail:
-    case Sign::kRoute:
+    case Sign::kPath:
       return "ship path";
     case Sign::kPointer:
       return "to centre";
@@ -228,12 +226,8 @@ void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
     case Sign::kDelivered:
       DrawDeviceSymbol(image, 0, {at, 4.5 * unit, 0.0}, 0.35);
       break;
-    case Sign::kTrail:
-      DrawLine(image, at - half, at + half, Bgr(state.ships.size() > 1 ? style.label : style.good),
-               layout.Px(2.5));
-      break;
-    case Sign::kRoute:
-      DrawRouteSample(image, at - half, at + half, state, layout);
+    case Sign::kPath:
+      DrawPathSample(image, at - half, at + half, state, layout);
       break;
     case Sign::kPointer: {
       const Pose2 placing{at, 6.0 * unit, 225.0};

@@ -44,11 +44,10 @@ enum class Sign {
   kInDanger,      ///< ring around a device
   kFirstReached,  ///< two rings around a device
   kDelivered,     ///< small device at a port
-  kTrail,
-  kRoute,
-  kHeading,    ///< arrow of a disaster
-  kPointer,    ///< triangle towards a centre outside the map
-  kDirection,  ///< arrow at a port
+  kPath,          ///< of a ship
+  kHeading,       ///< arrow of a disaster
+  kPointer,       ///< triangle towards a centre outside the map
+  kDirection,     ///< arrow at a port
   kSight
 };
 

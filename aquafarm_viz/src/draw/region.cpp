@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/scene/rings.h"
 #include "draw/course.h"
 #include "draw/free_space.h"
@@ -119,7 +120,7 @@ std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, cons
 std::string OverText(std::string wind) {
   std::transform(wind.begin(), wind.end(), wind.begin(),
                  [](unsigned char letter) { return std::toupper(letter); });
-  return wind.empty() ? "OVER THE RANCH NOW" : wind + " OVER THE RANCH";
+  return wind + " OVER THE RANCH";
 }
 
 // Words for the time at which a storm whose course is given is nearest, or for rings that cover or
@@ -131,7 +132,8 @@ RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subj
   const std::string centre = "centre " + PlaceText(spec, now.x, now.y);
   const double ahead_s = (subject.nearest.step - now.step) * spec.step_duration_s;
   const bool is_over = subject.danger == 0.0;
-  const std::string over = OverText(WindOverFarm(spec, course));
+  const std::string wind = WindOverFarm(spec, course);
+  const std::string over = OverText(wind.empty() ? RiskOverFarm(spec, course) : wind);
   if (ahead_s > 0.0) {
     const std::string nearest = PlaceText(spec, subject.nearest.x, subject.nearest.y);
     const std::string when = "in " + HoursText(ahead_s);
@@ -172,8 +174,9 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
     return words;
   }
   // The present motion continued says when a ring comes, but not that none does.
-  words.lines[0] = "centre " + PlaceText(spec, disaster.x, disaster.y);
-  words.lines[1] = subject->danger == 0.0 ? "over the ranch now"
+  words.lines[0] =
+      DisasterName(disaster.kind) + ", centre " + PlaceText(spec, disaster.x, disaster.y);
+  words.lines[1] = subject->danger == 0.0 ? RiskOverFarm(spec, course) + " over the ranch now"
                    : std::isfinite(subject->danger)
                        ? "reaches it in about " + AheadText(spec, subject->danger)
                        : SourceText(spec, disaster, course);
@@ -212,6 +215,10 @@ void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout
   const cv::Point2d aside(size.width / 2.0 + wide / 2.0 + 5.0 * layout.unit, 0.0);
   const cv::Point2d middle(inset.image.cols / 2.0, inset.image.rows / 2.0);
   const double farthest = 12.0 * layout.unit;
+  if (wide > size.width + 12.0 * layout.unit && tall > 3.0 * size.height) {  // in the square
+    const cv::Point2d half(size.width / 2.0, size.height / 2.0);
+    return DrawLabel(inset.image, fonts.small, word, middle - half, layout);
+  }
   auto place = space.Take(size, middle - aside, farthest);
   if (!place) place = space.Take(size, middle + aside, farthest);
   if (place) DrawLabel(inset.image, fonts.small, word, place->tl(), layout);

@@ -60,9 +60,6 @@ struct Fonts {
   Font title;
 };
 
-/// Returns the tick spacing of an axis [cells]: 1, 2 or 5 times a power of ten, min `min_px`.
-int TickStep(double cell_px, double min_px);
-
 /// Draws the constant parts of an episode: sea, islands, rocks, axes, legend.
 cv::Mat DrawBackground(const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                        const Fonts& fonts, ImageSize size);
@@ -105,17 +102,13 @@ void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmState& state, cons
 void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Point top_left,
                const Layout& layout);
 
-/// Draws the recent trails of the ships.
-void DrawTrails(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& trail,
-                const Layout& layout);
+/// Draws the trails or routes of the ships: older parts fade into the sea.
+void DrawPaths(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& paths,
+               const Layout& layout);
 
-/// Draws the trails of the ships since the start of the episode, from violet over red to yellow.
-void DrawRoutes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& route,
-                const Layout& layout);
-
-/// Draws the colours of routes along a short line, the start on the left.
-void DrawRouteSample(cv::Mat& image, cv::Point2d from, cv::Point2d to,
-                     const aquafarm_msgs::FarmState& state, const Layout& layout);
+/// Draws the colours of paths along a short line, the start on the left.
+void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to,
+                    const aquafarm_msgs::FarmState& state, const Layout& layout);
 
 /// Blends the colours of V_π over the map.
 void DrawValues(cv::Mat& map, const Values& values);

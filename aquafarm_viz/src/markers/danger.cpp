@@ -30,7 +30,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr std::size_t kMaxLabels = 40;  // more are not read, and cost time
-constexpr double kLetter = 0.5;         // mean width of a letter of rviz relative to the height
+constexpr double kMaxLine = 1.05;       // width of a headline's line, of the farm's longer side
 constexpr Rgb kAlarm{0xff, 0xb4, 0x54};
 
 // A rectangle that a label covers [cells].
@@ -104,14 +104,8 @@ class Labels {
   // Returns nullopt if there is none, or the last place tried if the text must be shown.
   std::optional<Plate> Place(const std::string& text, double x, double y, bool must_show) {
     const auto lines = 1 + std::count(text.begin(), text.end(), '\n');
-    std::size_t longest = 0;
-    for (std::size_t from = 0; from <= text.size();) {
-      const std::size_t end = std::min(text.find('\n', from), text.size());
-      longest = std::max(longest, end - from);
-      from = end + 1;
-    }
     const double half_width =
-        std::min(0.5 * kLetter * word_ * double(longest), 0.5 * spec_.width - 0.5);
+        std::min(0.5 * (TextWidth(text) + 0.8) * word_, 0.5 * spec_.width - 0.5);
     const double half_height = (0.1 + 0.5 * double(lines)) * word_;
     const double row = std::max(1.5, 1.5 * word_) + half_height - 0.6 * word_;
     Plate plate{x, y, half_width, half_height};
@@ -209,6 +203,18 @@ void AddLeader(MarkerArray& array, const Maker& maker, const std::string& space,
   array.markers.push_back(marker);
 }
 
+// Returns a text in two lines if one is too wide [heights of a letter]. The first takes all parts
+// that fit, because a time belongs to the part before it.
+std::string InLines(std::string text, double max_width) {
+  if (TextWidth(text) <= max_width) return text;
+  std::size_t end = std::string::npos;
+  for (std::size_t at = text.find(", "); at != std::string::npos; at = text.find(", ", at + 1)) {
+    if (end == std::string::npos || TextWidth(text.substr(0, at + 1)) <= max_width) end = at;
+  }
+  if (end != std::string::npos) text.replace(end, 2, ",\n");
+  return text;
+}
+
 double NextRisk(const DeviceOutlook& device) {
   return device.arrivals.empty() ? device.risk_now : device.arrivals.front().risk;
 }
@@ -240,7 +246,7 @@ class DeviceLabels {
     for (; next_ < devices_.size() && labelled_.size() < max_labels; ++next_) {
       const DeviceOutlook& one = *devices_[next_];
       const DeviceState& device = Find(one.id);
-      const std::string text = DeviceLabel(one.id) + ": " + DangerText(spec_, one);
+      const std::string text = DeviceLabel(one.id) + ": " + WorstText(spec_, one);
       const auto plate = labels.Place(text, device.x, device.y, /*must_show=*/labelled_.empty());
       if (!plate) continue;
       AddText(array, maker_, "danger_label", one.id, *plate, text);
@@ -407,7 +413,9 @@ MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state) {
     array.markers.push_back(maker.Delete("alarm", 0));
     return array;
   }
-  array.markers.push_back(maker.Text("alarm", 0, (spec.width - 1) / 2.0, maker.LineAbove(0), alarm,
+  const double side_m = std::max(spec.width, spec.height) * maker.cell_m();
+  array.markers.push_back(maker.Text("alarm", 0, (spec.width - 1) / 2.0, maker.LineAbove(0.5),
+                                     InLines(alarm, kMaxLine * side_m / maker.line_m()),
                                      maker.line_m(), IsInDanger(outlook) ? kAlarm : kPaper));
   return array;
 }

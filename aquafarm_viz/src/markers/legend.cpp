@@ -23,7 +23,7 @@ using visualization_msgs::MarkerArray;
 // Places the parts of the legend in a row below the map [m].
 class Row {
  public:
-  // @param line  0 is next to the farm
+  // @param line  0 is next to the names of the axes
   // @param space  namespace of the bars; that of the texts ends with _text
   Row(MarkerArray& array, const FarmSpec& spec, int line, std::string space)
       : array_(array),
@@ -31,7 +31,7 @@ class Row {
         space_(std::move(space)),
         size_m_(0.03 * std::max(spec.width, spec.height) * spec.cell_size_m),
         x_m_(-0.5 * spec.cell_size_m),
-        y_m_(-0.5 * spec.cell_size_m - (0.9 + 1.3 * line) * size_m_) {
+        y_m_(-0.5 * spec.cell_size_m - (2.1 + 1.3 * line) * size_m_) {
     header_.frame_id = names::kMapFrame;
   }
 
@@ -111,7 +111,7 @@ class Row {
   }
 
   void Text(const std::string& text) {
-    const double width_m = 0.55 * size_m_ * double(text.size());
+    const double width_m = TextWidth(text) * size_m_;
     Marker words = Make(space_ + "_text", Marker::TEXT_VIEW_FACING, x_m_ + 0.5 * width_m);
     words.scale.z = size_m_;
     words.text = text;

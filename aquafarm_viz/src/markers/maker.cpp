@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "markers/maker.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace aquafarm_viz {
 namespace {
@@ -13,7 +15,29 @@ geometry_msgs::Point OnCircle(double radius_m, int corner) {
   return Point(radius_m * std::cos(angle), radius_m * std::sin(angle));
 }
 
+// The width of a letter of Liberation Sans, as rviz draws it.
+double LetterWidth(char letter) {
+  constexpr double kScale = 0.9;  // of rviz
+  const auto is_in = [letter](const char* letters) {
+    return std::string(letters).find(letter) != std::string::npos;
+  };
+  if (letter == ' ') return 0.62;
+  if (is_in("ijl.,:;'|!()[]ft/I-r")) return 0.3 * kScale;
+  if (is_in("mwMW%")) return 0.82 * kScale;
+  return (letter >= 'A' && letter <= 'Z' ? 0.68 : 0.55) * kScale;
+}
+
 }  // namespace
+
+double TextWidth(const std::string& text) {
+  double longest = 0.0;
+  double width = 0.0;
+  for (const char letter : text) {
+    width = letter == '\n' ? 0.0 : width + LetterWidth(letter);
+    longest = std::max(longest, width);
+  }
+  return longest;
+}
 
 void AddBand(visualization_msgs::Marker& marker, const QuadrantRadii& inner,
              const QuadrantRadii& outer) {

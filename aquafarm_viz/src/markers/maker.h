@@ -54,7 +54,7 @@ class Maker {
         word_m_(
             std::max(0.6 * thing_m_, 0.028 * std::max(spec.width, spec.height) * spec.cell_size_m)),
         layer_m_(std::min(0.03 * spec.cell_size_m, 8.0)),
-        line_m_(0.032 * std::max(spec.width, spec.height) * spec.cell_size_m),
+        line_m_(0.029 * std::max(spec.width, spec.height) * spec.cell_size_m),
         height_(spec.height),
         header_(header) {
     header_.frame_id = names::kMapFrame;
@@ -67,7 +67,7 @@ class Maker {
   /// Height of the lines of text above the farm [m].
   double line_m() const { return line_m_; }
   /// The y of the middle of line 0, 1, … above the farm [cells].
-  double LineAbove(int line) const {
+  double LineAbove(double line) const {
     return height_ - 0.5 + (0.75 + 1.25 * line) * line_m_ / cell_m_;
   }
 
@@ -141,6 +141,9 @@ inline geometry_msgs::Quaternion Turned(double bearing_deg, double rest_deg) {
   turned.w = std::cos(yaw / 2.0);
   return turned;
 }
+
+/// Returns the width of a text in rviz relative to the height of its letters; of its longest line.
+double TextWidth(const std::string& text);
 
 /// Radii to the NE, SE, SW and NW [m].
 using QuadrantRadii = std::array<double, 4>;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "aquafarm_viz/base/checks.h"
@@ -14,6 +15,7 @@
 #include "aquafarm_viz/names.h"
 #include "aquafarm_viz/scene/directions.h"
 #include "aquafarm_viz/scene/labels.h"
+#include "markers/axes.h"
 #include "markers/legend.h"
 #include "markers/maker.h"
 #include "markers/rings.h"
@@ -68,6 +70,29 @@ Marker Island(const Maker& maker, const FarmSpec& spec) {
     if (InGrid(spec, cell.x, cell.y)) AddCell(island, maker, cell, kSquare, 1.0);
   }
   return island;
+}
+
+// A line along the inner side of each border of land with water.
+Marker Shore(const Maker& maker, const FarmSpec& spec) {
+  constexpr float kWidth = 0.12F;  // [cells]
+  Marker shore = maker.Make("shore", 0, Marker::TRIANGLE_LIST, kLandLayer, 0, 0);
+  shore.pose.position.z += 0.4 * maker.layer_m();  // over the land, below the rings
+  shore.color = Color(kSand);
+  std::set<std::pair<int, int>> land;
+  for (const auto& cell : spec.islands) land.emplace(cell.x, cell.y);
+  for (const auto& cell : spec.islands) {
+    if (!InGrid(spec, cell.x, cell.y)) continue;
+    for (const auto& [x, y] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+      if (!InGrid(spec, cell.x + x, cell.y + y) || land.count({cell.x + x, cell.y + y}) > 0) {
+        continue;
+      }
+      const cv::Point2f out(0.5F * float(x), 0.5F * float(y));
+      const cv::Point2f along(-out.y, out.x);
+      const cv::Point2f in = out * (1.0F - 2.0F * kWidth);
+      AddCell(shore, maker, cell, {in - along, out - along, out + along, in + along}, 1.0);
+    }
+  }
+  return shore;
 }
 
 Marker Rocks(const Maker& maker, const FarmSpec& spec) {
@@ -272,7 +297,7 @@ Marker Status(const Maker& maker, const FarmSpec& spec, const FarmState& state) 
   const std::string text = WorldTimeText(spec, state) + "  episode " + Count(state.episode) +
                            "  step " + Count(state.step) + "  return " +
                            Number(state.joint_return, 1);
-  return maker.Text("status", 0, (spec.width - 1) / 2.0, maker.LineAbove(1), text, maker.line_m(),
+  return maker.Text("status", 0, (spec.width - 1) / 2.0, maker.LineAbove(2), text, maker.line_m(),
                     kPaper);
 }
 
@@ -288,10 +313,11 @@ MarkerArray SpecMarkers(const FarmSpec& spec, bool clear, const Layers& layers) 
   }
   array.markers.push_back(Sea(maker, spec));
   // rviz warns about lists without points.
-  for (auto& list : {Island(maker, spec), Rocks(maker, spec)}) {
+  for (auto& list : {Island(maker, spec), Shore(maker, spec), Rocks(maker, spec)}) {
     if (!list.points.empty()) array.markers.push_back(list);
   }
   if (layers.directions) AddDirections(array, maker, spec);
+  AddAxes(array, maker, spec);
   AddLegend(array, spec);
   if (layers.risk) AddSignLegend(array, spec);
   return array;

@@ -10,8 +10,12 @@
 
 namespace aquafarm_viz {
 
-constexpr double kMargin =
-    0.125;  // fraction of the farm on each side, for three lines of text below it
+// Room for the texts around the farm, as fractions of its longer side: latitudes on the left, lines
+// above, longitudes and a legend of three lines below.
+constexpr double kLeft = 0.115;
+constexpr double kRight = 0.035;
+constexpr double kAbove = 0.125;
+constexpr double kBelow = 0.165;
 
 rviz::ViewController* WholeView::FromAbove(rviz::VisualizationManager& rviz) {
   rviz::ViewController* view = rviz.getViewManager()->getCurrent();
@@ -41,10 +45,13 @@ void WholeView::Follow(rviz::VisualizationManager& rviz, const aquafarm_msgs::Fa
   const double width_m = spec.width * spec.cell_size_m;
   const double height_m = spec.height * spec.cell_size_m;
   const bool is_new = width_m != width_m_ || height_m != height_m_;
-  const double scale = std::min(window->width() / width_m, window->height() / height_m) *
-                       window->devicePixelRatioF() / (1.0 + 2.0 * kMargin);
-  const Place wanted_place{static_cast<float>(0.5 * (width_m - spec.cell_size_m)),
-                           static_cast<float>(0.5 * (height_m - spec.cell_size_m)),
+  const double side_m = std::max(width_m, height_m);
+  const double scale = std::min(window->width() / (width_m + (kLeft + kRight) * side_m),
+                                window->height() / (height_m + (kAbove + kBelow) * side_m)) *
+                       window->devicePixelRatioF();
+  const double x_m = 0.5 * (width_m - spec.cell_size_m + (kRight - kLeft) * side_m);
+  const double y_m = 0.5 * (height_m - spec.cell_size_m + (kAbove - kBelow) * side_m);
+  const Place wanted_place{static_cast<float>(x_m), static_cast<float>(y_m),
                            static_cast<float>(scale), now.angle};
   if (!is_new && wanted_place == place_) return;
   const auto set = [view](const char* name, float value) {

@@ -155,6 +155,15 @@ const char* WindOverFarm(const FarmSpec& spec, const Course& course) {
   return strongest_kt > 0 ? aquafarm::WindName(strongest_kt) : "";
 }
 
+std::string RiskOverFarm(const FarmSpec& spec, const Course& course) {
+  const TrackPoint& now = course.ahead.front();
+  double worst = 0.0;
+  for (std::size_t i = 0; i < std::min(now.radii.size(), now.risks.size()); ++i) {
+    if (IsOverFarm(spec, now, now.radii[i])) worst = std::min(worst, now.risks[i]);
+  }
+  return "risk " + Number(worst, 0);
+}
+
 double StepsToFarm(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
                    const Course& course) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -296,7 +305,10 @@ std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
   // The same ring with a worse risk has no name of its own.
   const bool has_names = (device.risk_now == 0.0 || !before.empty()) &&
                          (device.arrivals.empty() || !after.empty()) && before != after;
-  if (!has_names) return RiskText(spec, device);
+  if (!has_names) {
+    const std::string risk = RiskText(spec, device);
+    return risk.empty() ? "" : "risk " + risk;
+  }
   const std::string now = before.empty() ? "" : before + " now";
   if (after.empty()) return now;
   const std::string next =

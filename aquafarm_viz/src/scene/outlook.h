@@ -57,6 +57,9 @@ double StepsToFarm(const aquafarm_msgs::FarmSpec& spec,
 /// "gale"; empty if no ring covers a part of it, or if the winds of the rings are not given.
 const char* WindOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& course);
 
+/// Returns the worst risk that a disaster has over a part of the farm now: "risk -5".
+std::string RiskOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& course);
+
 /// Returns a time ahead: "6.5 h" in a farm with a start time, else "12 steps".
 std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 
@@ -74,11 +77,11 @@ bool IsInDanger(const Outlook& outlook);
 /// Returns the number of devices that a ring covers or reaches.
 std::size_t CountInDanger(const Outlook& outlook);
 
-/// Returns OutlookText in a few characters, such as "F2: -20 now".
+/// Returns OutlookText in a few characters, such as "F2: risk -20 now".
 std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook);
 
-/// Returns the danger to a device in a few characters: "-10 in 6.5 h", "-5 now" if a ring covers
-/// it, "-5 now, -20 in 6.5 h" if a worse one follows; empty if no ring covers or reaches it. Where
+/// Returns the danger to a device in a few characters: "risk -10 in 6.5 h", "risk -5 now" if a ring
+/// covers it, "risk -5 now, -20 in 6.5 h" if a worse one follows; empty if none reaches it. Where
 /// the winds of the rings are given: "gale now, storm in 6.5 h", and the worst ring to come if it
 /// is another one: ", hurricane in 9 h".
 std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
@@ -86,7 +89,7 @@ std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook&
 /// Returns the worst ring to come: "hurricane force in 9 h"; DangerText if its wind is not given.
 std::string WorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
 
-/// Returns DangerText without names of winds.
+/// Returns DangerText without names of winds and without the word "risk".
 /// @param between  text between risk and time
 std::string RiskText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
                      const char* between = " in ");

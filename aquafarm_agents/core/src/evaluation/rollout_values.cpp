@@ -77,6 +77,17 @@ json ToRows(const std::vector<T>& values, std::int32_t width) {
   return Rows(entries, width);
 }
 
+void NotePlaces(const Farm& farm, RolloutValues& values) {
+  values.ports = farm.layout().ports;
+  for (const PlacedDevice& device : farm.layout().devices) values.devices.push_back(device.cell);
+}
+
+json ToPairs(const std::vector<Cell>& cells) {
+  json pairs = json::array();
+  for (const Cell cell : cells) pairs.push_back({cell.x, cell.y});
+  return pairs;
+}
+
 }  // namespace
 
 RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario,
@@ -92,12 +103,20 @@ RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario,
                      std::to_string(episodes) + " episodes");
   }
   const auto cells = static_cast<std::size_t>(scenario->CellCount());
-  RolloutValues values{
-      scenario->width, scenario->height, EvaluationSeed(seed), episode, episodes, {}, discount};
+  RolloutValues values{scenario->width,
+                       scenario->height,
+                       EvaluationSeed(seed),
+                       episode,
+                       episodes,
+                       {},
+                       discount,
+                       {},
+                       {}};
   values.value.assign(cells, 0.0);
   Farm farm(scenario);
   for (std::int32_t k = 0; k < episodes && !IsStopped(stop); ++k) {
     farm.Reset(values.seed, episode + static_cast<std::uint64_t>(k));
+    if (k == 0) NotePlaces(farm, values);
     const std::vector<Cell> starts = FreeCells(farm);
     std::vector<double> here(cells, std::numeric_limits<double>::quiet_NaN());
     for (std::size_t first = 0; first < starts.size(); first += kCellsAtOnce) {
@@ -140,6 +159,8 @@ void WriteValues(const std::string& path, const RolloutValues& values, const std
                    ? "discounted return of the episode when ship 0 starts in the cell"
                    : "undiscounted return of the episode when ship 0 starts in the cell"},
       {"values", ToRows(values.value, values.width)},
+      {"ports", ToPairs(values.ports)},
+      {"devices", ToPairs(values.devices)},
       {"seas", layers}};
   WriteFileAtomically(path, text.dump() + "\n");
 }

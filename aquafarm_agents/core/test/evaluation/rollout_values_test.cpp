@@ -61,7 +61,7 @@ TEST(RolloutValues, AreTheMeanOfEpisodes) {
 
 using ValuesFile = FolderTest;
 
-TEST_F(ValuesFile, HasTheSeaNextToThem) {
+TEST_F(ValuesFile, HasTheSeaPortsAndDevicesNextToThem) {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = 60;
   SeaLayer warmth{"warmth", "degC", std::vector<float>(25, 21.5F)};
@@ -75,6 +75,8 @@ TEST_F(ValuesFile, HasTheSeaNextToThem) {
   EXPECT_EQ(text.at("values").size(), 5U);
   EXPECT_TRUE(text.at("values")[0][0].is_null());
   EXPECT_EQ(text.at("values")[2][2], 118.0);
+  EXPECT_EQ(text.at("ports"), nlohmann::json::parse("[[2, 0]]"));
+  EXPECT_EQ(text.at("devices"), nlohmann::json::parse("[[2, 2]]"));
   EXPECT_EQ(text.at("seas")[0].at("units"), "degC");
   EXPECT_EQ(text.at("seas")[0].at("values")[0][0], 21.5);
   EXPECT_TRUE(text.at("seas")[0].at("values")[4][4].is_null());

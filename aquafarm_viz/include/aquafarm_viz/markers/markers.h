@@ -8,7 +8,8 @@
 /// of a removed object is deleted by its id. Lifetimes are 0.
 ///
 ///     | namespace                       | id                         |
-///     | sea, island, rocks              | 0                          |
+///     | sea, island, shore, rocks       | 0                          |
+///     | axis                            | tick                       |
 ///     | port, port_letter               | port                       |
 ///     | device, health, health_frame    | device                     |
 ///     | ship, ship_deck, ship_name      | ship                       |
@@ -32,7 +33,7 @@
 
 namespace aquafarm_viz {
 
-/// Returns the sea, islands, rocks and the legend, which are constant during an episode. If
+/// Returns the sea, islands, rocks, axes and the legend, which are constant during an episode. If
 /// `clear`, the first one deletes all markers; use it at the start of an episode.
 visualization_msgs::MarkerArray SpecMarkers(const aquafarm_msgs::FarmSpec& spec, bool clear,
                                             const Layers& layers = {});

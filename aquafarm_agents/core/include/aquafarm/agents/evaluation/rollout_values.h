@@ -24,7 +24,9 @@ struct RolloutValues {
   std::int32_t episodes{};
   /// [H, W] from the south-west, mean over episodes; NaN in cells that ship 0 cannot occupy
   std::vector<double> value;
-  double discount{1.0};  ///< γ of Eq. 10, by step of the episode; 1: undiscounted
+  double discount{1.0};       ///< γ of Eq. 10, by step of the episode; 1: undiscounted
+  std::vector<Cell> ports;    ///< of the first episode
+  std::vector<Cell> devices;  ///< of the first episode, where they are at its start
 };
 
 /// Plays `episodes` episodes of EvaluationSeed(seed) from every free cell.
@@ -38,8 +40,8 @@ RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario,
                          std::uint64_t seed, std::uint64_t episode, std::int32_t episodes,
                          const std::atomic<bool>* stop = nullptr, double discount = 1.0);
 
-/// Writes JSON with the values and the sea layers of the scenario. Rows start in the south; cells
-/// without a value are null. @throws StorageError
+/// Writes JSON with the values, the cells [x, y] of ports and devices, and the sea layers of the
+/// scenario. Rows start in the south; cells without a value are null. @throws StorageError
 void WriteValues(const std::string& path, const RolloutValues& values, const std::string& policy,
                  const Scenario& scenario);
 

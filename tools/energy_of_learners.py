@@ -3,20 +3,21 @@
 """Trains a learner with several weights of energy, evaluates each policy, and compares.
 
 usage: energy_of_learners.py SCENARIO.yaml ALGORITHM OUT.csv [--seeds N] [--weights W ...]
-                             [--episodes N] [-- OPTION OF aquafarm_train ...]
+                             [--episodes N] [--from-first] [-- OPTION OF aquafarm_train ...]
 
-Each weight has a training per seed. The return is that without the term of energy. OUT.csv gets a
-row per training; a run that was interrupted continues. The table that is printed has the mean over
-seeds, and the change of return and energy relative to the first weight, each with a 95 % interval
-(bootstrap over seeds, pairs of the same seed). aquafarm_train and aquafarm_evaluate must be on the
-PATH.
+Each weight has a training per seed. With --from-first those of later weights start with the policy
+of the first weight (one above 0: with a weight the features contain the energy). The return is that
+without the term of energy. OUT.csv gets a row per training; a run that was interrupted continues.
+The table that is printed has the mean over seeds, and the change of return and energy relative to
+the first weight, each with a 95 % interval (bootstrap over seeds, pairs of the same seed).
+aquafarm_train and aquafarm_evaluate must be on the PATH. The run folders are next to OUT.csv.
 """
 import argparse
 import csv
 import pathlib
+import shutil
 import subprocess
 import sys
-import tempfile
 
 import numpy
 
@@ -27,17 +28,24 @@ COLUMNS = ("algorithm", "seed", "policy", "weight", "episodes", "return_without_
            "energy_kwh", "distance_km", "success_rate", "steps")
 
 
+def run_folder(weight, seed, arguments):
+    return arguments.output.with_suffix("") / f"{arguments.algorithm}_{seed}_{weight:g}"
+
+
 def train(text, weight, seed, arguments):
     """Trains on the scenario with a weight; returns the row of its policy."""
-    with tempfile.TemporaryDirectory() as folder:
-        scenario = pathlib.Path(folder, "scenario.yaml")
-        scenario.write_text(energy_block(text, weight), encoding="utf-8")
-        run = pathlib.Path(folder, "run")
-        subprocess.run(["aquafarm_train", scenario, "-a", arguments.algorithm, "-s", str(seed), "-d", run,
-                        "--evaluate", "0", "--random", "0", *arguments.options], check=True,
-                       stdout=subprocess.DEVNULL)
-        row = measure(text, str(run), arguments.episodes, weight)
-    return {**row, "algorithm": arguments.algorithm, "seed": str(seed), "policy": "trained"}
+    run = run_folder(weight, seed, arguments)
+    shutil.rmtree(run, ignore_errors=True)  # of an interrupted run
+    run.parent.mkdir(parents=True, exist_ok=True)
+    scenario = run.parent / f"{run.name}.yaml"
+    scenario.write_text(energy_block(text, weight), encoding="utf-8")
+    start = [] if not arguments.from_first or weight == arguments.weights[0] else \
+        ["--init", run_folder(arguments.weights[0], seed, arguments)]
+    subprocess.run(["aquafarm_train", scenario, "-a", arguments.algorithm, "-s", str(seed), "-d", run,
+                    "--evaluate", "0", "--random", "0", *start, *arguments.options], check=True,
+                   stdout=subprocess.DEVNULL)
+    return {**measure(text, str(run), arguments.episodes, weight),
+            "algorithm": arguments.algorithm, "seed": str(seed), "policy": "trained"}
 
 
 def read_rows(path):
@@ -95,6 +103,8 @@ def main():
     parser.add_argument("--seeds", type=int, default=5, help="trainings per weight (default 5)")
     parser.add_argument("--weights", type=float, nargs="+", default=[0.0, 1.0, 3.0, 10.0])
     parser.add_argument("--episodes", type=int, default=1000, help="of each evaluation (default 1000)")
+    parser.add_argument("--from-first", action="store_true",
+                        help="later weights start with the policy of the first")
     parser.add_argument("options", nargs="*", help="options of aquafarm_train, after --")
     arguments = parser.parse_args()
     text = arguments.scenario.read_text(encoding="utf-8")

@@ -32,4 +32,9 @@ inline std::uint64_t FarmSteps(const StepResults& results) {
 /// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
 void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, NetworkKind network);
 
+/// Checks that a network that plays each agent by its own features fits farms of `spec`, which may
+/// have another number of agents.
+/// @throws InputError as CheckFits
+void CheckFeaturesFit(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
+
 }  // namespace aquafarm::agents

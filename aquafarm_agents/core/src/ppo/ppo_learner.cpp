@@ -256,7 +256,7 @@ class PpoLearner final : public ShardedLearner, public WarmStart {
   void Save(Checkpoint& checkpoint) const override;
   void Load(const Checkpoint& checkpoint) override;
   void LoadWeights(const Checkpoint& checkpoint) override {
-    CheckFits(checkpoint, spec_, NetworkKind::kMlp);
+    CheckFeaturesFit(checkpoint, spec_);  // agents share the network, so their number may differ
     ReplaceWeights(checkpoint, *network_);
   }
 

@@ -100,7 +100,8 @@ TEST(Generalist, RefusesARanchWhoseTokensNeedTooMuchMemory) {
   }
 }
 
-RunReport FineTune(const std::string& options, bool tokens, const std::string& algorithm = "ppo") {
+RunReport FineTune(const std::string& options, bool tokens, const std::string& algorithm = "ppo",
+                   const std::string& scenario = "paper") {
   RunOptions run;
   run.algorithm = algorithm;
   run.options = options;
@@ -113,7 +114,7 @@ RunReport FineTune(const std::string& options, bool tokens, const std::string& a
   const RunReport report = Train(
       run,
       [&](std::uint8_t observation_types) {
-        return MakeLocalFarms(Shipped("paper", tokens), {8, observation_types, false, 1});
+        return MakeLocalFarms(Shipped(scenario, tokens), {8, observation_types, false, 1});
       },
       {}, nullptr);
   std::filesystem::remove_all(run.run_dir);
@@ -123,6 +124,12 @@ RunReport FineTune(const std::string& options, bool tokens, const std::string& a
 // 200 steps are too few to learn anything: the first policy is the generalist's.
 TEST(Generalist, ATrainingBeginsWithItsWeights) {
   const RunReport report = FineTune("", true);
+  ASSERT_EQ(report.code, ExitCode::kOk) << report.summary;
+  EXPECT_GE(report.status.evaluation.success_rate, 0.9);
+}
+
+TEST(Generalist, ATrainingOfTwoShipsBeginsWithItsWeights) {
+  const RunReport report = FineTune("", true, "ppo", "two_squads");
   ASSERT_EQ(report.code, ExitCode::kOk) << report.summary;
   EXPECT_GE(report.status.evaluation.success_rate, 0.9);
 }

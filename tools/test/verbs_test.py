@@ -55,7 +55,7 @@ class TestRun(unittest.TestCase):
     def test_every_stage_passes(self):
         code, commands, results, _ = self.run_with(fast=False)
         self.assertEqual(0, code)
-        self.assertEqual(["python3", "ctest", "ctest", "run_ros_tests", "check_workspaces",
+        self.assertEqual(["python3", "bash", "bash", "run_ros_tests", "check_workspaces",
                           "check_python", "python3"],
                          [pathlib.Path(line.split()[0]).name for line in commands])
         self.assertFalse({name for name in results if name.startswith("stage-")})
@@ -66,10 +66,10 @@ class TestRun(unittest.TestCase):
                           if "check_workspaces" in line or "check_python" in line])
 
     def test_a_failed_stage_fails_the_whole(self):
-        self.assertEqual(1, self.run_with(fast=True, ctest=1)[0])
+        self.assertEqual(1, self.run_with(fast=True, bash=1)[0])
 
     def test_a_stage_without_results_counts_as_a_failed_test(self):
-        code, _, results, words = self.run_with(fast=True, ctest=2)
+        code, _, results, words = self.run_with(fast=True, bash=2)
         self.assertEqual(1, code)
         self.assertLessEqual({"stage-aquafarm_sim_core.xml", "stage-aquafarm_agents_core.xml"}, results)
         self.assertIn("the stage 'aquafarm_sim core' broke off; the end of ", words)

@@ -108,13 +108,20 @@ def tools_step():
                 RESULTS / "tools.log", xml, variables={"AQUAFARM_CAMPAIGNS": str(WS)})
 
 
+# A line for each test that ended; sed leaves out the rest of what ctest prints.
+CTEST = """ctest "$@" | sed -unE \
+"s#^ *([0-9]+)/([0-9]+) Test +\\#[0-9]+: ([^ ]+) .*#aquafarm: $0/core test \\1 of \\2: \\3#p"
+"""
+
+
 def core_step(core):
     jobs = os.environ.get("AQUAFARM_JOBS") or str(len(os.sched_getaffinity(0)))
     xml, log = RESULTS / f"ctest-{core}.xml", RESULTS / f"{core}.log"
-    return Step(f"{core} core", ["ctest", "--test-dir", WS / "core" / core, "-j", jobs,
-                                 "--timeout", "900", "--output-on-failure", "-Q",
-                                 "--output-log", log, "--output-junit", xml],
-                log, xml)
+    return Step(f"{core} core",
+                ["bash", "-o", "pipefail", "-c", CTEST, core, "--test-dir", WS / "core" / core,
+                 "-j", jobs, "--timeout", "900", "--output-on-failure", "--output-log", log,
+                 "--output-junit", xml],
+                log, xml, is_shown=True)
 
 
 def ros_step(log):

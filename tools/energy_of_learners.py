@@ -105,8 +105,11 @@ def main():
     parser.add_argument("--episodes", type=int, default=1000, help="of each evaluation (default 1000)")
     parser.add_argument("--from-first", action="store_true",
                         help="later weights start with the policy of the first")
-    parser.add_argument("options", nargs="*", help="options of aquafarm_train, after --")
-    arguments = parser.parse_args()
+    parser.usage = "%(prog)s SCENARIO.yaml ALGORITHM OUT.csv [options] [-- OPTION OF aquafarm_train ...]"
+    words = sys.argv[1:]
+    end = words.index("--") if "--" in words else len(words)
+    arguments = parser.parse_args(words[:end])
+    arguments.options = words[end + 1:]
     text = arguments.scenario.read_text(encoding="utf-8")
     trained = {(row["seed"], float(row["weight"])) for row in read_rows(arguments.output)}
     jobs = [(seed, weight) for seed in range(1, arguments.seeds + 1) for weight in arguments.weights]

@@ -274,7 +274,7 @@ TEST(DangerMarkers, HaveALineFromADistantLabelThatCrossesNoOther) {
   EXPECT_GT(lines, 2);
 }
 
-TEST(DangerMarkers, HaveTheArrowOfAMotionBesideItsPointerAndTheLabelTowardsTheMiddle) {
+TEST(DangerMarkers, HaveTheArrowOfAMotionAlongTheEdgeAndTheLabelTowardsTheMiddle) {
   Scene scene;
   scene.state.disasters[0].speed = 0.5F;
   const auto markers = scene.Draw();

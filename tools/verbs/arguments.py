@@ -95,7 +95,7 @@ def name_the_ranch(launch, words):
     named, ranch = [], None
     for word in words:
         if launch == "evaluate" and os.path.isfile(os.path.join(word, "run.json")):
-            word = f"policy:={os.path.join('.', word)}"  # the / tells it from a name
+            word = f"policy:={os.path.join('.', word)}"  # with / it is a path
         if (launch in ("evaluate", "sim") and word.endswith(".yaml") and ":=" not in word
                 and not word.startswith("-")):
             ranch = word

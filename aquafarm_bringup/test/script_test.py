@@ -135,6 +135,10 @@ class ScriptTest(unittest.TestCase):
                              named(verb, "a.yaml", "policy:=planner"))
             self.assertEqual(["scenario:=a.yaml"], named(verb, "scenario:=a.yaml"))
         self.assertEqual(["a.yaml"], named("train", "a.yaml"))
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual([folder], named("evaluate", folder), "no run folder")
+            pathlib.Path(folder, "run.json").touch()
+            self.assertEqual([f"policy:={folder}"], named("evaluate", folder))
         scenarios = SCRIPT.parent / "aquafarm_sim" / "scenarios"
         for ranch, policy in (("two_squads", "planner"), ("paper", "generalist")):
             self.assertEqual(f"policy:={policy}", named("sim", f"{scenarios}/{ranch}.yaml")[-1])

@@ -274,6 +274,22 @@ TEST(DangerMarkers, HaveALineFromADistantLabelThatCrossesNoOther) {
   EXPECT_GT(lines, 2);
 }
 
+TEST(DangerMarkers, HaveTheArrowOfAMotionAlongTheEdgeAndTheLabelTowardsTheMiddle) {
+  Scene scene;
+  scene.state.disasters[0].speed = 0.5F;
+  const auto markers = scene.Draw();
+  const auto& pointer = markers.at({"pointer", 0}).pose.position;
+  const Marker& arrow = markers.at({"pointer_heading", 0});
+  double x = 0.0;
+  double y = 0.0;
+  for (const auto& point : arrow.points) {
+    x += point.x / double(arrow.points.size());
+    y += point.y / double(arrow.points.size());
+  }
+  EXPECT_GT(std::abs(y - pointer.y), 2.0 * std::abs(x - pointer.x)) << "at the western edge";
+  EXPECT_GT(markers.at({"pointer_label", 0}).pose.position.x, pointer.x);
+}
+
 TEST(DangerMarkers, SayWhenAStormOutsideIsClosest) {
   Scene scene;
   scene.SetTrackTo(-3);

@@ -91,9 +91,11 @@ def policy_of(ranch):
 
 def name_the_ranch(launch, words):
     """Returns the arguments with RANCH.yaml of evaluate and sim as scenario:=RANCH.yaml, and with
-    the policy of policy_of unless one is given."""
+    the policy of policy_of unless one is given; a run folder of evaluate as policy:=FOLDER."""
     named, ranch = [], None
     for word in words:
+        if launch == "evaluate" and os.path.isfile(os.path.join(word, "run.json")):
+            word = f"policy:={os.path.join('.', word)}"  # with / it is a path
         if (launch in ("evaluate", "sim") and word.endswith(".yaml") and ":=" not in word
                 and not word.startswith("-")):
             ranch = word

@@ -15,7 +15,8 @@ ranks:=N trains ppo in N processes of this machine, without ROS; docs/scale.md d
 hosts.""",
     "evaluate": """Plays a policy greedily over many episodes and reports return and success. Without policy:=… it plays
 the newest run under ./runs, or the shipped policy generalist if there is no run.
-./aquafarm evaluate RANCH.yaml plays generalist on that ranch, without a training.""",
+./aquafarm evaluate RANCH.yaml plays generalist on that ranch, without a training;
+./aquafarm evaluate RUN plays the policy of that run folder.""",
     "benchmark": """Trains every learner several times, measures them as the paper does (§4.2) and ends with its
 Table 1 next to ours and the figures. After Ctrl-C or a kill the same command resumes.""",
     "sim": """Runs the ranch at rate_hz steps per second and shows it in rviz (headless:=true: no rviz). The policy

@@ -158,10 +158,10 @@ _PAPER_REPLAY = ("priority_exponent=0", "loss=mse", "max_grad_norm=0", "double_d
 
 _PAPER_CONTESTANTS = (
     dataclasses.replace(_RANDOM, scenario=PLAIN_SCENARIO),
-    _printed(_Q_LEARNING, "#aec7e8", ("gamma=0.99",), cost=0.02),
-    _printed(_SARSA, "#9edae5", ("gamma=0.99",), cost=0.02),
-    _printed(_DQN, "#98df8a", ("preset=paper", "device=cpu"), cost=2.0),
-    _printed(_LSTM_DQN, "#9467bd", ("preset=paper", "device=cpu"), cost=4.0),
+    _printed(_Q_LEARNING, "#332288", ("gamma=0.99",), cost=0.02),
+    _printed(_SARSA, "#117733", ("gamma=0.99",), cost=0.02),
+    _printed(_DQN, "#999933", ("preset=paper", "device=cpu"), cost=2.0),
+    _printed(_LSTM_DQN, "#882255", ("preset=paper", "device=cpu"), cost=4.0),
     _tuned(_Q_LEARNING),
     _tuned(_SARSA),
     _tuned(_DQN),

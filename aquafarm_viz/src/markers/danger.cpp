@@ -292,7 +292,7 @@ struct EdgePointer {
   cv::Point2d at;  // [cells]
 };
 
-// Draws the arrow of a motion next to a pointer, towards the middle of the farm.
+// Draws the arrow of a motion next to a pointer.
 void AddHeading(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                 const DisasterState& disaster, cv::Point2d at, Labels& labels) {
   if (!(disaster.speed > 0.0F)) {
@@ -308,11 +308,11 @@ void AddHeading(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
       places.push_back(at + away * thing * cv::Point2d(std::cos(angle), std::sin(angle)));
     }
   }
-  const cv::Point2d middle((spec.width - 1) / 2.0, (spec.height - 1) / 2.0);
-  std::stable_sort(places.begin(), places.begin() + kDirections,
-                   [&middle](const auto& a, const auto& b) {
-                     return cv::norm(a - middle) < cv::norm(b - middle);
-                   });
+  // Along the edge: the label stands towards the middle.
+  const cv::Point2d inwards = cv::Point2d((spec.width - 1) / 2.0, (spec.height - 1) / 2.0) - at;
+  std::stable_sort(places.begin(), places.begin() + kDirections, [&](const auto& a, const auto& b) {
+    return std::abs((a - at).dot(inwards)) < std::abs((b - at).dot(inwards));
+  });
   const cv::Point2d place = labels.FirstFree(places, 0.8 * thing);
   Marker arrow =
       maker.Make("pointer_heading", disaster.id, Marker::TRIANGLE_LIST, kSignLayer, 0.0, 0.0);

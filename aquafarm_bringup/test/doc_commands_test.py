@@ -67,6 +67,7 @@ NOT_RUN_ELSEWHERE = {
     "sudo apt-get": "changes the machine",
     "python3 -m venv": "tools/check_python makes one",
     "tools/energy_curve.py": "1,000 episodes of a planner",
+    "tools/evaluate_coasts.py": "needs the chart of a coast; evaluate_coasts_test runs it",
     "tools/energy_of_learners.py": "trainings of minutes",
     "tools/make_image": "needs a container engine",
     "podman": "needs a container engine",

@@ -138,7 +138,7 @@ Scenario ParseScenario(const std::string& text, const std::string& origin_name) 
   return Parse(text, origin_name, unused);
 }
 
-std::string ToYaml(const Scenario& scenario) { return Write(scenario, /*old_names=*/false); }
+std::string ToYaml(const Scenario& scenario, bool old_names) { return Write(scenario, old_names); }
 
 std::uint64_t HashScenario(const Scenario& scenario) {
   Scenario rules = scenario;

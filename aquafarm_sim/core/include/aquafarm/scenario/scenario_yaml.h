@@ -18,7 +18,9 @@ Scenario ParseScenario(const std::string& text, const std::string& origin_name);
 /// Writes every used parameter of a scenario, in a fixed order and in grid units.
 /// ParseScenario(ToYaml(s)) returns s, and equal scenarios give equal texts. Run folders store this
 /// text.
-std::string ToYaml(const Scenario& scenario);
+///
+/// @param old_names  whether renamed keys get the names of version 0.1.0
+std::string ToYaml(const Scenario& scenario, bool old_names = false);
 
 /// Hash of the parameters that affect episodes: HashBytes of ToYaml with an empty name and
 /// description and without winds. ParseScenario stores it in Scenario::hash.

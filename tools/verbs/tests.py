@@ -35,7 +35,6 @@ class Step:
     log: pathlib.Path
     xml: pathlib.Path | None = None  # the results that it writes; None: only its exit code counts
     is_shown: bool = False  # otherwise its output goes to the log
-    has_session: bool = False  # one of its own, which has its own share of the processor
     variables: dict = dataclasses.field(default_factory=dict)  # of the environment
 
 
@@ -59,8 +58,7 @@ class Stages:
         with contextlib.ExitStack() as stack:
             commands = []
             for step in steps:
-                options = {"env": dict(os.environ, **step.variables),
-                           "start_new_session": step.has_session}
+                options = {"env": dict(os.environ, **step.variables)}
                 if not step.is_shown:
                     words = stack.enter_context(open(step.log, "w", encoding="utf-8"))
                     options.update(stdout=words, stderr=words)
@@ -138,19 +136,18 @@ def workspaces_step():
     xml = RESULTS / "workspaces.xml"
     return Step("another kind of workspace",
                 [ROOT / "tools/check_workspaces", WS / "workspaces", xml],
-                RESULTS / "workspaces.log", xml, is_shown=True, has_session=True)
+                RESULTS / "workspaces.log", xml, is_shown=True)
 
 
-def test_through_ros(stages, *others):
+def test_through_ros(stages):
     enter_ros()
     log = RESULTS / "build_tests.log"
     stages.begin(f"building the tests through ROS (log: {log})")
     if run_bootstrap("--build-tests", log) != 0:
         stages.break_off("build of the tests through ROS", log)
     log = RESULTS / "run_tests.log"
-    what = " and ".join(["testing through ROS", *(f"in {step.name}" for step in others)])
-    stages.begin(f"{what} (log: {log})")
-    stages.run(ros_step(log), *others)
+    stages.begin(f"testing through ROS (log: {log})")
+    stages.run(ros_step(log))
 
 
 def test_wheel(stages):
@@ -168,9 +165,11 @@ def run(fast):
     build(stages)
     stages.begin("testing the cores without ROS, and the tools, which mostly wait")
     stages.run(tools_step(), *map(core_step, CORES))
-    # ROS tests mostly wait, too.
-    test_through_ros(stages, *([] if fast else [workspaces_step()]))
+    test_through_ros(stages)
     if not fast:
+        # Not during the tests through ROS: some of them have limits that a compiler breaks.
+        stages.begin("building and running in another kind of workspace")
+        stages.run(workspaces_step())
         test_wheel(stages)
     stages.begin("adding up the results")
     code = run_child([PYTHON, ROOT / "tools/sum_results.py", RESULTS,

@@ -12,6 +12,7 @@ import signal
 import time
 import typing
 from asyncio import CancelledError, TimeoutError
+from concurrent import futures
 
 from aquafarm_benchmark.cluster import Lost
 from aquafarm_benchmark.worker import has_begun, last_line
@@ -188,7 +189,8 @@ class _Runs:
             return
         try:
             outcome = future.result(timeout=_PERIOD_S)
-        except (OSError, TimeoutError, CancelledError):  # it was lost with worker or scheduler
+        # It was lost with worker or scheduler. Dask raises the one or the other CancelledError.
+        except (OSError, TimeoutError, CancelledError, futures.CancelledError):
             self._futures[future] = job
             return
         if outcome is None:

@@ -88,9 +88,9 @@ class Simulation {
   std::string Check(const FarmSpec& spec) const {
     const aquafarm::Encoder encoder(*scenario_);
     FarmSpec simulated;
-    std::string yaml = aquafarm::ToYaml(*scenario_);
-    if (spec.scenario_yaml != yaml) yaml = WithOldNames(spec, std::move(yaml));
-    ToMsg(farm_, encoder, spec.farms, yaml, {}, simulated);
+    // A bag of an older version has the old names of keys.
+    const bool old_names = spec.scenario_yaml == aquafarm::ToYaml(*scenario_, true);
+    ToMsg(farm_, encoder, spec.farms, aquafarm::ToYaml(*scenario_, old_names), {}, simulated);
     simulated.header = spec.header;
     const std::string difference = Difference(spec, simulated);
     return difference.empty() ? "" : "spec." + difference;
@@ -185,13 +185,6 @@ class Simulation {
   }
 
   // Compares the fields that the bag's definition has.
-  // Returns the scenario as an older version wrote it, if the bag has it so; else the text of
-  // today.
-  std::string WithOldNames(const FarmSpec& spec, std::string yaml) const {
-    std::string old = aquafarm::ToYaml(*scenario_, /*old_names=*/true);
-    return spec.scenario_yaml == old ? old : yaml;
-  }
-
   template <typename Message>
   std::string Difference(Message got, Message& simulated) const {
     const auto found = definitions_.find(ros::message_traits::datatype<Message>());

@@ -88,13 +88,6 @@ namespace {
 
 constexpr std::size_t kMaxFileBytes = 4U << 20U;  // 10,000 waypoints or a sea need under 2 MiB
 
-std::string Write(const Scenario& scenario, bool old_names) {
-  internal::YamlWriter writer(old_names);
-  internal::WorldFrame unused;
-  internal::VisitScenario(writer, scenario, unused);
-  return writer.text();
-}
-
 // Puts a line for each key that has an old name into `notices`.
 Scenario Parse(const std::string& text, const std::string& origin_name,
                std::vector<std::string>& notices) {
@@ -138,7 +131,12 @@ Scenario ParseScenario(const std::string& text, const std::string& origin_name) 
   return Parse(text, origin_name, unused);
 }
 
-std::string ToYaml(const Scenario& scenario, bool old_names) { return Write(scenario, old_names); }
+std::string ToYaml(const Scenario& scenario, bool old_names) {
+  internal::YamlWriter writer(old_names);
+  internal::WorldFrame unused;
+  internal::VisitScenario(writer, scenario, unused);
+  return writer.text();
+}
 
 std::uint64_t HashScenario(const Scenario& scenario) {
   Scenario rules = scenario;
@@ -152,7 +150,7 @@ std::uint64_t HashScenario(const Scenario& scenario) {
     }
   }
   // By the names of version 0.1.0, so that bags and checkpoints of that version keep their hashes.
-  return HashBytes(Write(rules, /*old_names=*/true));
+  return HashBytes(ToYaml(rules, /*old_names=*/true));
 }
 
 std::int64_t ParseUtc(const std::string& name, const std::string& text) {

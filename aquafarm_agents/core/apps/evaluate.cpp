@@ -118,7 +118,7 @@ void PrintOptimum(const std::shared_ptr<const Scenario>& scenario, const Evaluat
     return;
   }
   std::printf(
-      "optimum %.1f, return %.1f, share %.4f [%.4f, %.4f] of %zu episodes (%zu too large); "
+      "optimum %.1f, return %.1f, share %.4f [95 %%: %.4f, %.4f] of %zu episodes (%zu too large); "
       "%zu of %zu solved\n",
       share.mean_optimum, share.mean_return, share.share, share.low, share.high, share.planned,
       share.too_large, share.solved, share.solvable);

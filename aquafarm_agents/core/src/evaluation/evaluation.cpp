@@ -256,8 +256,8 @@ void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
 std::string Describe(const Evaluation& evaluation) {
   char interval[48] = "";
   if (const double margin = ReturnMargin(evaluation); std::isfinite(margin)) {
-    std::snprintf(interval, sizeof(interval), " [%.1f, %.1f]", evaluation.mean_return - margin,
-                  evaluation.mean_return + margin);
+    std::snprintf(interval, sizeof(interval), " [95 %%: %.1f, %.1f]",
+                  evaluation.mean_return - margin, evaluation.mean_return + margin);
   }
   char text[250];
   std::snprintf(text, sizeof(text),
@@ -275,7 +275,7 @@ std::string DescribeLosses(const Evaluation& evaluation) {
   char text[400];
   std::snprintf(text, sizeof(text),
                 "loss %.2f ± %.2f %s of %.2f insured, operating cost %.2f, VaR 5 %% %.2f "
-                "[%.2f, %.2f], CVaR 5 %% %.2f [%.2f, %.2f]",
+                "[95 %%: %.2f, %.2f], CVaR 5 %% %.2f [95 %%: %.2f, %.2f]",
                 losses.mean_loss, losses.standard_error, losses.currency.c_str(),
                 losses.Mean(losses.Total().insured), losses.Mean(losses.operating_cost),
                 losses.var.value, losses.var.low, losses.var.high, losses.cvar.value,

@@ -7,8 +7,9 @@
 ///
 ///   situation   cell, load and remaining devices
 ///   loop        a situation occurs for the max_visits-th time in an episode
-///   way out     the route to the nearest target (Teacher) while its forecast has no risk, until a
-///               device is picked up or dropped off
+///   way out     the route to the nearest target (Teacher) while it has no more risk per step than
+///               the safest cell near the ship, until a device is picked up or dropped off. Under a
+///               ring over the whole ranch a ship that waits pays as much as one that works.
 
 #include <cstddef>
 #include <cstdint>

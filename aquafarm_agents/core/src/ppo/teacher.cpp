@@ -13,6 +13,8 @@ namespace {
 constexpr float kUnitLength = 16.0F;     // of distances [cells]
 constexpr float kUnitRisk = 20.0F;       // of risks [reward]
 constexpr float kUnitRouteSteps = 8.0F;  // of the summed risk of a route
+constexpr float kRouteSteps = 32.0F;     // over which it is summed
+constexpr float kTolerance = 1.0001F;    // of sums of risks
 
 constexpr int kOctants = 8;
 // Place of each move on the compass, from north clockwise.
@@ -23,6 +25,8 @@ constexpr std::array<int, kMoveCount> kOctantOf{0, 4, 6, 2, 7, 1, 5, 3};
 Teacher::Teacher(const TokenLayout& layout)
     : layout_(layout),
       risk_(layout.PlaceOf(TokenKind::kShip, "ship.risk.north")),
+      near_blocked_(layout.PlaceOf(TokenKind::kShip, "ship.near_blocked.-3.-3")),
+      near_risk_(layout.PlaceOf(TokenKind::kShip, "ship.near_risk.-3.-3")),
       here_(layout.PlaceOf(TokenKind::kDevice, "device0.here")),
       next_(layout.PlaceOf(TokenKind::kDevice, "device0.next.north")),
       distance_(layout.PlaceOf(TokenKind::kDevice, "device0.distance")),
@@ -46,6 +50,16 @@ void Teacher::Consider(const float* tokens, TokenKind kind, Target& best) const 
         token[distance_] * kUnitLength + token[route_risk_] * kUnitRouteSteps * kUnitRisk;
     if (best.token == nullptr || cost < best.cost) best = {token, cost, is_port};
   }
+}
+
+// The least risk that the ship could have in the open cells around it.
+float Teacher::LeastRisk(const float* tokens) const {
+  float least = std::numeric_limits<float>::infinity();
+  const std::size_t cells = near_risk_ - near_blocked_;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    if (tokens[near_blocked_ + cell] == 0.0F) least = std::min(least, tokens[near_risk_ + cell]);
+  }
+  return least;  // at most the risk of the ship's own cell
 }
 
 // Of the allowed moves the one with the least risk and deviation from the route, if there is one.
@@ -81,7 +95,10 @@ std::uint8_t Teacher::ActionOf(const float* tokens, ActionMask allowed) const {
 
 std::optional<std::uint8_t> Teacher::SafeActionOf(const float* tokens, ActionMask allowed) const {
   const Target target = NearestTarget(tokens);
-  if (target.token == nullptr || target.token[route_risk_] > 0.0F) return std::nullopt;
+  if (target.token == nullptr) return std::nullopt;
+  const float steps = std::min(kRouteSteps, target.token[distance_] * kUnitLength);
+  const float waiting = LeastRisk(tokens) * steps;
+  if (target.token[route_risk_] * kUnitRouteSteps > waiting * kTolerance) return std::nullopt;
   return ActionTo(tokens, target, allowed);
 }
 

@@ -27,8 +27,8 @@ class Teacher {
   /// Returns the teacher's action, one of `allowed`. @param tokens one row of features
   std::uint8_t ActionOf(const float* tokens, ActionMask allowed) const;
 
-  /// As ActionOf, if the forecast has no risk along the route to the target; nothing if it has, or
-  /// without a target.
+  /// As ActionOf, if the route to the target has no more risk per step than the safest cell near
+  /// the ship, for example none. Nothing if it has more, or if there is no target.
   std::optional<std::uint8_t> SafeActionOf(const float* tokens, ActionMask allowed) const;
 
   /// Adds the slopes of coefficient · weight · cross-entropy(teacher, policy) to those of the
@@ -49,11 +49,12 @@ class Teacher {
   Target NearestTarget(const float* tokens) const;
   std::uint8_t ActionTo(const float* tokens, const Target& target, ActionMask allowed) const;
   void Consider(const float* tokens, TokenKind kind, Target& best) const;
+  float LeastRisk(const float* tokens) const;
   std::uint8_t MoveTo(const float* tokens, const Target& target, ActionMask allowed) const;
 
   const TokenLayout layout_;
   // Places of features: of the ship, and of a device or port.
-  const std::size_t risk_;
+  const std::size_t risk_, near_blocked_, near_risk_;
   const std::size_t here_, next_, distance_, route_risk_, has_space_, has_cargo_;
   const std::size_t deployed_, slack_;  // of a device
 };

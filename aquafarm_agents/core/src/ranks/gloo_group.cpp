@@ -10,10 +10,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <future>
 #include <numeric>
 #include <thread>
@@ -141,6 +143,7 @@ class GlooGroup final : public ProcessGroup {
   void Sum(std::vector<float>& values, std::vector<double>& numbers) override;
   std::vector<std::string> Gather(const std::string& bytes) override;
   std::string Broadcast(const std::string& bytes) override;
+  void RunOnRank0(const std::function<void()>& work) override;
 
  private:
   void OpenStore(const RankVariables& variables, const GroupTimes& times);
@@ -160,17 +163,20 @@ class GlooGroup final : public ProcessGroup {
 
   c10::intrusive_ptr<Store> store_;
   std::shared_ptr<gloo::rendezvous::Context> gloo_;
+  const std::chrono::milliseconds work_limit_;
+  std::uint64_t works_{};  // calls of RunOnRank0
   std::vector<char> own_;  // scratch of Sum
   std::vector<char> other_;
 };
 
 GlooGroup::GlooGroup(const RankVariables& variables, const GroupTimes& times)
-    : ProcessGroup(variables.rank, variables.world_size) {
+    : ProcessGroup(variables.rank, variables.world_size), work_limit_(Milliseconds(times.work_s)) {
   if ((size_ & (size_ - 1)) != 0) {
     throw InputError(variables.launcher + ": got " + std::to_string(size_) +
                      " ranks, expected a power of two: 1, 2, 4, 8, …");
   }
   SilenceLog();
+  std::signal(SIGPIPE, SIG_IGN);  // Gloo writes to ranks that may have ended
   const auto start = Clock::now();
   RequireKnownName(variables.master_addr, times.start_s);
   OpenStore(variables, times);
@@ -399,6 +405,26 @@ std::string GlooGroup::Broadcast(const std::string& bytes) {
     }
   }
   return all;
+}
+
+// The others wait in the store, where a wait has a limit of its own. A thread of rank 0 answers
+// them, so they notice at once if that process ends.
+void GlooGroup::RunOnRank0(const std::function<void()>& work) {
+  const std::string done = "work/" + std::to_string(works_++);
+  if (rank_ == 0) {
+    work();
+    WithPeer(0, [&] { store_->set(done, std::vector<std::uint8_t>{1}); });
+    return;
+  }
+  WithPeer(0, [&] {
+    try {
+      store_->wait({done}, work_limit_);
+    } catch (const std::exception& error) {
+      throw std::runtime_error("it was to read or write the run folder within " +
+                               std::to_string(work_limit_.count() / 1000) +
+                               " s: " + FirstLine(error));
+    }
+  });
 }
 
 }  // namespace

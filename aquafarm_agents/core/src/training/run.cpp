@@ -238,32 +238,28 @@ bool Run::Resume(Trainer& trainer, const RunFolder* folder) {
 // Rank 0 sends the checkpoint to the others, whose hosts need not see the run folder.
 bool Run::ResumeFromRank0(Trainer& trainer, const RunFolder* folder) {
   Checkpoint checkpoint;
-  std::string path = folder == nullptr ? "" : FindCheckpoint(*folder, checkpoint);
+  std::string path;
+  std::string bytes;
+  group()->RunOnRank0([&] {
+    if (folder != nullptr) path = FindCheckpoint(*folder, checkpoint);
+    if (!path.empty()) bytes = ReadFile(path);
+  });
   path = group()->Broadcast(path);
   if (path.empty()) return false;
-  const std::string bytes = group()->Broadcast(folder == nullptr ? "" : ReadFile(path));
+  bytes = group()->Broadcast(bytes);
   trainer.Resume(ParseCheckpoint(bytes, path), path);
   Notify(RunPhase::kStarting, "resuming from " + path);
   return true;
 }
 
-// Reads the newest valid checkpoint. Returns its path, empty if there is no checkpoint.
+// Returns the path of the checkpoint, empty if there is none.
 std::string Run::FindCheckpoint(const RunFolder& folder, Checkpoint& checkpoint) {
-  std::string first_damage;
-  for (const std::string& path : folder.Checkpoints()) {
-    try {
-      checkpoint = ReadCheckpoint(path);
-    } catch (const InputError& error) {
-      if (first_damage.empty()) first_damage = error.what();
-      continue;
-    }
-    if (!first_damage.empty()) {
-      Notify(RunPhase::kStarting, first_damage + "; using the previous checkpoint");
-    }
-    return path;
+  std::string damage;
+  std::string path = folder.ReadNewestCheckpoint(checkpoint, damage);
+  if (!damage.empty()) {
+    Notify(RunPhase::kStarting, damage + "; using the previous checkpoint");
   }
-  if (!first_damage.empty()) throw InputError(first_damage);
-  return "";
+  return path;
 }
 
 void Run::Describe(const EnvironmentSpec& spec, const Learner& learner,
@@ -297,7 +293,9 @@ void Run::Train(Environment& environment, Learner& learner, RunFolder* folder) {
     Notify(RunPhase::kStarting,
            "the run has reached its limit; set larger steps or episodes to continue it");
   }
-  if (folder != nullptr) Describe(WholeSpec(environment.spec(), group()), learner, *folder);
+  RunOnce(group(), [&] {
+    if (folder != nullptr) Describe(WholeSpec(environment.spec(), group()), learner, *folder);
+  });
   const double exchange_s = group() == nullptr ? 0.0 : group()->exchange_s();
   const TrainingEnd end = trainer.Run(stop_, [&](const TrainingProgress& progress) {
     report_.status.progress = progress;

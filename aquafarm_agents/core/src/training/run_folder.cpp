@@ -103,6 +103,19 @@ void RunFolder::SaveCheckpoint(const Checkpoint& checkpoint) const {
   for (std::size_t i = 0; i + kKeptCheckpoints < paths.size(); ++i) unlink(paths[i].c_str());
 }
 
+std::string RunFolder::ReadNewestCheckpoint(Checkpoint& checkpoint, std::string& damage) const {
+  for (const std::string& path : Checkpoints()) {
+    try {
+      checkpoint = ReadCheckpoint(path);
+      return path;
+    } catch (const InputError& error) {
+      if (damage.empty()) damage = error.what();
+    }
+  }
+  if (!damage.empty()) throw InputError(damage);
+  return "";
+}
+
 std::vector<std::string> RunFolder::Checkpoints() const {
   std::vector<std::string> paths = CheckpointsIn(path_);
   std::reverse(paths.begin(), paths.end());

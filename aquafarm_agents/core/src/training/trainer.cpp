@@ -266,7 +266,13 @@ void Trainer::Save(bool with_environment) {
   learner_.Save(checkpoint);
   if (with_environment) checkpoint.sections["environment"] = environment_.Save();
   is_saved_ = with_environment;
-  if (!CollectSections(checkpoint) || folder_ == nullptr) return;
+  const bool writes = CollectSections(checkpoint) && folder_ != nullptr;
+  RunOnce(options_.group, [&] {
+    if (writes) Write(checkpoint);
+  });
+}
+
+void Trainer::Write(Checkpoint& checkpoint) {
   metrics_->Sync();
   const nlohmann::json state{
       {"next_episode", next_episode_},

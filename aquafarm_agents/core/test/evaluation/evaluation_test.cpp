@@ -126,9 +126,9 @@ TEST(Evaluate, DescribesTheIntervalOfTheMeanReturnFromDistinctStarts) {
   }
   evaluation.mean_return = 100.0;
   evaluation.distinct = 4;  // deviation 11.547, standard error 5.774
-  EXPECT_CONTAINS(Describe(evaluation), "return 100.0 [88.7, 111.3] per episode");
+  EXPECT_CONTAINS(Describe(evaluation), "return 100.0 [95 %: 88.7, 111.3] per episode");
   evaluation.distinct = 2;  // the other two are repetitions
-  EXPECT_CONTAINS(Describe(evaluation), "return 100.0 [84.0, 116.0] per episode");
+  EXPECT_CONTAINS(Describe(evaluation), "return 100.0 [95 %: 84.0, 116.0] per episode");
   evaluation.distinct = 1;
   EXPECT_CONTAINS(Describe(evaluation), "return 100.0 per episode");
 }

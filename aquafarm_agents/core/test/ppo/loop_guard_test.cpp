@@ -52,6 +52,15 @@ TEST(LoopGuard, LeavesTheChoiceToThePolicyIfTheRouteHasRisk) {
   }
 }
 
+TEST(LoopGuard, LeadsTheWayIfTheRingCoversTheWholeRanch) {
+  Scenario covered = WithTokens();
+  covered.disasters = {aquafarm::test::StillDisaster(2.0F, 1.0F, {50.0F}, {-10.0F})};
+  LocalEnvironment environment(Share(covered), {1, kFeaturesBit, false, 1});
+  LoopGuard guard(environment.spec(), 1, 1);
+  const StepResults& results = environment.Reset(1);
+  EXPECT_TRUE(guard.ActionOf(0, results.features.data(), true, kAllActions).has_value());
+}
+
 // Policies that have learned nothing move in circles.
 TEST(LoopGuard, PoliciesOfPpoLeaveTheirLoops) {
   LocalEnvironment environment(Share(WithTokens()), {1, kFeaturesBit, false, 1});

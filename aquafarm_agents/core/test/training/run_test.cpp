@@ -202,6 +202,10 @@ class TwinGroup final : public ProcessGroup {
     Check();
     return bytes;
   }
+  void RunOnRank0(const std::function<void()>& work) override {
+    Check();
+    work();
+  }
 
  private:
   void Check() const {

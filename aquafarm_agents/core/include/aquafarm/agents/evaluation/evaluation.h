@@ -81,11 +81,11 @@ struct EvaluationContext {
 void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
                      const EvaluationContext& context);
 
-/// "success 100.0 %, return 243.1 [241, 245] per episode, 4.02 per step, 60.4 steps (1000 episodes,
-/// 998 distinct)"
+/// "success 100.0 %, return 243.1 [95 %: 241.0, 245.2] per episode, 4.02 per step, 60.4 steps
+/// (1000 episodes, 998 distinct)"
 std::string Describe(const Evaluation& evaluation);
-/// "loss 1234.50 ± 8.10 CNY of 5000.00 insured, VaR 5 % 2000.00 [1900.00, 2100.00], …" as one line;
-/// empty without losses.
+/// "loss 1234.50 ± 8.10 CNY of 5000.00 insured, VaR 5 % 2000.00 [95 %: 1900.00, 2100.00], …" as one
+/// line; empty without losses.
 std::string DescribeLosses(const Evaluation& evaluation);
 
 }  // namespace aquafarm::agents

@@ -6,6 +6,7 @@
 /// (docs/decisions/ranks.md). Every function of ProcessGroup is collective: all ranks call the same
 /// functions in the same order.
 
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -46,6 +47,12 @@ class ProcessGroup {
   /// @throws RankLost
   virtual std::string Broadcast(const std::string& bytes) = 0;
 
+  /// Calls `work` on rank 0, while the other ranks wait until it returns, for up to
+  /// GroupTimes::work_s. A disk may need longer than an exchange. @param work is ignored on the
+  /// others
+  /// @throws RankLost, and on rank 0 what `work` throws, after which the group must not be used
+  virtual void RunOnRank0(const std::function<void()>& work) = 0;
+
  protected:
   ProcessGroup(int rank, int size) : rank_(rank), size_(size) {}
 
@@ -57,6 +64,7 @@ class ProcessGroup {
 struct GroupTimes {
   double start_s{25.0};   ///< max wait for all ranks at the start
   double answer_s{25.0};  ///< max wait for another rank in an exchange
+  double work_s{900.0};   ///< max wait for the work of RunOnRank0
 };
 
 /// Connects this process with the other ranks.
@@ -65,6 +73,13 @@ struct GroupTimes {
 ///         host of rank 0 is unknown
 std::unique_ptr<ProcessGroup> JoinProcessGroup(const RankVariables& variables,
                                                const GroupTimes& times);
+
+/// Calls `work` once for the training: on rank 0, or in this process if `group` is null.
+/// @throws as ProcessGroup::RunOnRank0
+inline void RunOnce(ProcessGroup* group, const std::function<void()>& work) {
+  if (group == nullptr) return work();
+  group->RunOnRank0(work);
+}
 
 /// Replaces arrays[0] by the sum of all arrays, added as a binary tree. The other arrays then hold
 /// partial sums. @param arrays of equal size; their number is a power of two

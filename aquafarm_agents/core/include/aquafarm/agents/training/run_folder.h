@@ -43,6 +43,10 @@ class RunFolder {
   void SaveCheckpoint(const Checkpoint& checkpoint) const;
   /// Paths of all checkpoints, newest first.
   std::vector<std::string> Checkpoints() const;
+  /// Reads the newest valid checkpoint. Returns its path, empty if there is no checkpoint.
+  /// @param damage is set to a line about the newest checkpoint if that is damaged
+  /// @throws InputError with that line if all checkpoints are damaged
+  std::string ReadNewestCheckpoint(Checkpoint& checkpoint, std::string& damage) const;
   /// Path of the newest checkpoint; nullopt if there is none.
   std::optional<std::string> NewestCheckpoint() const { return NewestCheckpoint(path_); }
   static std::optional<std::string> NewestCheckpoint(const std::string& run_folder);

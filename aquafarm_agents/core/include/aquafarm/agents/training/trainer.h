@@ -108,6 +108,7 @@ class Trainer {
   bool Synchronize(const std::atomic<bool>* stop);
   void CountPending(const std::vector<PendingSteps>& parts);
   bool CollectSections(Checkpoint& checkpoint) const;
+  void Write(Checkpoint& checkpoint);
   bool IsDone() const;
 
   Environment& environment_;

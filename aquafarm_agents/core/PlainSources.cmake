@@ -63,7 +63,7 @@ set(AQUAFARM_PPO_POLICY_SOURCES
   src/ppo/ppo_loss.cpp
   src/ppo/ppo_options.cpp
   src/ppo/ppo_policy.cpp
-  src/ppo/teacher.cpp
+  src/ppo/route_rule.cpp
   src/ppo/token_actor_critic.cpp
   src/ppo/token_layout.cpp
   src/ppo/token_symmetry.cpp

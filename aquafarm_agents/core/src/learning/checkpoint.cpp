@@ -74,14 +74,16 @@ std::string CompleteOptions(const std::string& algorithm, const std::string& rec
     std::string_view key;
     std::string_view value;
   };
-  constexpr std::array<Added, 8> kAdded{{{"lstm_dqn", "skip_connection=", "true"},
-                                         {"ppo", "shards=", "1"},
-                                         {"ppo", "teacher=", "0"},
-                                         {"ppo", "team_share=", "0"},
-                                         {"ppo", "augment=", "false"},
-                                         {"ppo", "max_visits=", "0"},
-                                         {"ppo", "symmetric=", "false"},
-                                         {"ppo", "repetition_penalty=", "0"}}};
+  constexpr std::array<Added, 10> kAdded{{{"lstm_dqn", "skip_connection=", "true"},
+                                          {"ppo", "shards=", "1"},
+                                          {"ppo", "teacher=", "0"},
+                                          {"ppo", "teacher_policy=", "rule"},
+                                          {"ppo", "teacher_interval=", "1"},
+                                          {"ppo", "team_share=", "0"},
+                                          {"ppo", "augment=", "false"},
+                                          {"ppo", "max_visits=", "0"},
+                                          {"ppo", "symmetric=", "false"},
+                                          {"ppo", "repetition_penalty=", "0"}}};
   std::string complete = recorded;
   for (const Added& added : kAdded) {
     const bool lacks = algorithm.find(added.algorithm) != std::string::npos && !recorded.empty() &&

@@ -15,7 +15,7 @@ bool EndsWith(const std::string& name, const std::string& end) {
 }  // namespace
 
 LoopGuard::LoopGuard(const EnvironmentSpec& spec, std::size_t slots, std::int32_t max_visits)
-    : max_visits_(max_visits), teacher_(LayoutOfTokens(spec.feature_names)), episodes_(slots) {
+    : max_visits_(max_visits), rule_(LayoutOfTokens(spec.feature_names)), episodes_(slots) {
   for (std::size_t i = 0; i < spec.feature_names.size(); ++i) {
     const std::string& name = spec.feature_names[i];
     const bool is_device = name.rfind("device", 0) == 0;
@@ -43,7 +43,7 @@ std::optional<std::uint8_t> LoopGuard::ActionOf(std::size_t slot, const float* t
   }
   if (++episode.visits[hasher.value()] >= max_visits_) episode.is_loop = true;
   if (!episode.is_loop) return std::nullopt;
-  return teacher_.SafeActionOf(tokens, allowed);
+  return rule_.SafeActionOf(tokens, allowed);
 }
 
 }  // namespace aquafarm::agents

@@ -7,7 +7,8 @@
 ///
 ///   situation   cell, load and remaining devices
 ///   loop        a situation occurs for the max_visits-th time in an episode
-///   way out     the route to the nearest target (Teacher) while it has no more risk per step than
+///   way out     the route to the nearest target (RouteRule) while it has no more risk per step
+///   than
 ///               the safest cell near the ship, until a device is picked up or dropped off. Under a
 ///               ring over the whole ranch a ship that waits pays as much as one that works.
 
@@ -18,7 +19,7 @@
 #include <vector>
 
 #include "aquafarm/agents/environment/environment.h"
-#include "ppo/teacher.h"
+#include "ppo/route_rule.h"
 
 namespace aquafarm::agents {
 
@@ -43,7 +44,7 @@ class LoopGuard {
   std::vector<std::size_t> task_features_;
   std::vector<std::size_t> cell_features_;
   const std::int32_t max_visits_;
-  Teacher teacher_;
+  RouteRule rule_;
   std::vector<Episode> episodes_;  // of each slot
 };
 

@@ -16,10 +16,10 @@ std::unique_ptr<ActorCritic> MakeActorCritic(const EnvironmentSpec& spec, const 
                                              std::uint64_t seed) {
   const auto hidden = static_cast<std::size_t>(options.hidden_size);
   if (!HasTokens(spec)) {
-    if (options.teacher.At(0.0) > 0.0) {
+    if (options.HasTeacher() && options.teacher_policy == TeacherPolicy::kRule) {
       throw InputError("teacher: got " + ToString(options.teacher) +
-                       ", expected 0 in a scenario without view.tokens, which the teacher reads; "
-                       "set view.tokens, or teacher=0");
+                       ", expected 0 in a scenario without view.tokens, which the rule reads; set "
+                       "view.tokens, teacher_policy=planner, or teacher=0");
     }
     if (options.augment || options.symmetric) {
       throw InputError(std::string(options.augment ? "augment" : "symmetric") +

@@ -14,6 +14,7 @@
 #include "ppo/ppo_policy.h"
 #include "ppo/ppo_updater.h"
 #include "ppo/rollout.h"
+#include "ppo/teacher.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -55,6 +56,7 @@ Rollout::Shape RolloutShape(const EnvironmentSpec& shard, const PpoOptions& opti
   shape.features = static_cast<std::size_t>(shard.feature_count);
   shape.state_size = state_size;
   shape.is_team = options.IsTeam(shard.team_reward);
+  shape.has_labels = options.HasTeacher();
   if (options.recurrent) {
     shape.sequence_length = static_cast<std::size_t>(options.sequence_length);
   }
@@ -91,6 +93,9 @@ void CopyFarms(const StepResults& all, std::size_t first, std::size_t count, Ste
         to.assign(begin, begin + static_cast<std::ptrdiff_t>(count) * each);
       },
       all, part);
+  if (all.states.empty()) return;
+  const auto begin = all.states.begin() + static_cast<std::ptrdiff_t>(first);
+  part.states.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
 }
 
 /// A group of farms with its own rollout and its own random numbers.
@@ -110,6 +115,8 @@ struct Shard {
   void Observe(const StepResults& results);
   /// Chooses actions and records them.
   void Act(ActorCritic& network);
+  /// Records the teacher's actions in place of which Act chose its own.
+  void Label(Teacher& teacher);
   /// Completes a full rollout with the values of the observations that follow it.
   void Finish(ActorCritic& network, const PpoOptions& options);
   void Save(Checkpoint& checkpoint) const;
@@ -128,6 +135,7 @@ struct Shard {
   std::vector<std::uint8_t> symmetry;     // of each slot's episode
   StepResults turned;                     // the results with turned tokens
   std::vector<std::uint8_t> actions;
+  std::vector<std::uint8_t> labels;  // the teacher's actions
   std::vector<float> log_probs;
   std::string prefix;  // of its sections in a checkpoint; empty for the only shard
 };
@@ -161,6 +169,17 @@ void Shard::Act(ActorCritic& network) {
   for (std::size_t i = 0; i < symmetry.size(); ++i) {
     actions[i] = symmetries[symmetry[i]].TurnBack(actions[i]);
   }
+}
+
+void Shard::Label(Teacher& teacher) {
+  teacher.Act(*seen, actor.masks(), labels);
+  for (std::size_t i = 0; teacher.sees_farms() && i < symmetry.size(); ++i) {
+    labels[i] = symmetries[symmetry[i]].Turn(labels[i]);
+  }
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if ((actor.masks()[i] >> labels[i] & 1U) == 0) labels[i] = kNoLabel;
+  }
+  rollout.SetLabels(labels);
 }
 
 void Shard::Finish(ActorCritic& network, const PpoOptions& options) {
@@ -207,11 +226,16 @@ void Shard::Load(const Checkpoint& checkpoint) {
   symmetry = std::move(turned_by);
 }
 
+std::uint8_t ObservationTypesOf(const PpoOptions& options) {
+  const bool plans = options.HasTeacher() && options.teacher_policy == TeacherPolicy::kPlanner;
+  return plans ? kFeaturesBit | kStatesBit : kFeaturesBit;
+}
+
 class PpoLearner final : public ShardedLearner, public WarmStart {
  public:
   /// @param spec of the farms of this process
   PpoLearner(const EnvironmentSpec& spec, std::uint64_t seed, const PpoOptions& options,
-             std::string resolved, ProcessGroup* group)
+             std::string resolved, ProcessGroup* group, PlannerMaker make_planner)
       : spec_(spec),
         options_(options),
         resolved_(std::move(resolved)),
@@ -227,16 +251,16 @@ class PpoLearner final : public ShardedLearner, public WarmStart {
     for (std::size_t i = 0; i < local_.count; ++i) {
       shards_.emplace_back(one, seed, options, shape, local_.first + i);
     }
+    if (options.HasTeacher()) teacher_ = MakeTeacher(one, options.teacher_policy, make_planner);
     if (!HasTokens(spec)) return;
     for (Shard& shard : shards_) {
       if (!options.augment) break;
       shard.symmetries = AllSymmetries(LayoutOfTokens(spec.feature_names));
       shard.symmetry.resize(shape.slots);
     }
-    updater_.SetTeacher(std::make_unique<const Teacher>(LayoutOfTokens(spec.feature_names)));
   }
 
-  std::uint8_t observation_types() const override { return kFeaturesBit; }
+  std::uint8_t observation_types() const override { return ObservationTypesOf(options_); }
   std::string options() const override { return resolved_; }
   std::uint32_t sync_interval() const override {
     return options_.shards == 1 ? 1
@@ -263,6 +287,7 @@ class PpoLearner final : public ShardedLearner, public WarmStart {
  private:
   const StepResults& ResultsOf(std::size_t shard, const StepResults& results);
   void Update(double progress);
+  bool IsTaught(const Rollout& rollout, double progress) const;
 
   const EnvironmentSpec spec_;
   const PpoOptions options_;
@@ -270,7 +295,8 @@ class PpoLearner final : public ShardedLearner, public WarmStart {
   const ShardRange local_;
   const std::unique_ptr<ActorCritic> network_;
   PpoUpdater updater_;
-  std::vector<Shard> shards_;  // of this process
+  std::unique_ptr<Teacher> teacher_;  // null: no option asks for one
+  std::vector<Shard> shards_;         // of this process
   float entropy_{};  // mean of the policy at the last step, of several shards in the last update
 };
 
@@ -298,10 +324,18 @@ void PpoLearner::Step(const StepResults& results, double progress,
   actions.clear();
   for (Shard& shard : shards_) {
     shard.Act(*network_);
+    if (IsTaught(shard.rollout, progress)) shard.Label(*teacher_);
     actions.insert(actions.end(), shard.actions.begin(), shard.actions.end());
   }
   entropy_ = options_.shards == 1 ? shards_.front().actor.distribution().entropies.mean()
                                   : updater_.entropy();
+}
+
+// Returns whether the teacher acts at the last recorded step.
+bool PpoLearner::IsTaught(const Rollout& rollout, double progress) const {
+  if (teacher_ == nullptr || options_.teacher.At(progress) <= 0.0) return false;
+  const std::size_t step = rollout.recorded_steps() - 1;
+  return step % static_cast<std::size_t>(options_.teacher_interval) == 0;
 }
 
 void PpoLearner::Update(double progress) {
@@ -333,14 +367,13 @@ void PpoLearner::Load(const Checkpoint& checkpoint) {
 
 std::uint8_t ObservationTypesOf(const std::string& options, bool central) {
   std::string resolved;
-  PpoOptions::Parse(options, resolved, central);
-  return kFeaturesBit;
+  return ObservationTypesOf(PpoOptions::Parse(options, resolved, central));
 }
 
 /// @param central MAPPO @param group of the rank; nullptr: the learner has all shards
 std::unique_ptr<PpoLearner> MakeLearner(const EnvironmentSpec& spec, std::uint64_t seed,
-                                        const std::string& text, bool central,
-                                        ProcessGroup* group) {
+                                        const std::string& text, bool central, ProcessGroup* group,
+                                        PlannerMaker make_planner) {
   std::string resolved;
   const PpoOptions options = PpoOptions::Parse(text, resolved, central);
   if (group != nullptr && options.exploration.is_curious()) {
@@ -349,7 +382,7 @@ std::unique_ptr<PpoLearner> MakeLearner(const EnvironmentSpec& spec, std::uint64
                      " ranks, expected one without icm: curiosity learns in one process");
   }
   PrepareTorch(options.threads);
-  return std::make_unique<PpoLearner>(spec, seed, options, resolved, group);
+  return std::make_unique<PpoLearner>(spec, seed, options, resolved, group, make_planner);
 }
 
 }  // namespace
@@ -362,21 +395,23 @@ std::uint8_t MappoObservationTypes(const std::string& options) {
 }
 
 std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
-                                 const std::string& options) {
-  return MakeLearner(spec, seed, options, false, nullptr);
+                                 const std::string& options, PlannerMaker make_planner) {
+  return MakeLearner(spec, seed, options, false, nullptr, make_planner);
 }
 std::unique_ptr<Learner> MakeMappo(const EnvironmentSpec& spec, std::uint64_t seed,
-                                   const std::string& options) {
-  return MakeLearner(spec, seed, options, true, nullptr);
+                                   const std::string& options, PlannerMaker make_planner) {
+  return MakeLearner(spec, seed, options, true, nullptr, make_planner);
 }
 
 std::unique_ptr<ShardedLearner> MakePpoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
-                                               const std::string& options, ProcessGroup& group) {
-  return MakeLearner(spec, seed, options, false, &group);
+                                               const std::string& options, ProcessGroup& group,
+                                               PlannerMaker make_planner) {
+  return MakeLearner(spec, seed, options, false, &group, make_planner);
 }
 std::unique_ptr<ShardedLearner> MakeMappoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
-                                                 const std::string& options, ProcessGroup& group) {
-  return MakeLearner(spec, seed, options, true, &group);
+                                                 const std::string& options, ProcessGroup& group,
+                                                 PlannerMaker make_planner) {
+  return MakeLearner(spec, seed, options, true, &group, make_planner);
 }
 
 std::unique_ptr<Policy> MakePpoPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec) {

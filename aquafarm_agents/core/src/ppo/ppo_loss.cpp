@@ -36,6 +36,13 @@ Sloped PolicyTerm(float log_ratio, float advantage, float clip) {
   return {-clipped * advantage, 0.0F};
 }
 
+/// Adds the slopes of −scale · log π(label).
+void AddImitation(const ActionDistribution& policy, Index row, std::uint8_t label, float scale,
+                  float* slope) {
+  for (int a = 0; a < kActionCount; ++a) slope[a] += scale * policy.probs(row, a);
+  slope[label] -= scale;
+}
+
 /// ½ (V − target)² and its derivative with respect to V. With a clip range it is the larger of the
 /// losses of V and of V clipped to the range around V_old (as in the code of Schulman et al. 2017).
 Sloped ValueTerm(float value, float old_value, float target, float clip) {
@@ -112,6 +119,9 @@ PpoLoss ComputeLoss(const float* outputs, std::size_t rows, const PpoRows& recor
     }
     slope[action] += weight * policy.slope;
     slope[kActionCount] = weight * coefficients.value * value.slope;
+    if (recorded.labels != nullptr && recorded.labels[i] != kNoLabel) {
+      AddImitation(distribution, row, recorded.labels[i], coefficients.imitation * weight, slope);
+    }
     const auto share = static_cast<double>(weight);
     const auto error = static_cast<double>(value_now - recorded.targets[i]);
     loss.policy += share * static_cast<double>(policy.value);

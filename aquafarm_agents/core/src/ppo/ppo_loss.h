@@ -36,17 +36,22 @@ struct PpoCoefficients {
   float value_clip{};  ///< 0: not clipped
   float value{};
   float entropy{};
+  float imitation{};  ///< of the cross-entropy with the actions of a teacher
 };
+
+/// Label of a row without an action of a teacher.
+inline constexpr std::uint8_t kNoLabel = 255;
 
 /// Data recorded for each row when its action was chosen. Pointers to [rows].
 struct PpoRows {
   const ActionMask* masks{};
   const std::uint8_t* actions{};
-  const float* log_probs{};   ///< log π_old(a | s)
-  const float* values{};      ///< V_old(s)
-  const float* advantages{};  ///< as used in the loss, optionally normalised
-  const float* targets{};     ///< value targets
-  const float* weights{};     ///< of the row in the loss; 0: the row is ignored
+  const float* log_probs{};      ///< log π_old(a | s)
+  const float* values{};         ///< V_old(s)
+  const float* advantages{};     ///< as used in the loss, optionally normalised
+  const float* targets{};        ///< value targets
+  const float* weights{};        ///< of the row in the loss; 0: the row is ignored
+  const std::uint8_t* labels{};  ///< actions of a teacher or kNoLabel; null without a teacher
 };
 
 /// Weighted sums over the rows.
@@ -62,7 +67,9 @@ struct PpoLoss {
   PpoLoss& operator+=(const PpoLoss& other);
 };
 
-/// Computes the loss of rows and its gradient with respect to the outputs.
+/// Computes the loss of rows and its gradient with respect to the outputs. The gradient, but not
+/// the returned loss, contains the cross-entropy with a teacher (*kickstarting*, Schmitt et al.
+/// 2018, arXiv:1803.03835).
 /// @param outputs [rows, kActorCriticOutputs], row-major
 /// @param slopes [rows, kActorCriticOutputs]: d total / d outputs, overwritten
 /// @param distribution scratch

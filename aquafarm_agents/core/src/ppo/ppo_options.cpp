@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::array<std::string_view, kPolicyModeCount> kPolicyModes{"greedy", "sampled"};
 
+constexpr std::array<std::string_view, kTeacherPolicyCount> kTeacherPolicies{"rule", "planner"};
+
 enum class Preset : std::uint8_t { kTuned, kLarge };
 constexpr std::array<std::string_view, 2> kPresets{"tuned", "large"};
 
@@ -34,6 +36,10 @@ PpoOptions Defaults(Preset preset) {
 
 std::string_view ToString(PolicyMode value) {
   return kPolicyModes[static_cast<std::size_t>(value)];
+}
+
+std::string_view ToString(TeacherPolicy value) {
+  return kTeacherPolicies[static_cast<std::size_t>(value)];
 }
 
 std::int32_t PpoOptions::Horizon(std::size_t slots) const {
@@ -62,6 +68,9 @@ PpoOptions PpoOptions::Parse(const std::string& text, std::string& resolved, boo
   ReadNumber(reader, "value_coef", 0.0, 1e6, options.value_coef);
   ReadFlag(reader, "normalize_advantages", options.normalize_advantages);
   ReadSchedule(reader, "teacher", 0.0, 1000.0, options.teacher);
+  options.teacher_policy =
+      ReadWord(reader, "teacher_policy", options.teacher_policy, kTeacherPolicies);
+  ReadWhole(reader, "teacher_interval", 1, 1000000, options.teacher_interval);
   ReadSchedule(reader, "team_share", 0.0, 1.0, options.team_share);
   ReadFlag(reader, "augment", options.augment);
   ReadFlag(reader, "symmetric", options.symmetric);

@@ -88,7 +88,7 @@ void PpoUpdater::Update(const std::vector<Input>& inputs, const Context& context
   coefficients_.value_clip = static_cast<float>(options_.value_clip_range);
   coefficients_.value = static_cast<float>(options_.value_coef);
   coefficients_.entropy = static_cast<float>(options_.exploration.level.At(progress));
-  teacher_coef_ = static_cast<float>(options_.teacher.At(progress));
+  coefficients_.imitation = static_cast<float>(options_.teacher.At(progress));
   for (std::size_t i = 0; i < inputs.size(); ++i) Collect(*inputs[i].rollout, i);
   const std::size_t sequences = CountSequences();
   if (sequences == 0) return;
@@ -196,13 +196,9 @@ PpoLoss PpoUpdater::LearnChunk(const Rollout& rollout, const std::uint32_t* sequ
   rows.joint = joint_.data();
   const float* const outputs = network_.Forward(rows, nullptr);
   const PpoRows recorded{masks_.data(),      actions_.data(), log_probs_.data(), values_.data(),
-                         advantages_.data(), targets_.data(), weights_.data()};
+                         advantages_.data(), targets_.data(), weights_.data(),   labels_.data()};
   const PpoLoss loss =
       ComputeLoss(outputs, rows.rows(), recorded, coefficients_, distribution_, slopes_.data());
-  if (teacher_ != nullptr && teacher_coef_ > 0.0F) {
-    teacher_->AddSlopes(features_.data(), rows.rows(), masks_.data(), distribution_,
-                        weights_.data(), teacher_coef_, slopes_.data());
-  }
   network_.Backward(rows, slopes_.data());
   return loss;
 }
@@ -218,6 +214,7 @@ void PpoUpdater::Gather(const Rollout& rollout, const std::uint32_t* sequences, 
   is_first_.resize(rows);
   masks_.resize(rows);
   actions_.resize(rows);
+  labels_.resize(rows);
   slopes_.resize(rows * kActorCriticOutputs);
   for (std::vector<float>* one : {&log_probs_, &values_, &advantages_, &targets_, &weights_}) {
     one->resize(rows);
@@ -240,6 +237,7 @@ void PpoUpdater::Gather(const Rollout& rollout, const std::uint32_t* sequences, 
       is_first_[row] = rollout.is_first(sample) ? 1 : 0;
       masks_[row] = rollout.mask(sample);
       actions_[row] = rollout.action(sample);
+      labels_[row] = rollout.label(sample);
       log_probs_[row] = rollout.log_prob(sample);
       values_[row] = rollout.value(sample);
       advantages_[row] = (rollout.advantage(sample) - mean_) * inverse_deviation_;

@@ -15,7 +15,6 @@
 #include "ppo/adam.h"
 #include "ppo/ppo_loss.h"
 #include "ppo/rollout.h"
-#include "ppo/teacher.h"
 
 namespace aquafarm::agents {
 
@@ -31,9 +30,6 @@ class PpoUpdater {
   /// @param group processes that hold the other shards; null if there are none
   PpoUpdater(const PpoOptions& options, ActorCritic& network, std::size_t shards,
              ProcessGroup* group);
-
-  /// Adds a teacher, which the policy imitates with the weight PpoOptions::teacher.
-  void SetTeacher(std::unique_ptr<const Teacher> teacher) { teacher_ = std::move(teacher); }
 
   /// A shard of this process. Both pointers are set.
   struct Input {
@@ -87,8 +83,6 @@ class PpoUpdater {
   float value_error_;
   float entropy_;
   PpoCoefficients coefficients_;
-  std::unique_ptr<const Teacher> teacher_;  // null without tokens
-  float teacher_coef_{};
   ProcessGroup* const group_;
 
   // Scratch. By shard of this process:
@@ -113,6 +107,7 @@ class PpoUpdater {
   std::vector<float> advantages_;
   std::vector<float> targets_;
   std::vector<float> weights_;
+  std::vector<std::uint8_t> labels_;
   std::vector<float> slopes_;
   ActionDistribution distribution_;
 };

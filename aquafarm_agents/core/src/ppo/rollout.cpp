@@ -8,6 +8,7 @@
 
 #include "aquafarm/base/check.h"
 #include "learning/saved_numbers.h"
+#include "ppo/ppo_loss.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -35,7 +36,8 @@ Rollout::Rollout(const Shape& shape)
       log_probs_(samples()),
       values_(samples() + shape.slots),
       rewards_(samples()),
-      ends_(samples(), StepEnd::kNoTransition) {}
+      ends_(samples(), StepEnd::kNoTransition),
+      labels_(shape.has_labels ? samples() : 0, kNoLabel) {}
 
 void Rollout::Complete(const StepResults& results, const Rewards& rewards) {
   if (!is_open_) return;
@@ -71,6 +73,7 @@ void Rollout::Add(const StepResults& results, const std::vector<ActionMask>& mas
   std::copy(actions.begin(), actions.end(), actions_.begin() + at);
   std::copy(log_probs.begin(), log_probs.end(), log_probs_.begin() + at);
   std::copy(values.begin(), values.end(), values_.begin() + at);
+  if (!labels_.empty()) std::fill_n(labels_.begin() + at, shape_.slots, kNoLabel);
   if (steps_ % shape_.sequence_length == 0) {
     const std::size_t block = steps_ / shape_.sequence_length * state.size();
     std::copy(state.begin(), state.end(), states_.begin() + static_cast<std::ptrdiff_t>(block));
@@ -84,6 +87,13 @@ void Rollout::Add(const StepResults& results, const std::vector<ActionMask>& mas
   }
   ++steps_;
   is_open_ = true;
+}
+
+void Rollout::SetLabels(const std::vector<std::uint8_t>& labels) {
+  AQUAFARM_CHECK_EQ(labels.size(), shape_.slots);
+  AQUAFARM_CHECK_EQ(labels_.size(), samples());
+  const auto at = static_cast<std::ptrdiff_t>((steps_ - 1) * shape_.slots);
+  std::copy(labels.begin(), labels.end(), labels_.begin() + at);
 }
 
 void Rollout::Finish(const std::vector<float>& last_values, float gamma, float lambda) {
@@ -123,6 +133,7 @@ void Rollout::Save(Checkpoint& checkpoint) const {
   save("values", values_, 1);
   save("rewards", rewards_, 1);
   save("ends", ends_, 1);
+  if (!labels_.empty()) save("labels", labels_, 1);
   checkpoint.SetArray("rollout.states", states_);
 }
 
@@ -148,6 +159,8 @@ void Rollout::Load(const Checkpoint& checkpoint) {
   load("values", loaded.values_, 1);
   load("rewards", loaded.rewards_, 1);
   load("ends", loaded.ends_, 1);
+  // Before the labels were recorded, each update asked the teacher.
+  if (!labels_.empty() && checkpoint.Has("rollout.labels")) load("labels", loaded.labels_, 1);
   checkpoint.GetArray("rollout.states", loaded.states_.size(), loaded.states_);
   *this = std::move(loaded);
 }

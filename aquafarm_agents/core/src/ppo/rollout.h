@@ -8,6 +8,7 @@
 #include "aquafarm/agents/environment/environment.h"
 #include "aquafarm/agents/learning/checkpoint.h"
 #include "ppo/gae.h"
+#include "ppo/ppo_loss.h"
 
 namespace aquafarm::agents {
 
@@ -25,6 +26,7 @@ class Rollout {
         1};  ///< the recurrent state is stored at every sequence_length-th step
     /// An agent that is done earns until its farm's episode ends, because its return is the team's.
     bool is_team{};
+    bool has_labels{};  ///< of a teacher
   };
   /// What an agent learns from: scale · ((1 − share) · its reward + share · the sum of its farm's).
   struct Rewards {
@@ -35,6 +37,7 @@ class Rollout {
 
   const Shape& shape() const { return shape_; }
   std::size_t samples() const { return shape_.steps * shape_.slots; }
+  std::size_t recorded_steps() const { return steps_; }
   bool IsFull() const { return steps_ == shape_.steps && !is_open_; }
 
   /// Records the results of the last decisions; does nothing if there are none.
@@ -43,6 +46,8 @@ class Rollout {
   void Add(const StepResults& results, const std::vector<ActionMask>& masks,
            const std::vector<std::uint8_t>& actions, const std::vector<float>& log_probs,
            const std::vector<float>& values, const std::vector<float>& state);
+  /// Records the actions of a teacher for the last decisions. @param labels [E], or kNoLabel
+  void SetLabels(const std::vector<std::uint8_t>& labels);
   /// Computes advantages and value targets of a full rollout.
   /// @param last_values [E] of the observations after the last step
   void Finish(const std::vector<float>& last_values, float gamma, float lambda);
@@ -60,6 +65,10 @@ class Rollout {
   float log_prob(std::size_t sample) const { return log_probs_[sample]; }
   float value(std::size_t sample) const { return values_[sample]; }
   float advantage(std::size_t sample) const { return advantages_[sample]; }
+  /// The action of a teacher, or kNoLabel.
+  std::uint8_t label(std::size_t sample) const {
+    return labels_.empty() ? kNoLabel : labels_[sample];
+  }
   float target(std::size_t sample) const { return advantages_[sample] + values_[sample]; }
 
   void Save(Checkpoint& checkpoint) const;
@@ -82,6 +91,7 @@ class Rollout {
   std::vector<float> values_;  // [T + 1, E]
   std::vector<float> rewards_;
   std::vector<StepEnd> ends_;
+  std::vector<std::uint8_t> labels_;  // empty without a teacher
   std::vector<float> advantages_;
 };
 

@@ -1,128 +1,57 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ppo/teacher.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+#include "ppo/route_rule.h"
 
 namespace aquafarm::agents {
 namespace {
 
-// Units of the features, docs/generalist.md.
-constexpr float kUnitLength = 16.0F;     // of distances [cells]
-constexpr float kUnitRisk = 20.0F;       // of risks [reward]
-constexpr float kUnitRouteSteps = 8.0F;  // of the summed risk of a route
-constexpr float kRouteSteps = 32.0F;     // over which it is summed
-constexpr float kTolerance = 1.0001F;    // of sums of risks
+class RuleTeacher final : public Teacher {
+ public:
+  explicit RuleTeacher(const EnvironmentSpec& spec)
+      : rule_(LayoutOfTokens(spec.feature_names)),
+        features_(static_cast<std::size_t>(spec.feature_count)) {}
+  bool sees_farms() const override { return false; }
+  void Act(const StepResults& results, const std::vector<ActionMask>& allowed,
+           std::vector<std::uint8_t>& actions) override {
+    actions.resize(allowed.size());
+    const float* tokens = results.features.data();
+    for (std::size_t i = 0; i < allowed.size(); ++i, tokens += features_) {
+      actions[i] = rule_.ActionOf(tokens, allowed[i]);
+    }
+  }
 
-constexpr int kOctants = 8;
-// Place of each move on the compass, from north clockwise.
-constexpr std::array<int, kMoveCount> kOctantOf{0, 4, 6, 2, 7, 1, 5, 3};
+ private:
+  const RouteRule rule_;
+  const std::size_t features_;
+};
+
+class PlannerTeacher final : public Teacher {
+ public:
+  PlannerTeacher(std::unique_ptr<Policy> planner, std::int32_t farms)
+      : planner_(std::move(planner)), farms_(farms) {}
+  bool sees_farms() const override { return true; }
+  void Act(const StepResults& results, const std::vector<ActionMask>&,
+           std::vector<std::uint8_t>& actions) override {
+    planner_->Begin(0, farms_);  // forgets its earlier plans
+    planner_->Act(results, actions);
+  }
+
+ private:
+  const std::unique_ptr<Policy> planner_;
+  const std::int32_t farms_;
+};
 
 }  // namespace
 
-Teacher::Teacher(const TokenLayout& layout)
-    : layout_(layout),
-      risk_(layout.PlaceOf(TokenKind::kShip, "ship.risk.north")),
-      near_blocked_(layout.PlaceOf(TokenKind::kShip, "ship.near_blocked.-3.-3")),
-      near_risk_(layout.PlaceOf(TokenKind::kShip, "ship.near_risk.-3.-3")),
-      here_(layout.PlaceOf(TokenKind::kDevice, "device0.here")),
-      next_(layout.PlaceOf(TokenKind::kDevice, "device0.next.north")),
-      distance_(layout.PlaceOf(TokenKind::kDevice, "device0.distance")),
-      route_risk_(layout.PlaceOf(TokenKind::kDevice, "device0.route_risk")),
-      has_space_(layout.PlaceOf(TokenKind::kDevice, "device0.has_space")),
-      has_cargo_(layout.PlaceOf(TokenKind::kDevice, "device0.has_cargo")),
-      deployed_(layout.PlaceOf(TokenKind::kDevice, "device0.deployed")),
-      slack_(layout.PlaceOf(TokenKind::kDevice, "device0.slack")) {}
-
-void Teacher::Consider(const float* tokens, TokenKind kind, Target& best) const {
-  const TokenGroup& group = layout_.of(kind);
-  const bool is_port = kind == TokenKind::kPort;
-  for (std::size_t slot = 0; slot < group.slots; ++slot) {
-    const float* const token = tokens + group.begin + slot * group.size;
-    if (token[0] == 0.0F) continue;
-    const bool is_wanted =
-        is_port ? token[has_cargo_] != 0.0F
-                : token[deployed_] != 0.0F && token[has_space_] != 0.0F && token[slack_] >= 0.0F;
-    if (!is_wanted) continue;
-    const float cost =
-        token[distance_] * kUnitLength + token[route_risk_] * kUnitRouteSteps * kUnitRisk;
-    if (best.token == nullptr || cost < best.cost) best = {token, cost, is_port};
-  }
-}
-
-// The least risk that the ship could have in the open cells around it.
-float Teacher::LeastRisk(const float* tokens) const {
-  float least = std::numeric_limits<float>::infinity();
-  const std::size_t cells = near_risk_ - near_blocked_;
-  for (std::size_t cell = 0; cell < cells; ++cell) {
-    if (tokens[near_blocked_ + cell] == 0.0F) least = std::min(least, tokens[near_risk_ + cell]);
-  }
-  return least;  // at most the risk of the ship's own cell
-}
-
-// Of the allowed moves the one with the least risk and deviation from the route, if there is one.
-std::uint8_t Teacher::MoveTo(const float* tokens, const Target& target, ActionMask allowed) const {
-  int wanted = kNone;
-  for (std::size_t move = 0; target.token != nullptr && move < kMoves.size(); ++move) {
-    if (target.token[next_ + move] != 0.0F) wanted = kOctantOf[move];
-  }
-  std::uint8_t best = 0;
-  float lowest = std::numeric_limits<float>::infinity();
-  for (std::uint8_t move = 0; move < kMoveCount; ++move) {
-    if ((allowed & MaskOf(static_cast<Action>(move))) == 0) continue;
-    const int apart = std::abs(kOctantOf[move] - wanted);
-    const int octants = wanted == kNone ? 0 : std::min(apart, kOctants - apart);
-    const float cost = static_cast<float>(octants) + tokens[risk_ + move] * kUnitRisk;
-    if (cost >= lowest) continue;
-    lowest = cost;
-    best = move;
-  }
-  return best;
-}
-
-Teacher::Target Teacher::NearestTarget(const float* tokens) const {
-  Target target;
-  Consider(tokens, TokenKind::kDevice, target);
-  Consider(tokens, TokenKind::kPort, target);
-  return target;
-}
-
-std::uint8_t Teacher::ActionOf(const float* tokens, ActionMask allowed) const {
-  return ActionTo(tokens, NearestTarget(tokens), allowed);
-}
-
-std::optional<std::uint8_t> Teacher::SafeActionOf(const float* tokens, ActionMask allowed) const {
-  const Target target = NearestTarget(tokens);
-  if (target.token == nullptr) return std::nullopt;
-  const float steps = std::min(kRouteSteps, target.token[distance_] * kUnitLength);
-  const float waiting = LeastRisk(tokens) * steps;
-  if (target.token[route_risk_] * kUnitRouteSteps > waiting * kTolerance) return std::nullopt;
-  return ActionTo(tokens, target, allowed);
-}
-
-std::uint8_t Teacher::ActionTo(const float* tokens, const Target& target,
-                               ActionMask allowed) const {
-  if (target.token != nullptr && target.token[here_] != 0.0F) {
-    const Action action = target.is_port ? Action::kDropOff : Action::kPickup;
-    if ((allowed & MaskOf(action)) != 0) return static_cast<std::uint8_t>(action);
-  }
-  return MoveTo(tokens, target, allowed);
-}
-
-void Teacher::AddSlopes(const float* tokens, std::size_t rows, const ActionMask* allowed,
-                        const ActionDistribution& policy, const float* weights, float coefficient,
-                        float* slopes) const {
-  const std::size_t size = layout_.groups.back().end();
-  for (std::size_t row = 0; row < rows; ++row, slopes += kActorCriticOutputs) {
-    const std::uint8_t action = ActionOf(tokens + row * size, allowed[row]);
-    const float scale = coefficient * weights[row];
-    for (std::uint8_t a = 0; a < kActionCount; ++a) {
-      slopes[a] += scale * policy.probs(static_cast<Eigen::Index>(row), a);
-    }
-    slopes[action] -= scale;
-  }
+std::unique_ptr<Teacher> MakeTeacher(const EnvironmentSpec& spec, TeacherPolicy which,
+                                     PlannerMaker make_planner) {
+  if (which == TeacherPolicy::kRule) return std::make_unique<RuleTeacher>(spec);
+  AQUAFARM_CHECK_EQ(make_planner != nullptr, true);
+  return std::make_unique<PlannerTeacher>(make_planner(spec), spec.farms);
 }
 
 }  // namespace aquafarm::agents

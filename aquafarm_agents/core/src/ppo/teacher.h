@@ -1,62 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A simple policy on entity tokens (token_layout.h) that PPO may imitate at the start of a
-/// training (*kickstarting*, Schmitt et al. 2018, arXiv:1803.03835). It takes the route to the
-/// target that is nearest in steps and risk, and evades risk in the next step:
-///
-///   targets   devices that can be brought home in time, while there is space; ports, with cargo
-///   cost      steps of the route + |risk| along it
-///   move      of all open moves that with the least |risk| + deviation from the route in octants
+/// A policy that PPO imitates at the start of a training (*kickstarting*, Schmitt et al. 2018,
+/// arXiv:1803.03835; its loss: ppo_loss.h). The learner plays; the teacher chooses at each recorded
+/// step what it would do there (as in DAgger, Ross et al. 2011).
 
-#include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <memory>
+#include <vector>
 
-#include "aquafarm/grid/action.h"
-#include "ppo/ppo_loss.h"
-#include "ppo/token_layout.h"
+#include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/agents/ppo/ppo.h"
+#include "aquafarm/agents/ppo/ppo_options.h"
 
 namespace aquafarm::agents {
 
 class Teacher {
  public:
-  /// @throws InputError if the features are not entity tokens
-  explicit Teacher(const TokenLayout& layout);
+  virtual ~Teacher() = default;
 
-  /// Returns the teacher's action, one of `allowed`. @param tokens one row of features
-  std::uint8_t ActionOf(const float* tokens, ActionMask allowed) const;
-
-  /// As ActionOf, if the route to the target has no more risk per step than the safest cell near
-  /// the ship, for example none. Nothing if it has more, or if there is no target.
-  std::optional<std::uint8_t> SafeActionOf(const float* tokens, ActionMask allowed) const;
-
-  /// Adds the slopes of coefficient · weight · cross-entropy(teacher, policy) to those of the
-  /// logits.
-  /// @param tokens [rows, features] @param policy probabilities of the rows @param weights [rows]
-  /// @param slopes [rows, kActorCriticOutputs]
-  void AddSlopes(const float* tokens, std::size_t rows, const ActionMask* allowed,
-                 const ActionDistribution& policy, const float* weights, float coefficient,
-                 float* slopes) const;
-
- private:
-  // The nearest target in steps and risk.
-  struct Target {
-    const float* token{};
-    float cost{};
-    bool is_port{};
-  };
-  Target NearestTarget(const float* tokens) const;
-  std::uint8_t ActionTo(const float* tokens, const Target& target, ActionMask allowed) const;
-  void Consider(const float* tokens, TokenKind kind, Target& best) const;
-  float LeastRisk(const float* tokens) const;
-  std::uint8_t MoveTo(const float* tokens, const Target& target, ActionMask allowed) const;
-
-  const TokenLayout layout_;
-  // Places of features: of the ship, and of a device or port.
-  const std::size_t risk_, near_blocked_, near_risk_;
-  const std::size_t here_, next_, distance_, route_risk_, has_space_, has_cargo_;
-  const std::size_t deployed_, slack_;  // of a device
+  /// Chooses actions by the results alone, so that a resumed training has the same ones.
+  /// @param allowed [N, S] @param actions is resized to [N, S]
+  virtual void Act(const StepResults& results, const std::vector<ActionMask>& allowed,
+                   std::vector<std::uint8_t>& actions) = 0;
+  /// Returns whether it reads the farms, which are not turned, instead of the features.
+  virtual bool sees_farms() const = 0;
 };
+
+/// @param make_planner not null for a planner
+/// @throws InputError if the farms do not have what the teacher reads
+std::unique_ptr<Teacher> MakeTeacher(const EnvironmentSpec& spec, TeacherPolicy which,
+                                     PlannerMaker make_planner);
 
 }  // namespace aquafarm::agents

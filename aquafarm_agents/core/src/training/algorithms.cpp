@@ -37,6 +37,23 @@ std::unique_ptr<Policy> MakePlannerPolicy(const Checkpoint&, const EnvironmentSp
   return std::make_unique<PlannerPolicy>(spec, foresight);
 }
 
+std::unique_ptr<Policy> MakePlanner(const EnvironmentSpec& spec) {
+  return MakePlannerPolicy<Foresight::kPersistence>({}, spec);
+}
+
+// A learner that may imitate the planner.
+template <auto make>
+std::unique_ptr<Learner> WithPlanner(const EnvironmentSpec& spec, std::uint64_t seed,
+                                     const std::string& options) {
+  return make(spec, seed, options, MakePlanner);
+}
+template <auto make>
+std::unique_ptr<ShardedLearner> WithPlannerOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
+                                                   const std::string& options,
+                                                   ProcessGroup& group) {
+  return make(spec, seed, options, group, MakePlanner);
+}
+
 // A policy that needs nothing but the farms' specification.
 template <typename T>
 std::unique_ptr<Policy> MakeBuiltIn(const Checkpoint&, const EnvironmentSpec& spec) {
@@ -136,11 +153,12 @@ std::vector<Algorithm> OwnAlgorithms() {
       {"maddpg", "an actor for each agent, a critic that sees all of them (§3.3)", true, 800000,
        WithCuriosityToo<MaddpgObservationTypes>, MakeExplorer<MakeMaddpg>, MakeMaddpgPolicy},
       {"ppo", "proximal policy optimization: an actor-critic that learns from its own steps", true,
-       2500000, WithCuriosityToo<PpoObservationTypes>, MakeExplorer<MakePpo>, MakePpoPolicy,
-       /*default_farms=*/256, MakePpoOfRanks},
+       2500000, WithCuriosityToo<PpoObservationTypes>, MakeExplorer<WithPlanner<MakePpo>>,
+       MakePpoPolicy,
+       /*default_farms=*/256, WithPlannerOfRanks<MakePpoOfRanks>},
       {"mappo", "PPO for several agents: one policy, a value that sees all of them", true, 10000000,
-       WithCuriosityToo<MappoObservationTypes>, MakeExplorer<MakeMappo>, MakePpoPolicy,
-       /*default_farms=*/256, MakeMappoOfRanks},
+       WithCuriosityToo<MappoObservationTypes>, MakeExplorer<WithPlanner<MakeMappo>>, MakePpoPolicy,
+       /*default_farms=*/256, WithPlannerOfRanks<MakeMappoOfRanks>},
       {"planner",
        "plans on the issued forecast, or else on the present headings; several agents cooperate",
        false, 0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kPersistence>},

@@ -125,6 +125,32 @@ TEST(Rollout, LearnsFromStepsOfActiveAgentsOnly) {
   EXPECT_FALSE(rollout.IsValid(0));
 }
 
+TEST(Rollout, KeepsTheLabelsOfTheStepsThatHaveThem) {
+  const StepResults going = Outcome(EndReason::kNone, false, {1, 1});
+  const auto record = [&going](Rollout& rollout) {
+    rollout.Complete(going, {});
+    rollout.Add(going, {3, 3}, {0, 0}, {0, 0}, {10, 20}, {});
+  };
+  const Rollout::Shape shape{2, 2, 2, 1, 0, 1, false, /*has_labels=*/true};
+  Rollout rollout(shape);
+  record(rollout);
+  rollout.SetLabels({1, kNoLabel});
+  Checkpoint checkpoint;
+  rollout.Save(checkpoint);
+  Rollout loaded(shape);
+  loaded.Load(checkpoint);
+  for (Rollout* const one : {&rollout, &loaded}) {
+    record(*one);
+    EXPECT_EQ(one->label(0), 1);
+    for (const std::size_t sample : {1, 2, 3}) EXPECT_EQ(one->label(sample), kNoLabel) << sample;
+    one->Complete(going, {});
+    one->Clear();
+    record(*one);
+    EXPECT_EQ(one->label(0), kNoLabel) << "of the rollout before";
+  }
+  EXPECT_EQ(Rollout({1, 2, 2, 1, 0, 1, false}).label(0), kNoLabel) << "without a teacher";
+}
+
 // Rewards 2 and 4, scaled by 0.5.
 TEST(Rollout, AddsTheTeamsShareOfTheRewards) {
   const StepResults going = Outcome(EndReason::kNone, false, {1, 1});

@@ -18,7 +18,7 @@ Scenario WithTokens() {
 
 TEST(LoopGuard, ActsWhenASituationOccursForTheGivenTime) {
   LocalEnvironment environment(Share(WithTokens()), {1, kFeaturesBit, false, 1});
-  const Teacher teacher(LayoutOfTokens(environment.spec().feature_names));
+  const RouteRule rule(LayoutOfTokens(environment.spec().feature_names));
   LoopGuard guard(environment.spec(), 1, 3);
   const StepResults* results = &environment.Reset(1);
   const auto ask = [&] {
@@ -29,7 +29,7 @@ TEST(LoopGuard, ActsWhenASituationOccursForTheGivenTime) {
     const auto action = ask();
     EXPECT_EQ(action.has_value(), visit == 5) << visit;  // for the third time where it began
     if (action) {
-      EXPECT_EQ(*action, teacher.ActionOf(results->features.data(), kAllActions));
+      EXPECT_EQ(*action, rule.ActionOf(results->features.data(), kAllActions));
     }
     results = &environment.Step(actions);
     actions[0] = static_cast<std::uint8_t>(visit % 2 == 1 ? Action::kWest : Action::kEast);

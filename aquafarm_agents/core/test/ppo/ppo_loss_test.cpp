@@ -24,7 +24,18 @@ struct Case {
   double value{};
   double advantage{};
   double target{};
+  std::uint8_t label{kNoLabel};
 };
+
+// The cross-entropy with the teacher, with its weight; the loss of PPO does not contain it.
+double DefinedImitation(const Case& c, const PpoCoefficients& k) {
+  if (c.label == kNoLabel) return 0.0;
+  double sum = 0.0;
+  for (std::size_t a = 0; a < kActionCount; ++a) {
+    if (((c.mask >> a) & 1U) != 0) sum += std::exp(c.outputs[a]);
+  }
+  return -static_cast<double>(k.imitation) * (c.outputs[c.label] - std::log(sum));
+}
 
 // Schulman et al. 2017, Eq. 7 and 9, with the ratio continued along its tangent beyond the bound.
 double DefinedLoss(const Case& c, const PpoCoefficients& k) {
@@ -69,7 +80,7 @@ Computed Compute(const Case& c, const PpoCoefficients& k, float weight = 1.0F) {
   ActionDistribution distribution;
   Computed computed;
   computed.slopes.resize(kWidth);
-  const PpoRows rows{&c.mask, &c.action, &log_prob, &value, &advantage, &target, &weight};
+  const PpoRows rows{&c.mask, &c.action, &log_prob, &value, &advantage, &target, &weight, &c.label};
   computed.loss =
       ComputeLoss(outputs.data(), 1, rows, k, distribution, computed.slopes.data()).Total(k);
   return computed;
@@ -86,6 +97,8 @@ Case RandomCase(RandomStream& rng) {
   c.value = static_cast<double>(rng.Uniform(-2.0F, 2.0F));
   c.advantage = static_cast<double>(rng.Uniform(-2.0F, 2.0F));
   c.target = static_cast<double>(rng.Uniform(-2.0F, 2.0F));
+  const auto label = static_cast<std::uint8_t>(rng.Below(kActionCount));
+  if ((c.mask >> label & 1U) != 0) c.label = label;
   return c;
 }
 
@@ -93,7 +106,7 @@ TEST(PpoLoss, AndItsGradientEqualTheDefinition) {
   RandomStream rng({3, 0, RngStream::kLearner, 0});
   constexpr double kStep = 1e-5;
   for (const float value_clip : {0.0F, 0.3F}) {
-    const PpoCoefficients k{0.2F, value_clip, 0.5F, 0.1F};
+    const PpoCoefficients k{0.2F, value_clip, 0.5F, 0.1F, 0.7F};
     for (int trial = 0; trial < 300; ++trial) {
       const Case c = RandomCase(rng);
       const Computed computed = Compute(c, k);
@@ -103,7 +116,9 @@ TEST(PpoLoss, AndItsGradientEqualTheDefinition) {
         Case down = c;
         up.outputs[i] += kStep;
         down.outputs[i] -= kStep;
-        const double slope = (DefinedLoss(up, k) - DefinedLoss(down, k)) / (2.0 * kStep);
+        const double change = DefinedLoss(up, k) + DefinedImitation(up, k) - DefinedLoss(down, k) -
+                              DefinedImitation(down, k);
+        const double slope = change / (2.0 * kStep);
         ASSERT_NEAR(static_cast<double>(computed.slopes[i]), slope, 1e-3 * (1.0 + std::abs(slope)))
             << "trial " << trial << ", output " << i;
       }

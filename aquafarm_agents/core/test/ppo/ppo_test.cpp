@@ -57,6 +57,26 @@ TEST(Ppo, SolvesATinyFarmWithAMemory) {
   ExpectSolves(kSmall + std::string("recurrent=true sequence_length=8"), 40000);
 }
 
+// So few steps are not enough without a teacher.
+TEST(Ppo, ImitatesThePlanner) {
+  constexpr std::uint64_t kSteps = 4000;
+  const std::string options = kSmall + std::string("teacher=1 teacher_policy=planner ");
+  for (const char* interval : {"teacher_interval=1", "teacher_interval=3"}) {
+    EXPECT_GE(Learn(options + interval, kSteps).after, 0.98) << interval;
+  }
+  EXPECT_LT(Learn(kSmall, kSteps).after, 0.5);
+}
+
+TEST(Ppo, OnlyTheRuleNeedsEntityTokens) {
+  LocalEnvironment environment(TinyFarm(), {1, kFeaturesBit, false, 1});
+  EXPECT_CONTAINS(
+      MessageOf<InputError>([&] { MakePpo(environment.spec(), 1, "teacher=linear:0:1:1"); }),
+      "expected 0 in a scenario without view.tokens, which the rule reads");
+  EXPECT_EQ(PpoObservationTypes("teacher=1"), kFeaturesBit);
+  EXPECT_EQ(PpoObservationTypes("teacher_policy=planner"), kFeaturesBit) << "which is never asked";
+  EXPECT_EQ(PpoObservationTypes("teacher=1 teacher_policy=planner"), kFeaturesBit | kStatesBit);
+}
+
 TEST(Ppo, SharesOneNetworkAmongSeveralShips) {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = 60;

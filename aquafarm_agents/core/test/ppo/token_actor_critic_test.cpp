@@ -15,7 +15,7 @@
 #include "aquafarm/observation/tokens.h"
 #include "ppo/make_actor_critic.h"
 #include "ppo/ppo_loss.h"
-#include "ppo/teacher.h"
+#include "ppo/route_rule.h"
 #include "tiny_farms.h"
 
 namespace aquafarm::agents::test {
@@ -214,51 +214,21 @@ TEST(TokenLayout, IsReadFromTheNamesOfTheEncoder) {
 }
 
 /// Tokens of a ship next to the device of the tiny farm, and then on it.
-TEST(Teacher, FetchesTheDeviceAndBringsItToAPort) {
+TEST(RouteRule, FetchesTheDeviceAndBringsItToAPort) {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.view.tokens = true;
   LocalEnvironment environment(std::make_shared<const Scenario>(scenario), {1, kFeaturesBit});
-  const Teacher teacher(LayoutOfTokens(environment.spec().feature_names));
+  const RouteRule rule(LayoutOfTokens(environment.spec().feature_names));
   const StepResults* results = &environment.Reset(1);
   std::vector<std::uint8_t> actions(1);
   int steps = 0;
   while (results->end_reasons[0] == 0 && steps < 20) {
-    actions[0] = teacher.ActionOf(results->features.data(), results->legal[0]);
+    actions[0] = rule.ActionOf(results->features.data(), results->legal[0]);
     results = &environment.Step(actions);
     ++steps;
   }
   EXPECT_EQ(static_cast<EndReason>(results->end_reasons[0]), EndReason::kAllRetrieved);
   EXPECT_EQ(steps, 6);  // two moves, pickup, two moves, drop-off
-}
-
-TEST(Teacher, SlopesAreThoseOfTheCrossEntropy) {
-  Scenario scenario = aquafarm::test::TinyScenario();
-  scenario.view.tokens = true;
-  LocalEnvironment environment(std::make_shared<const Scenario>(scenario), {1, kFeaturesBit});
-  const StepResults& results = environment.Reset(1);
-  const Teacher teacher(LayoutOfTokens(environment.spec().feature_names));
-  const ActionMask allowed = results.legal[0];
-  const std::uint8_t wanted = teacher.ActionOf(results.features.data(), allowed);
-  std::vector<float> outputs(kWidth);
-  for (std::size_t i = 0; i < kWidth; ++i) outputs[i] = 0.3F * static_cast<float>(i);
-  ActionDistribution policy;
-  policy.Compute(outputs.data(), &allowed, 1);
-  std::vector<float> slopes(kWidth);
-  const float weight = 0.5F;
-  teacher.AddSlopes(results.features.data(), 1, &allowed, policy, &weight, 2.0F, slopes.data());
-  const auto loss = [&](std::size_t i, float by) {
-    std::vector<float> moved = outputs;
-    moved[i] += by;
-    ActionDistribution there;
-    there.Compute(moved.data(), &allowed, 1);
-    return -there.log_probs(0, wanted);
-  };
-  for (std::size_t i = 0; i < kWidth; ++i) {
-    const float by = 0.01F;
-    const bool is_legal = i < kActionCount && (allowed >> i & 1U) != 0;
-    const float numeric = is_legal ? (loss(i, by) - loss(i, -by)) / (2.0F * by) : 0.0F;
-    EXPECT_NEAR(slopes[i], numeric, 1e-3F) << i;
-  }
 }
 
 TEST(TokenActorCritic, IsChosenByTheFeatures) {

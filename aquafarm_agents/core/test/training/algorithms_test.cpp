@@ -109,6 +109,9 @@ TEST(Algorithms, EachContinuesBitForBit) {
   for (const char* name : {"ppo", "mappo"}) {
     ExpectContinues(FindAlgorithm(name),
                     "hidden_size=8 rollout_size=90 batch_size=32 recurrent=true sequence_length=7");
+    ExpectContinues(FindAlgorithm(name),
+                    "hidden_size=8 rollout_size=90 batch_size=32 teacher=1 teacher_policy=planner "
+                    "teacher_interval=2");
   }
   for (const char* name : {"dqn", "lstm_dqn"}) {
     const Algorithm& algorithm = FindAlgorithm(name);

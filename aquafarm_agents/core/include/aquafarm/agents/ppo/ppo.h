@@ -15,6 +15,8 @@
 /// MAPPO (Yu et al. 2022, arXiv:2103.01955) is PPO for several agents: one policy plays all of
 /// them, each by its own observation, and V depends on the observations of all agents of the farm.
 /// V is needed only for learning, so a ship can act by its own observation alone.
+///
+/// With the option `teacher` the policy also imitates a teacher at first (kickstarting).
 
 #include <memory>
 #include <string>
@@ -27,17 +29,23 @@ namespace aquafarm::agents {
 /// Observation types (ObservationTypeBits) that PPO reads. @throws InputError if an option is wrong
 std::uint8_t PpoObservationTypes(const std::string& options);
 std::uint8_t MappoObservationTypes(const std::string& options);
-/// Makes a learner that has not learnt yet. @throws InputError if an option is wrong
+/// Makes the planner of farms, which teacher_policy=planner imitates.
+using PlannerMaker = std::unique_ptr<Policy> (*)(const EnvironmentSpec&);
+/// Makes a learner that has not learnt yet.
+/// @param make_planner may be null if no option asks for a planner
+/// @throws InputError if an option is wrong, or if the planner does not support the farms
 std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
-                                 const std::string& options);
+                                 const std::string& options, PlannerMaker make_planner = nullptr);
 std::unique_ptr<Learner> MakeMappo(const EnvironmentSpec& spec, std::uint64_t seed,
-                                   const std::string& options);
+                                   const std::string& options, PlannerMaker make_planner = nullptr);
 /// Makes the learner of one rank of a process group.
-/// @param spec of the farms of this rank @throws InputError if an option is wrong
+/// @param spec of the farms of this rank @throws InputError as above
 std::unique_ptr<ShardedLearner> MakePpoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
-                                               const std::string& options, ProcessGroup& group);
+                                               const std::string& options, ProcessGroup& group,
+                                               PlannerMaker make_planner = nullptr);
 std::unique_ptr<ShardedLearner> MakeMappoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
-                                                 const std::string& options, ProcessGroup& group);
+                                                 const std::string& options, ProcessGroup& group,
+                                                 PlannerMaker make_planner = nullptr);
 /// Makes the policy of a checkpoint of PPO or MAPPO.
 /// @throws InputError if the policy does not fit farms of `spec`; the message names the difference
 std::unique_ptr<Policy> MakePpoPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);

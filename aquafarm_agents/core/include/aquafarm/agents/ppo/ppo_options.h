@@ -18,6 +18,14 @@ enum class PolicyMode : std::uint8_t {
 inline constexpr int kPolicyModeCount = 2;
 std::string_view ToString(PolicyMode value);
 
+/// Whom the policy imitates at first.
+enum class TeacherPolicy : std::uint8_t {
+  kRule,     ///< a simple rule on entity tokens (src/ppo/route_rule.h)
+  kPlanner,  ///< the algorithm `planner`, which sees the complete farm
+};
+inline constexpr int kTeacherPolicyCount = 2;
+std::string_view ToString(TeacherPolicy value);
+
 /// Name of the PPO of several agents with a value that depends on all of their observations.
 inline constexpr const char* kMappo = "mappo";
 
@@ -45,9 +53,11 @@ struct PpoOptions {
   /// The coefficient of the entropy bonus is the level; icm adds curiosity.
   ExplorationOptions exploration{
       ExplorationKind::kEntropy, {ScheduleKind::kLinear, 0.02, 0.0, 1.0}, {}};
-  /// Weight of the cross-entropy with a simple teacher, which the policy imitates at first
-  /// (kickstarting, src/ppo/teacher.h); needs entity tokens.
+  /// Weight of the cross-entropy with a teacher, which the policy imitates at first (kickstarting,
+  /// src/ppo/ppo_loss.h).
   Schedule teacher{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
+  TeacherPolicy teacher_policy{TeacherPolicy::kRule};
+  std::int32_t teacher_interval{1};  ///< the teacher acts at every teacher_interval-th step
   /// Each episode is seen turned or reflected by one of the eight symmetries of the grid, drawn at
   /// its start; needs entity tokens.
   bool augment{false};
@@ -78,6 +88,8 @@ struct PpoOptions {
   bool IsTeam(bool team_reward) const {
     return team_reward || team_share.At(0.0) > 0.0 || team_share.At(1.0) > 0.0;
   }
+  /// Returns whether the policy imitates a teacher at some time of the training.
+  bool HasTeacher() const { return teacher.At(0.0) > 0.0 || teacher.At(1.0) > 0.0; }
   /// Returns the steps per agent in one rollout. @param slots farms × agents
   std::int32_t Horizon(std::size_t slots) const;
 

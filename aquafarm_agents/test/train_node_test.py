@@ -20,7 +20,7 @@ from processes import (DATA, Program, free_port, newest_checkpoint, program,  # 
                        start_agent, start_sim)
 
 TINY = DATA / "tiny.yaml"
-RANKS_S = 240.0  # limit of two trainers and two sim nodes on a busy machine
+BUSY_S = 240.0  # limit of a training on a busy machine
 PPO = "hidden_size=16 rollout_size=512 batch_size=128"
 # No schedules: the limit of steps changes nothing.
 CONSTANT = "learning_rate=0.001 clip_range=0.2 teacher=0"
@@ -85,15 +85,15 @@ class TrainNodeTest(unittest.TestCase):
     def test_ranks_with_sim_nodes_of_their_own_train_as_in_process(self):
         self.start_sims()
         first, second = self.ranks("ros", "_steps:=20000", "_seed:=3", f"_options:={PPO}")
-        self.assertEqual(0, first.code(RANKS_S), first.words() + second.words())
-        self.assertEqual(0, second.code(RANKS_S), second.words())
+        self.assertEqual(0, first.code(BUSY_S), first.words() + second.words())
+        self.assertEqual(0, second.code(BUSY_S), second.words())
         self.assertIn("ranks      2, ", first.words())
         self.assertNotIn("trained", second.words())
         for ranks in ("1", "2"):
             local = self.in_process(f"local_{ranks}", "--algorithm", "ppo", "--steps", "20000",
                                     "--farms", "16", "--seed", "3", "--ranks", ranks,
                                     *[word for one in PPO.split() for word in ("--set", one)])
-            self.assertEqual(0, local.code(RANKS_S), local.words())
+            self.assertEqual(0, local.code(BUSY_S), local.words())
             newest = newest_checkpoint(self.folder / "ros")
             self.assert_same_files(
                 "ros", f"local_{ranks}",
@@ -105,40 +105,49 @@ class TrainNodeTest(unittest.TestCase):
         options = (f"_options:={PPO} {CONSTANT}", f"_exploration:={CONSTANT_EXPLORATION}")
         first, second = self.ranks("parts", "_steps:=1e12", "_checkpoint_period_s:=0", *options)
         first.wait_for(lambda: newest_checkpoint(self.folder / "parts"), "a checkpoint",
-                       RANKS_S)
+                       BUSY_S)
         second.send(signal.SIGKILL)
-        self.assertEqual(6, first.code(RANKS_S), first.words())
+        self.assertEqual(6, first.code(BUSY_S), first.words())
         self.assertIn("ranks: rank 1 of 2 has ended or does not answer", first.words())
         self.assertRegex(first.words(), "resume     roslaunch aquafarm_bringup ranks.launch .*"
                                         f" resume:=true run_dir:={self.folder / 'parts'} ranks:=2")
         limit = 10000 + int(newest_checkpoint(self.folder / "parts")[len("step_"):-len(".ckpt")])
         first, second = self.ranks("parts", f"_steps:={limit}", "_resume:=true", *options)
-        self.assertEqual(0, first.code(RANKS_S), first.words() + second.words())
+        self.assertEqual(0, first.code(BUSY_S), first.words() + second.words())
         self.assertIn("resuming from", first.words())
         whole = self.in_process("whole", "--algorithm", "ppo", "--steps", str(limit), "--farms",
                                 "16", "--ranks", "1", "--exploration", CONSTANT_EXPLORATION,
                                 *[word for one in f"{PPO} {CONSTANT}".split()
                                   for word in ("--set", one)])
-        self.assertEqual(0, whole.code(RANKS_S), whole.words())
+        self.assertEqual(0, whole.code(BUSY_S), whole.words())
         newest = newest_checkpoint(self.folder / "whole")
         self.assert_same_files("whole", "parts",
                                ["policy.ckpt", "metrics.csv", f"checkpoints/{newest}"])
 
     def test_subscribers_of_its_values_change_no_bit(self):
         start_sim(self, self.namespace, TINY)
-        for algorithm, steps in (("q_learning", 1500000), ("dqn", 8000)):
-            clouds = []
+        constant = "learning_rate=0.0005"  # no schedules, as CONSTANT
+        for algorithm, more in (("q_learning", ""), ("dqn", "priority_exponent=0")):
+            run, clouds = f"{algorithm}_watched", []
+            options = (f"_algorithm:={algorithm}", "_farms:=8", f"_options:={constant} {more}",
+                       "_exploration:=epsilon_greedy:0.1")
             subscriber = rospy.Subscriber(f"{self.namespace}/values/points", PointCloud2,
                                           clouds.append)
-            watched = self.train(f"{algorithm}_watched", f"_algorithm:={algorithm}",
-                                 f"_steps:={steps}", "_farms:=8", "_values_period_s:=0.1")
-            self.assertEqual(0, watched.code(), watched.words())
+            watched = self.train(run, "_steps:=1e12", "_values_period_s:=0.1", *options)
+            watched.wait_for(lambda found=clouds: len(found) > 1, "two clouds of values", BUSY_S)
+            watched.interrupt(BUSY_S)
             subscriber.unregister()
-            self.assertGreater(len(clouds), 1, algorithm)
+            limit = 1000 + int(newest_checkpoint(self.folder / run)[len("step_"):-len(".ckpt")])
+            rest = self.train(run, f"_steps:={limit}", "_resume:=true", *options)
+            self.assertEqual(0, rest.code(BUSY_S), rest.words())
             local = self.in_process(f"{algorithm}_alone", "--algorithm", algorithm, "--steps",
-                                    str(steps), "--farms", "8")
-            self.assertEqual(0, local.code(), local.words())
-            self.assert_same_files(f"{algorithm}_watched", f"{algorithm}_alone", ["policy.ckpt"])
+                                    str(limit), "--farms", "8", "--exploration",
+                                    "epsilon_greedy:0.1", "--set", constant,
+                                    *(["--set", more] if more else []))
+            self.assertEqual(0, local.code(BUSY_S), local.words())
+            newest = newest_checkpoint(self.folder / f"{algorithm}_alone")
+            self.assert_same_files(run, f"{algorithm}_alone",
+                                   ["policy.ckpt", f"checkpoints/{newest}"])
 
     def test_killed_and_resumed_it_ends_in_the_same_bits(self):
         start_sim(self, self.namespace, TINY)

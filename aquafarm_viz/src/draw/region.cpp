@@ -209,10 +209,11 @@ void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout
                       cvRound((inset.image.rows - tall) / 2.0), cvRound(wide), cvRound(tall));
   cv::rectangle(inset.image, farm, Bgr(layout.style->halo), layout.Px(4.0));
   cv::rectangle(inset.image, farm, Bgr(layout.style->label), layout.Px(1.6));
-  space.Block(farm);
+  const cv::Point gap(layout.Px(6), layout.Px(3));  // free of labels
+  space.Block(cv::Rect(farm.tl() - gap, farm.br() + gap));
   const std::string word = "ranch";
   const cv::Size size(fonts.small.Width(word), fonts.small.cap_height());
-  const cv::Point2d aside(size.width / 2.0 + wide / 2.0 + 5.0 * layout.unit, 0.0);
+  const cv::Point2d aside(size.width / 2.0 + wide / 2.0 + 7.0 * layout.unit, 0.0);
   const cv::Point2d middle(inset.image.cols / 2.0, inset.image.rows / 2.0);
   const double farthest = 12.0 * layout.unit;
   if (wide > size.width + 12.0 * layout.unit && tall > 3.0 * size.height) {  // in the square

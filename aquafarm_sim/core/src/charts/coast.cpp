@@ -253,8 +253,9 @@ void AddSpans(const std::vector<double>& crossings, std::int32_t y, Grid<std::ui
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
     const double from = std::max(first_from(crossings[i]), 0.0);
     const double to = std::min(first_from(crossings[i + 1]) - 1.0, last);
-    for (double k = from; k <= to; k += 1.0) {
-      ++samples(y, static_cast<Eigen::Index>(k) / kSamples);
+    if (!(from <= to)) continue;  // both are whole, and in the row if they are in this order
+    for (auto k = static_cast<Eigen::Index>(from); k <= static_cast<Eigen::Index>(to); ++k) {
+      ++samples(y, k / kSamples);
     }
   }
 }

@@ -200,7 +200,7 @@ std::map<std::string, Checkpoint::Number> Checkpoint::GetNumbers(const std::stri
   return numbers;
 }
 
-void Checkpoint::AddPart(const std::string& prefix, Checkpoint part) {
+void Checkpoint::AddPart(const std::string& prefix, Checkpoint&& part) {
   for (auto& [name, bytes] : part.sections) sections[prefix + name] = std::move(bytes);
   for (const auto& [name, bytes] : part.lent) lent[prefix + name] = bytes;
 }

@@ -93,7 +93,8 @@ void PpoUpdater::Update(const std::vector<Input>& inputs, const Context& context
   const std::size_t sequences = CountSequences();
   if (sequences == 0) return;
   const double wanted = static_cast<double>(sequences * length_) / options_.batch_size;
-  batches_ = std::min(sequences, std::max<std::size_t>(1, std::lround(wanted)));
+  const auto batches = static_cast<std::size_t>(std::lround(wanted));
+  batches_ = std::min(sequences, std::max<std::size_t>(1, batches));
   PpoLoss sum;
   for (std::int32_t epoch = 0; epoch < options_.epochs; ++epoch) {
     for (std::size_t i = 0; i < inputs.size(); ++i) Shuffle(i, *inputs[i].rng);

@@ -136,7 +136,7 @@ TEST_F(CheckpointFile, LentArraysAreWrittenWithoutACopy) {
   EXPECT_EQ(ReadFile(path), written) << "the file is the same";
 
   Checkpoint whole;
-  whole.AddPart("agent1/", lends);
+  whole.AddPart("agent1/", Checkpoint(lends));
   EXPECT_EQ(static_cast<const void*>(whole.Section("agent1/table").data()), table.data());
   EXPECT_EQ(whole.Part("agent1/").Section("table"), lends.Section("table"));
   EXPECT_FALSE(whole.Part("agent2/").Has("table"));

@@ -83,7 +83,7 @@ struct Checkpoint : CheckpointInfo {
   std::map<std::string, Number> GetNumbers(const std::string& name) const;
 
   /// Adds the sections of a part, such as the learner of one agent, with a prefix.
-  void AddPart(const std::string& prefix, Checkpoint part);
+  void AddPart(const std::string& prefix, Checkpoint&& part);
   /// Returns the sections that AddPart added with a prefix, with the metadata of this checkpoint.
   Checkpoint Part(const std::string& prefix) const;
 

@@ -172,7 +172,7 @@ const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions
   return results_;
 }
 
-// The farm states need a separate call, which is cheap relative to a planning step.
+// The farm states need a separate call in each step, also if a planner reads only some of them.
 void RosEnvironment::Take(StepResult& result) {
   if (copies_ != nullptr) {
     copies_->Load(Save());

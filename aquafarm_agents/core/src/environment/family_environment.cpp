@@ -57,7 +57,7 @@ FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
   if ((options.observation_types & kStatesBit) != 0) {
     throw InputError(is_family +
                      "one ranch: planners need one ranch; evaluate a policy that reads features, "
-                     "or generalist");
+                     "or generalist, or train without teacher_policy=planner");
   }
   if ((options.observation_types & (kIndexBit | kPlanesBit)) != 0) {
     throw InputError(is_family + "a learner that reads features: use algorithm ppo");

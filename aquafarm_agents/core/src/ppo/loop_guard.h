@@ -8,9 +8,9 @@
 ///   situation   cell, load and remaining devices
 ///   loop        a situation occurs for the max_visits-th time in an episode
 ///   way out     the route to the nearest target (RouteRule) while it has no more risk per step
-///   than
-///               the safest cell near the ship, until a device is picked up or dropped off. Under a
-///               ring over the whole ranch a ship that waits pays as much as one that works.
+///               than the safest cell near the ship, until a device is picked up or dropped off.
+///               Under a ring over the whole ranch a ship that waits pays as much as one that
+///               works.
 
 #include <cstddef>
 #include <cstdint>

@@ -19,7 +19,7 @@ std::unique_ptr<ActorCritic> MakeActorCritic(const EnvironmentSpec& spec, const 
     if (options.HasTeacher() && options.teacher_policy == TeacherPolicy::kRule) {
       throw InputError("teacher: got " + ToString(options.teacher) +
                        ", expected 0 in a scenario without view.tokens, which the rule reads; set "
-                       "view.tokens, teacher_policy=planner, or teacher=0");
+                       "teacher_policy=planner, teacher=0, or, for ppo, view.tokens");
     }
     if (options.augment || options.symmetric) {
       throw InputError(std::string(options.augment ? "augment" : "symmetric") +

@@ -115,7 +115,7 @@ struct Shard {
   void Observe(const StepResults& results);
   /// Chooses actions and records them.
   void Act(ActorCritic& network);
-  /// Records the teacher's actions in place of which Act chose its own.
+  /// Records the teacher's actions at the step that Act has just recorded.
   void Label(Teacher& teacher);
   /// Completes a full rollout with the values of the observations that follow it.
   void Finish(ActorCritic& network, const PpoOptions& options);

@@ -159,8 +159,14 @@ void Rollout::Load(const Checkpoint& checkpoint) {
   load("values", loaded.values_, 1);
   load("rewards", loaded.rewards_, 1);
   load("ends", loaded.ends_, 1);
-  // Before the labels were recorded, each update asked the teacher.
+  // Older checkpoints have no labels: their rows have no part in the imitation.
   if (!labels_.empty() && checkpoint.Has("rollout.labels")) load("labels", loaded.labels_, 1);
+  for (const std::uint8_t label : loaded.labels_) {
+    if (label < kActionCount || label == kNoLabel) continue;
+    throw InputError("rollout.labels: got " + std::to_string(label) + ", expected at most " +
+                     std::to_string(kActionCount - 1) + " or " + std::to_string(kNoLabel) +
+                     ": damaged, resume from another checkpoint");
+  }
   checkpoint.GetArray("rollout.states", loaded.states_.size(), loaded.states_);
   *this = std::move(loaded);
 }

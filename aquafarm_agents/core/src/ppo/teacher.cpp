@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ppo/teacher.h"
 
+#include <string>
 #include <utility>
 
 #include "aquafarm/base/check.h"
@@ -51,7 +52,14 @@ std::unique_ptr<Teacher> MakeTeacher(const EnvironmentSpec& spec, TeacherPolicy 
                                      PlannerMaker make_planner) {
   if (which == TeacherPolicy::kRule) return std::make_unique<RuleTeacher>(spec);
   AQUAFARM_CHECK_EQ(make_planner != nullptr, true);
-  return std::make_unique<PlannerTeacher>(make_planner(spec), spec.farms);
+  try {
+    return std::make_unique<PlannerTeacher>(make_planner(spec), spec.farms);
+  } catch (const InputError& error) {
+    throw InputError("teacher_policy: got planner, which does not support this ranch (" +
+                     std::string(error.what()) +
+                     "); use teacher=0, or teacher_policy=rule with "
+                     "view.tokens");
+  }
 }
 
 }  // namespace aquafarm::agents

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "aquafarm/agents/ppo/ppo_options.h"
 #include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/agents/training/run_folder.h"
 #include "aquafarm/base/check.h"
@@ -25,8 +26,10 @@ std::string GeneralistPath() {
 }
 
 std::uint8_t ObservationTypesOf(const Checkpoint& checkpoint) {
-  const std::uint8_t bits =
-      FindAlgorithm(checkpoint.algorithm).observation_types(checkpoint.options);
+  std::uint8_t bits = FindAlgorithm(checkpoint.algorithm).observation_types(checkpoint.options);
+  // Of PPO only the learner reads the states, if its teacher is a planner.
+  const bool is_ppo = checkpoint.algorithm == "ppo" || checkpoint.algorithm == kMappo;
+  if (is_ppo) bits &= static_cast<std::uint8_t>(~kStatesBit);
   // On farms with other features a policy of tokens reads the states instead.
   return ReadsTokens(checkpoint) ? bits | kStatesBit : bits;
 }

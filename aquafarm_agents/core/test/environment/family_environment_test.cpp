@@ -71,7 +71,7 @@ TEST(FamilyEnvironment, RefusesObservationsOfAFixedSize) {
   EXPECT_EQ(refusal_of(kStatesBit),
             start +
                 "one ranch: planners need one ranch; evaluate a policy that reads features, or "
-                "generalist");
+                "generalist, or train without teacher_policy=planner");
 }
 
 TEST(FamilyEnvironment, ARanchThatCannotBeDrawnIsNamed) {

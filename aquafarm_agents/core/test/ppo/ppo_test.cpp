@@ -73,7 +73,8 @@ TEST(Ppo, OnlyTheRuleNeedsEntityTokens) {
       MessageOf<InputError>([&] { MakePpo(environment.spec(), 1, "teacher=linear:0:1:1"); }),
       "expected 0 in a scenario without view.tokens, which the rule reads");
   EXPECT_EQ(PpoObservationTypes("teacher=1"), kFeaturesBit);
-  EXPECT_EQ(PpoObservationTypes("teacher_policy=planner"), kFeaturesBit) << "which is never asked";
+  EXPECT_EQ(PpoObservationTypes("teacher_policy=planner"), kFeaturesBit)
+      << "teacher=0: the planner is not used";
   EXPECT_EQ(PpoObservationTypes("teacher=1 teacher_policy=planner"), kFeaturesBit | kStatesBit);
 }
 

@@ -4,6 +4,7 @@
 #include "agents_fixture.h"
 #include "aquafarm/agents/evaluation/evaluation.h"
 #include "aquafarm/agents/learning/random_policy.h"
+#include "aquafarm/agents/training/saved_policy.h"
 
 namespace aquafarm::agents::test {
 namespace {
@@ -66,8 +67,10 @@ std::string Lively(const Algorithm& algorithm) {
   return name == "dqn" || name == "independent_dqn" || name == "vdn" ? small : "";
 }
 
-void ExpectContinues(const Algorithm& algorithm, const std::string& options) {
-  LocalEnvironment environment(TinyFarm(), {3, algorithm.observation_types(options), false, 1});
+void ExpectContinues(const Algorithm& algorithm, const std::string& options,
+                     const std::shared_ptr<const Scenario>& scenario = TinyFarm(),
+                     std::int32_t farms = 3) {
+  LocalEnvironment environment(scenario, {farms, algorithm.observation_types(options), false, 1});
   const auto learner = algorithm.make(environment.spec(), 1, options);
   std::vector<std::uint8_t> actions;
   const StepResults* results = &environment.Reset(1);
@@ -117,6 +120,41 @@ TEST(Algorithms, EachContinuesBitForBit) {
     const Algorithm& algorithm = FindAlgorithm(name);
     ExpectContinues(algorithm, Lively(algorithm) + " ema_rate=0.02 repetition_penalty=2");
   }
+}
+
+TEST(Algorithms, PpoWithAPlannerAsTeacherContinuesBitForBit) {
+  const std::string options =
+      "hidden_size=8 rollout_size=90 batch_size=32 teacher=1 teacher_policy=planner";
+  const Algorithm& ppo = FindAlgorithm("ppo");
+  ExpectContinues(ppo, options + " shards=2", TinyFarm(), 4);
+  Scenario turned = aquafarm::test::TinyScenario();
+  turned.view.tokens = true;
+  ExpectContinues(ppo, options + " augment=true", Share(turned));
+  Scenario squads = aquafarm::test::TinyScenario();
+  squads.ships.count = 2;
+  squads.ports.cells = {{2, 0}, {2, 1}};
+  ExpectContinues(ppo, options, Share(squads));
+  ExpectContinues(FindAlgorithm("mappo"), options, Share(squads));
+}
+
+class SavedPolicies : public FolderTest {};
+
+TEST_F(SavedPolicies, OfPpoReadNoStatesAlsoIfAPlannerWasTheTeacher) {
+  const std::string options = "hidden_size=8 teacher=1 teacher_policy=planner";
+  const Algorithm& ppo = FindAlgorithm("ppo");
+  LocalEnvironment environment(TinyFarm(), {1, ppo.observation_types(options), false, 1});
+  const auto learner = ppo.make(environment.spec(), 1, options);
+  EXPECT_EQ(learner->observation_types(), kFeaturesBit | kStatesBit);
+  Checkpoint checkpoint;
+  checkpoint.kind = Checkpoint::kPolicy;
+  checkpoint.algorithm = "ppo";
+  checkpoint.options = learner->options();
+  checkpoint.spec = environment.spec();
+  learner->SavePolicy(checkpoint);
+  WriteCheckpoint(folder_ + "/policy.ckpt", checkpoint);
+  const SavedPolicy saved = FindPolicy(folder_);
+  EXPECT_EQ(saved.observation_types, kFeaturesBit);
+  EXPECT_EQ(MakePolicy(saved, environment.spec())->observation_types(), kFeaturesBit);
 }
 
 // Each sentence of the caption of Fig. 6, with each kind of reward sharing.

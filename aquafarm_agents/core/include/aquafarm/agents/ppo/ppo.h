@@ -39,7 +39,8 @@ std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed
 std::unique_ptr<Learner> MakeMappo(const EnvironmentSpec& spec, std::uint64_t seed,
                                    const std::string& options, PlannerMaker make_planner = nullptr);
 /// Makes the learner of one rank of a process group.
-/// @param spec of the farms of this rank @throws InputError as above
+/// @param spec of the farms of this rank
+/// @throws InputError if an option is wrong, or if the planner does not support the farms
 std::unique_ptr<ShardedLearner> MakePpoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
                                                const std::string& options, ProcessGroup& group,
                                                PlannerMaker make_planner = nullptr);

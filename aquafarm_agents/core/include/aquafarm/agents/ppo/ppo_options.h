@@ -54,7 +54,8 @@ struct PpoOptions {
   ExplorationOptions exploration{
       ExplorationKind::kEntropy, {ScheduleKind::kLinear, 0.02, 0.0, 1.0}, {}};
   /// Weight of the cross-entropy with a teacher, which the policy imitates at first (kickstarting,
-  /// src/ppo/ppo_loss.h).
+  /// src/ppo/ppo_loss.h). The mean is over all agent steps, so a teacher that acts at every n-th
+  /// step needs n times the weight.
   Schedule teacher{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
   TeacherPolicy teacher_policy{TeacherPolicy::kRule};
   std::int32_t teacher_interval{1};  ///< the teacher acts at every teacher_interval-th step

@@ -64,6 +64,18 @@ class TrainNodeTest(unittest.TestCase):
                  "evaluation_random.csv"])
             self.assertIn("success 100.0 %", ros.words())
 
+    def test_the_planner_teaches_as_in_process(self):
+        start_sim(self, self.namespace, TINY)
+        options = f"{PPO} teacher=4 teacher_policy=planner teacher_interval=4"
+        ros = self.train("ros", "_algorithm:=ppo", "_steps:=4000", "_farms:=8", "_seed:=3",
+                         f"_options:={options}")
+        self.assertEqual(0, ros.code(BUSY_S), ros.words())
+        local = self.in_process("local", "--algorithm", "ppo", "--steps", "4000", "--farms", "8",
+                                "--seed", "3",
+                                *[word for one in options.split() for word in ("--set", one)])
+        self.assertEqual(0, local.code(BUSY_S), local.words())
+        self.assert_same_files("ros", "local", ["policy.ckpt", "metrics.csv", "evaluation.csv"])
+
     def ranks(self, run, *parameters):
         """Starts two ranks. Each has the sim node of its own namespace."""
         port, started = str(free_port()), []

@@ -199,6 +199,7 @@ const Preset& FindPreset(const std::string& name) {
 
 std::vector<std::string> DisasterPresetNames() {
   std::vector<std::string> names;
+  names.reserve(kPresets.size());
   for (const Preset& preset : kPresets) names.emplace_back(preset.name);
   return names;
 }

@@ -27,6 +27,16 @@ CONSTANT = "learning_rate=0.001 clip_range=0.2 teacher=0"
 CONSTANT_EXPLORATION = "entropy:0.01"
 
 
+def newest_step(run):
+    """The step of the newest checkpoint in a run folder."""
+    return int(newest_checkpoint(run)[len("step_"):-len(".ckpt")])
+
+
+def as_arguments(options):
+    """Options of a learner, separated by spaces, as arguments of aquafarm_train."""
+    return [word for one in options.split() for word in ("--set", one)]
+
+
 class TrainNodeTest(unittest.TestCase):
 
     def setUp(self):
@@ -71,8 +81,7 @@ class TrainNodeTest(unittest.TestCase):
                          f"_options:={options}")
         self.assertEqual(0, ros.code(BUSY_S), ros.words())
         local = self.in_process("local", "--algorithm", "ppo", "--steps", "4000", "--farms", "8",
-                                "--seed", "3",
-                                *[word for one in options.split() for word in ("--set", one)])
+                                "--seed", "3", *as_arguments(options))
         self.assertEqual(0, local.code(BUSY_S), local.words())
         self.assert_same_files("ros", "local", ["policy.ckpt", "metrics.csv", "evaluation.csv"])
 
@@ -104,7 +113,7 @@ class TrainNodeTest(unittest.TestCase):
         for ranks in ("1", "2"):
             local = self.in_process(f"local_{ranks}", "--algorithm", "ppo", "--steps", "20000",
                                     "--farms", "16", "--seed", "3", "--ranks", ranks,
-                                    *[word for one in PPO.split() for word in ("--set", one)])
+                                    *as_arguments(PPO))
             self.assertEqual(0, local.code(BUSY_S), local.words())
             newest = newest_checkpoint(self.folder / "ros")
             self.assert_same_files(
@@ -123,14 +132,13 @@ class TrainNodeTest(unittest.TestCase):
         self.assertIn("ranks: rank 1 of 2 has ended or does not answer", first.words())
         self.assertRegex(first.words(), "resume     roslaunch aquafarm_bringup ranks.launch .*"
                                         f" resume:=true run_dir:={self.folder / 'parts'} ranks:=2")
-        limit = 10000 + int(newest_checkpoint(self.folder / "parts")[len("step_"):-len(".ckpt")])
+        limit = 10000 + newest_step(self.folder / "parts")
         first, second = self.ranks("parts", f"_steps:={limit}", "_resume:=true", *options)
         self.assertEqual(0, first.code(BUSY_S), first.words() + second.words())
         self.assertIn("resuming from", first.words())
         whole = self.in_process("whole", "--algorithm", "ppo", "--steps", str(limit), "--farms",
                                 "16", "--ranks", "1", "--exploration", CONSTANT_EXPLORATION,
-                                *[word for one in f"{PPO} {CONSTANT}".split()
-                                  for word in ("--set", one)])
+                                *as_arguments(f"{PPO} {CONSTANT}"))
         self.assertEqual(0, whole.code(BUSY_S), whole.words())
         newest = newest_checkpoint(self.folder / "whole")
         self.assert_same_files("whole", "parts",
@@ -139,9 +147,10 @@ class TrainNodeTest(unittest.TestCase):
     def test_subscribers_of_its_values_change_no_bit(self):
         start_sim(self, self.namespace, TINY)
         constant = "learning_rate=0.0005"  # no schedules, as CONSTANT
-        for algorithm, more in (("q_learning", ""), ("dqn", "priority_exponent=0")):
+        for algorithm, chosen in (("q_learning", constant),
+                                  ("dqn", f"{constant} priority_exponent=0")):
             run, clouds = f"{algorithm}_watched", []
-            options = (f"_algorithm:={algorithm}", "_farms:=8", f"_options:={constant} {more}",
+            options = (f"_algorithm:={algorithm}", "_farms:=8", f"_options:={chosen}",
                        "_exploration:=epsilon_greedy:0.1")
             subscriber = rospy.Subscriber(f"{self.namespace}/values/points", PointCloud2,
                                           clouds.append)
@@ -149,13 +158,12 @@ class TrainNodeTest(unittest.TestCase):
             watched.wait_for(lambda found=clouds: len(found) > 1, "two clouds of values", BUSY_S)
             watched.interrupt(BUSY_S)
             subscriber.unregister()
-            limit = 1000 + int(newest_checkpoint(self.folder / run)[len("step_"):-len(".ckpt")])
+            limit = 1000 + newest_step(self.folder / run)
             rest = self.train(run, f"_steps:={limit}", "_resume:=true", *options)
             self.assertEqual(0, rest.code(BUSY_S), rest.words())
             local = self.in_process(f"{algorithm}_alone", "--algorithm", algorithm, "--steps",
                                     str(limit), "--farms", "8", "--exploration",
-                                    "epsilon_greedy:0.1", "--set", constant,
-                                    *(["--set", more] if more else []))
+                                    "epsilon_greedy:0.1", *as_arguments(chosen))
             self.assertEqual(0, local.code(BUSY_S), local.words())
             newest = newest_checkpoint(self.folder / f"{algorithm}_alone")
             self.assert_same_files(run, f"{algorithm}_alone",

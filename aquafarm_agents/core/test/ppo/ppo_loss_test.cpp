@@ -27,22 +27,25 @@ struct Case {
   std::uint8_t label{kNoLabel};
 };
 
-// The cross-entropy with the teacher, with its weight; the loss of PPO does not contain it.
-double DefinedImitation(const Case& c, const PpoCoefficients& k) {
-  if (c.label == kNoLabel) return 0.0;
+// The denominator of the softmax over the allowed actions.
+double SumOfExponentials(const Case& c) {
   double sum = 0.0;
   for (std::size_t a = 0; a < kActionCount; ++a) {
     if (((c.mask >> a) & 1U) != 0) sum += std::exp(c.outputs[a]);
   }
+  return sum;
+}
+
+// The cross-entropy with the teacher, with its weight; the loss of PPO does not contain it.
+double DefinedImitation(const Case& c, const PpoCoefficients& k) {
+  if (c.label == kNoLabel) return 0.0;
+  const double sum = SumOfExponentials(c);
   return -static_cast<double>(k.imitation) * (c.outputs[c.label] - std::log(sum));
 }
 
 // Schulman et al. 2017, Eq. 7 and 9, with the ratio continued along its tangent beyond the bound.
 double DefinedLoss(const Case& c, const PpoCoefficients& k) {
-  double sum = 0.0;
-  for (std::size_t a = 0; a < kActionCount; ++a) {
-    if (((c.mask >> a) & 1U) != 0) sum += std::exp(c.outputs[a]);
-  }
+  const double sum = SumOfExponentials(c);
   double entropy = 0.0;
   for (std::size_t a = 0; a < kActionCount; ++a) {
     if (((c.mask >> a) & 1U) == 0) continue;

@@ -28,6 +28,7 @@ set_target_properties(aquafarm_drawing PROPERTIES
   POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
 target_compile_features(aquafarm_drawing PUBLIC cxx_std_17)
 target_compile_options(aquafarm_drawing PRIVATE -Wall -Wextra -Wpedantic -Wshadow)
+aquafarm_compile_by_folder(aquafarm_drawing)
 # The plain messages come before /usr/include, where Debian has those of ROS. The path relative to
 # the folder in which make compiles is the same in a workspace and in a wheel, so ccache compiles the
 # drawing code once; other generators use the absolute one.

@@ -28,6 +28,7 @@ else()
   set_target_properties(aquafarm_policies PROPERTIES
     POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
   aquafarm_set_warnings(aquafarm_policies)
+  aquafarm_compile_by_folder(aquafarm_policies)
 endif()
 target_include_directories(aquafarm_policies PUBLIC ${agents_dir}/include ${agents_dir}/src)
 target_link_libraries(aquafarm_policies

@@ -87,7 +87,7 @@ set AQUAFARM_WS to another folder, or build with catkin_make there"
   env -u ROS_PACKAGE_PATH -u CMAKE_PREFIX_PATH catkin_make -C "$ws" --no-color -j"$jobs" \
     -DCMAKE_BUILD_TYPE="$build_type" -DPYTHON_EXECUTABLE=/usr/bin/python3 \
     -DCATKIN_ENABLE_TESTING=ON -DBUILD_TESTING=OFF -DAQUAFARM_BUILD_BENCH=OFF \
-    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON "$unity" \
     "${warnings[@]}" "$@" 2>&1 |
     tee "$log" | { grep -E --line-buffered "$build_lines" || true; } || {
     { grep -A 8 -E '[Ee]rror' "$log" || tail -n 20 "$log"; } | head -n 60 >&2 || true
@@ -117,7 +117,7 @@ build_core() {
   use_ccache
   is_made_from "$dir" "$source" || rm -rf "$dir"
   say "building $1/core with plain cmake"
-  if ! { cmake -S "$source" -B "$dir" -DCMAKE_BUILD_TYPE="$build_type" "${warnings[@]}" &&
+  if ! { cmake -S "$source" -B "$dir" -DCMAKE_BUILD_TYPE="$build_type" "$unity" "${warnings[@]}" &&
     cmake --build "$dir" -j "$jobs"; } >"$dir.log" 2>&1; then
     tail -n 40 "$dir.log" >&2
     die "the plain cmake build of $1/core failed; log: $dir.log"

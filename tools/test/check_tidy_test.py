@@ -8,10 +8,12 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
 TOOLS = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(TOOLS))
 WORKSPACE = os.environ.get("AQUAFARM_CAMPAIGNS")  # of ./aquafarm test
 CLEAN = "^aquafarm_sim/core/"  # every source of it was checked once; the others were not
 HAS_TIDY = shutil.which("clang-tidy-14") or shutil.which("clang-tidy")
@@ -62,6 +64,23 @@ class ChoiceTest(unittest.TestCase):
             for header, expected in (("rng.h", "aquafarm_sim/core/src/base/rng.cpp"),
                                      ("mutex.h", "aquafarm_sim/src/node/a.cpp"), ("x.h", None)):
                 self.assertEqual(expected, self.tidy.source_of_header(start + header, sources))
+
+
+class UnityTest(unittest.TestCase):
+
+    def test_sources_that_are_compiled_as_one_are_read_one_by_one(self):
+        with tempfile.TemporaryDirectory() as folder:
+            make_build(folder, {
+                "aquafarm_sim/src/base/a.cpp": "", "aquafarm_sim/src/base/b.cpp": "",
+                "Unity/unity_base_cxx.cxx": f'#include "{folder}/aquafarm_sim/src/base/a.cpp"\n\n'
+                                            f'#include "{folder}/aquafarm_sim/src/base/b.cpp"\n'})
+            path = pathlib.Path(folder, "compile_commands.json")
+            path.write_text(json.dumps(json.loads(path.read_text())[2:]))
+            sources = load().sources_of(pathlib.Path(folder))
+            self.assertEqual(["aquafarm_sim/src/base/a.cpp", "aquafarm_sim/src/base/b.cpp"],
+                             sorted(sources))
+            self.assertEqual(f"/usr/bin/c++ -O3 -Wall -o x.o -c {folder}/aquafarm_sim/src/base/b.cpp",
+                             sources["aquafarm_sim/src/base/b.cpp"]["command"])
 
 
 @unittest.skipUnless(HAS_TIDY, "there is no clang-tidy")

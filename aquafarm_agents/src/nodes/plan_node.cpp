@@ -28,6 +28,7 @@
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm_agents/link/duplicate_node.h"
 #include "aquafarm_agents/nodes/node.h"
+#include "aquafarm_agents/nodes/refuse.h"
 #include "aquafarm_agents/plan/newest_work.h"
 #include "aquafarm_agents/plan/plan_keeper.h"
 #include "aquafarm_agents/plan/plan_markers.h"
@@ -394,11 +395,6 @@ class PlanNode {
   std::unique_ptr<NewestWork<PlanInputs>> work_;  // last: its thread uses the others
 };
 
-int Refuse(ExitCode code, const char* what) {
-  std::fprintf(stderr, "plan_node: %s\n", what);
-  return static_cast<int>(code);
-}
-
 }  // namespace
 
 int RunPlanNode() {
@@ -410,9 +406,9 @@ int RunPlanNode() {
     ros::spin();
     return 0;
   } catch (const aquafarm::InputError& error) {
-    return Refuse(ExitCode::kBadInput, error.what());
+    return Refuse("plan_node", ExitCode::kBadInput, error.what());
   } catch (const std::exception& error) {
-    return Refuse(ExitCode::kInternal, error.what());
+    return Refuse("plan_node", ExitCode::kInternal, error.what());
   }
 }
 

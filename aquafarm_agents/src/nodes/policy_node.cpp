@@ -17,6 +17,7 @@
 #include "aquafarm_agents/link/duplicate_node.h"
 #include "aquafarm_agents/link/ros_environment.h"
 #include "aquafarm_agents/nodes/node.h"
+#include "aquafarm_agents/nodes/refuse.h"
 #include "aquafarm_agents/nodes/signals.h"
 #include "aquafarm_agents/values/values_publisher.h"
 #include "aquafarm_sim/params.h"
@@ -147,11 +148,6 @@ ExitCode Act(const ros::NodeHandle& node, const PolicyParams& params,
   return ExitCode::kOk;
 }
 
-int Refuse(ExitCode code, const char* what) {
-  std::fprintf(stderr, "policy_node: %s\n", what);
-  return static_cast<int>(code);
-}
-
 }  // namespace
 
 int RunPolicyNode() {
@@ -163,13 +159,14 @@ int RunPolicyNode() {
     return static_cast<int>(params.mode == "act" ? Act(node, params, saved)
                                                  : Evaluate(node, params, saved));
   } catch (const aquafarm::InputError& error) {
-    return Refuse(ExitCode::kBadInput, error.what());
+    return Refuse("policy_node", ExitCode::kBadInput, error.what());
   } catch (const agents::StorageError& error) {
-    return Refuse(ExitCode::kStorage, error.what());
+    return Refuse("policy_node", ExitCode::kStorage, error.what());
   } catch (const agents::EnvironmentLost& error) {
-    return Refuse(stop_requested ? ExitCode::kInterrupted : ExitCode::kLost, error.what());
+    return Refuse("policy_node", stop_requested ? ExitCode::kInterrupted : ExitCode::kLost,
+                  error.what());
   } catch (const std::exception& error) {
-    return Refuse(ExitCode::kInternal, error.what());
+    return Refuse("policy_node", ExitCode::kInternal, error.what());
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -25,6 +26,12 @@ inline std::string Sample(const std::string& name) {
 }
 
 inline StormFile Load(const std::string& name) { return LoadStormFile((kData / name).string()); }
+
+/// Returns the fix of a time, which the track must have.
+inline const StormFix& At(const StormTrack& track, std::int64_t time) {
+  return *std::find_if(track.fixes.begin(), track.fixes.end(),
+                       [time](const StormFix& fix) { return fix.time == time; });
+}
 
 /// Replaces one part of a text. @throws std::invalid_argument if the part is missing
 inline std::string With(std::string text, const std::string& from, const std::string& to) {

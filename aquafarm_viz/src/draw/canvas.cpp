@@ -8,15 +8,6 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr int kShift = 4;  // OpenCV's fixed-point coordinates: 1/16 pixel
-
-cv::Point Fixed(cv::Point2d point) {
-  // Far outside any image, but small enough for a shifted int.
-  constexpr double kFar = 1.0e6;
-  return {cvRound(std::clamp(point.x, -kFar, kFar) * (1 << kShift)),
-          cvRound(std::clamp(point.y, -kFar, kFar) * (1 << kShift))};
-}
-
 std::vector<cv::Point> Placed(const std::vector<cv::Point2f>& outline, const Pose2& placing) {
   std::vector<cv::Point> points;
   points.reserve(outline.size());
@@ -25,6 +16,13 @@ std::vector<cv::Point> Placed(const std::vector<cv::Point2f>& outline, const Pos
 }
 
 }  // namespace
+
+cv::Point Fixed(cv::Point2d point) {
+  // Far outside any image, but small enough for a shifted int.
+  constexpr double kFar = 1.0e6;
+  return {cvRound(std::clamp(point.x, -kFar, kFar) * (1 << kSubPixelBits)),
+          cvRound(std::clamp(point.y, -kFar, kFar) * (1 << kSubPixelBits))};
+}
 
 cv::Point2d Place(cv::Point2d point, const Pose2& placing) {
   const double bearing = placing.bearing_deg * CV_PI / 180.0;
@@ -35,28 +33,29 @@ cv::Point2d Place(cv::Point2d point, const Pose2& placing) {
 
 void FillShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Pose2& placing,
                const cv::Scalar& color) {
-  cv::fillPoly(image, Placed(outline, placing), color, cv::LINE_AA, kShift);
+  cv::fillPoly(image, Placed(outline, placing), color, cv::LINE_AA, kSubPixelBits);
 }
 
 void StrokeShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Pose2& placing,
                  const cv::Scalar& color, int thickness) {
-  cv::polylines(image, Placed(outline, placing), true, color, thickness, cv::LINE_AA, kShift);
+  cv::polylines(image, Placed(outline, placing), true, color, thickness, cv::LINE_AA,
+                kSubPixelBits);
 }
 
 void FillCircle(cv::Mat& image, cv::Point2d centre, double radius_px, const cv::Scalar& color) {
-  cv::circle(image, Fixed(centre), cvRound(radius_px * (1 << kShift)), color, cv::FILLED,
-             cv::LINE_AA, kShift);
+  cv::circle(image, Fixed(centre), cvRound(radius_px * (1 << kSubPixelBits)), color, cv::FILLED,
+             cv::LINE_AA, kSubPixelBits);
 }
 
 void StrokeCircle(cv::Mat& image, cv::Point2d centre, double radius_px, const cv::Scalar& color,
                   int thickness) {
-  cv::circle(image, Fixed(centre), cvRound(radius_px * (1 << kShift)), color, thickness,
-             cv::LINE_AA, kShift);
+  cv::circle(image, Fixed(centre), cvRound(radius_px * (1 << kSubPixelBits)), color, thickness,
+             cv::LINE_AA, kSubPixelBits);
 }
 
 void DrawLine(cv::Mat& image, cv::Point2d from, cv::Point2d to, const cv::Scalar& color,
               int thickness) {
-  cv::line(image, Fixed(from), Fixed(to), color, thickness, cv::LINE_AA, kShift);
+  cv::line(image, Fixed(from), Fixed(to), color, thickness, cv::LINE_AA, kSubPixelBits);
 }
 
 void Tint(cv::Mat& image, cv::Rect part, const cv::Scalar& color, double share) {

@@ -12,8 +12,8 @@ namespace {
 using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmState;
 
-void DrawArrow(cv::Mat& map, cv::Point2d from, double bearing_deg, double length_px,
-               const Layout& layout) {
+void DrawHeading(cv::Mat& map, cv::Point2d from, double bearing_deg, double length_px,
+                 const Layout& layout) {
   const float length = static_cast<float>(length_px / layout.unit);
   const float neck = length - 11.0F;
   const std::vector<cv::Point2f> outline{{-2.2F, 0.0F},  {2.2F, 0.0F},  {2.2F, neck}, {7.0F, neck},
@@ -53,7 +53,7 @@ void DrawCentre(cv::Mat& map, const DisasterState& disaster, const SignPlace& si
   const cv::Point2d at = sign.at;
   const double radius = 8.0 * layout.unit;
   if (disaster.speed > 0.0F) {
-    DrawArrow(map, at, disaster.heading_deg, cv::norm(sign.arrow_to - at), layout);
+    DrawHeading(map, at, disaster.heading_deg, cv::norm(sign.arrow_to - at), layout);
   }
   const cv::Scalar color = Bgr(GradeColor(disaster.grade));
   const bool typhoon = disaster.kind == DisasterState::TYPHOON;
@@ -79,8 +79,8 @@ void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, const SignPl
   const cv::Point2d centre = layout.view.ToPixel(disaster.x, disaster.y);
   const double bearing = std::atan2(centre.x - sign.at.x, sign.at.y - centre.y) * 180.0 / CV_PI;
   if (disaster.speed > 0.0F) {
-    DrawArrow(map, sign.arrow_from, disaster.heading_deg, cv::norm(sign.arrow_to - sign.arrow_from),
-              layout);
+    DrawHeading(map, sign.arrow_from, disaster.heading_deg,
+                cv::norm(sign.arrow_to - sign.arrow_from), layout);
   }
   const Pose2 placing{sign.at, 9.0 * layout.unit, bearing};
   StrokeShape(map, kPointer, placing, Bgr(layout.style->halo), layout.Px(5));

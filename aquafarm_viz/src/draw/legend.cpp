@@ -121,7 +121,7 @@ void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, cons
 }
 
 RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) {
-  constexpr std::size_t kMaxRings = 4;
+  constexpr std::size_t kMaxColors = 4;
   RiskKey key;
   for (std::size_t i = 0; i < courses.size(); ++i) {
     if (!IsDrawn(state.disasters[i])) continue;
@@ -135,7 +135,7 @@ RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) 
       if (std::none_of(key.begin(), key.end(), is_same)) key.push_back(one);
     }
   }
-  return key.size() > kMaxRings ? RiskKey() : key;
+  return key.size() > kMaxColors ? RiskKey() : key;
 }
 
 std::string FittingRingName(std::int32_t wind_kt, int width_px, const Font& font) {

@@ -10,6 +10,7 @@
 
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/disaster_kinds.h"
+#include "aquafarm_viz/draw/canvas.h"
 #include "aquafarm_viz/scene/rings.h"
 #include "draw/course.h"
 #include "draw/free_space.h"
@@ -55,22 +56,17 @@ struct Inset {
 
 void DrawRings(Inset& inset, const DisasterState& disaster, const Style& style) {
   constexpr int kCorners = 96;
-  constexpr int kShift = 4;  // bits of sub-pixel precision
   for (std::size_t ring = disaster.radii.size(); ring-- > 0;) {
     const std::array<double, 4> radii = RingQuadrants(disaster, ring);
     std::vector<cv::Point> outline;
     for (int i = 0; i < kCorners; ++i) {
       const double bearing = 2.0 * CV_PI * i / kCorners;
       const double radius = radii[std::size_t(i * 4 / kCorners)];
-      const cv::Point2d at = inset.At(disaster.x + radius * std::sin(bearing),
-                                      disaster.y + radius * std::cos(bearing));
-      const auto fixed = [](double pixel) {
-        return cvRound(std::clamp(pixel, -1e5, 1e5) * (1 << kShift));
-      };
-      outline.emplace_back(fixed(at.x), fixed(at.y));
+      outline.push_back(Fixed(inset.At(disaster.x + radius * std::sin(bearing),
+                                       disaster.y + radius * std::cos(bearing))));
     }
     cv::polylines(inset.image, outline, /*isClosed=*/true,
-                  Bgr(style.Risk(Severity(disaster.risks[ring]))), 1, cv::LINE_AA, kShift);
+                  Bgr(style.Risk(Severity(disaster.risks[ring]))), 1, cv::LINE_AA, kSubPixelBits);
   }
 }
 

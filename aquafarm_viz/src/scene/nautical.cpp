@@ -14,8 +14,6 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr double kHour_s = 3600.0;
-
 int ZoneOf(const aquafarm_msgs::FarmSpec& spec) {
   return spec.has_origin ? NauticalZone(spec.origin_longitude_deg) : 0;
 }

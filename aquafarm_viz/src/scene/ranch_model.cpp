@@ -13,7 +13,9 @@ namespace {
 
 using aquafarm_msgs::TrainingStatus;
 
-std::string Place(int x, int y) { return "(" + std::to_string(x) + ", " + std::to_string(y) + ")"; }
+std::string CellText(int x, int y) {
+  return "(" + std::to_string(x) + ", " + std::to_string(y) + ")";
+}
 
 std::string Percent(double share) {
   return std::isfinite(share) ? Number(100.0 * share, 0) + " %" : "-";
@@ -108,7 +110,7 @@ std::vector<RanchModel::Row> RanchModel::Ships() const {
     const std::string fault = OutcomeName(ship.outcome);
     rows.push_back(
         {ship.own_device >= 0 ? std::to_string(ship.id) + " (device)" : std::to_string(ship.id),
-         ship.visible ? Place(ship.x, ship.y) : "?",
+         ship.visible ? CellText(ship.x, ship.y) : "?",
          ActionName(ship.action) + (fault.empty() ? "" : ": " + fault), aboard,
          Signed(double(ship.reward)), Number(double(ship.episode_return), 1)});
   }
@@ -119,7 +121,7 @@ std::vector<RanchModel::Row> RanchModel::Devices() const {
   std::vector<Row> rows;
   if (shown().state == nullptr) return rows;
   for (const auto& device : shown().state->devices) {
-    rows.push_back({DeviceLabel(device.id), DeviceName(device.kind), Place(device.x, device.y),
+    rows.push_back({DeviceLabel(device.id), DeviceName(device.kind), CellText(device.x, device.y),
                     StatusName(device.status),
                     device.health_known ? Percent(double(device.health)) : "?",
                     Number(double(device.value), 0)});

@@ -17,7 +17,6 @@ using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr double kHour_s = 3600.0;
 constexpr double kErrorLead_h = 24.0;           // between two entries of forecast_error_km
 constexpr double kSameCells = 1.0;              // a disaster this near its track follows it
 constexpr int kHorizon = 10000;                 // [steps]

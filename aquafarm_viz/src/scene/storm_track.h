@@ -15,6 +15,8 @@
 
 namespace aquafarm_viz {
 
+inline constexpr double kHour_s = 3600.0;
+
 /// A disaster at one time.
 struct TrackPoint {
   double step{};  ///< steps since the start of the episode; may be negative

@@ -266,14 +266,14 @@ void DqnLearner<Scalar>::Update() {
   }
 }
 
-DeepOptions Parse(const std::string& text, std::string& resolved) {
+DeepOptions ParseFeedForward(const std::string& text, std::string& resolved) {
   return DeepOptions::Parse(text, /*recurrent=*/false, resolved);
 }
 
 std::unique_ptr<Learner> MakeLearner(const EnvironmentSpec& spec, std::uint64_t seed,
                                      const std::string& text, bool joint) {
   std::string resolved;
-  DeepOptions options = Parse(text, resolved);
+  DeepOptions options = ParseFeedForward(text, resolved);
   options.joint = joint;
   PrepareTorch(options.threads);
   if (options.network == NetworkKind::kCnn) {
@@ -286,7 +286,7 @@ std::unique_ptr<Learner> MakeLearner(const EnvironmentSpec& spec, std::uint64_t 
 
 std::uint8_t DqnObservationTypes(const std::string& options) {
   std::string resolved;
-  return ObservationTypeOf(Parse(options, resolved).network);
+  return ObservationTypeOf(ParseFeedForward(options, resolved).network);
 }
 
 std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed,
@@ -301,7 +301,7 @@ std::unique_ptr<Learner> MakeVdn(const EnvironmentSpec& spec, std::uint64_t seed
 
 std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec) {
   std::string resolved;
-  DeepOptions options = Parse(checkpoint.options, resolved);
+  DeepOptions options = ParseFeedForward(checkpoint.options, resolved);
   options.device = PlayingDevice(options.device);
   PrepareTorch(options.threads);
   CheckFits(checkpoint, spec, options.network);

@@ -245,7 +245,7 @@ void RecurrentDqnLearner::LoadOwn(const Checkpoint& checkpoint) {
   recurrent_state_.values() = std::move(recurrent_state);
 }
 
-DeepOptions Parse(const std::string& text, std::string& resolved) {
+DeepOptions ParseRecurrent(const std::string& text, std::string& resolved) {
   return DeepOptions::Parse(text, /*recurrent=*/true, resolved);
 }
 
@@ -253,14 +253,14 @@ DeepOptions Parse(const std::string& text, std::string& resolved) {
 
 std::uint8_t RecurrentDqnObservationTypes(const std::string& options) {
   std::string resolved;
-  Parse(options, resolved);
+  ParseRecurrent(options, resolved);
   return kFeaturesBit;
 }
 
 std::unique_ptr<Learner> MakeRecurrentDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                           const std::string& text) {
   std::string resolved;
-  const DeepOptions options = Parse(text, resolved);
+  const DeepOptions options = ParseRecurrent(text, resolved);
   PrepareTorch(options.threads);
   return std::make_unique<RecurrentDqnLearner>(spec, seed, options, resolved);
 }
@@ -268,7 +268,7 @@ std::unique_ptr<Learner> MakeRecurrentDqn(const EnvironmentSpec& spec, std::uint
 std::unique_ptr<Policy> MakeRecurrentDqnPolicy(const Checkpoint& checkpoint,
                                                const EnvironmentSpec& spec) {
   std::string resolved;
-  DeepOptions options = Parse(checkpoint.options, resolved);
+  DeepOptions options = ParseRecurrent(checkpoint.options, resolved);
   options.device = PlayingDevice(options.device);
   PrepareTorch(options.threads);
   CheckFits(checkpoint, spec, NetworkKind::kMlp);

@@ -11,13 +11,12 @@
 #include "aquafarm/agents/evaluation/evaluation.h"
 #include "aquafarm/base/check.h"
 #include "evaluation/free_cells.h"
+#include "evaluation/stop.h"
 
 namespace aquafarm::agents {
 namespace {
 
 using nlohmann::json;
-
-bool IsStopped(const std::atomic<bool>* stop) { return stop != nullptr && *stop; }
 
 // The reward of all agents of a farm in the last step.
 double RewardOf(const StepResults& results, const EnvironmentSpec& spec, std::size_t farm) {
@@ -71,6 +70,7 @@ json Rows(const std::vector<json>& values, std::int32_t width) {
 template <typename T>
 json ToRows(const std::vector<T>& values, std::int32_t width) {
   std::vector<json> entries;
+  entries.reserve(values.size());
   for (const T value : values) {
     entries.push_back(std::isnan(value) ? json(nullptr) : json(value));
   }

@@ -7,13 +7,12 @@
 #include "aquafarm/agents/base/storage.h"
 #include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/agents/evaluation/evaluation.h"
+#include "evaluation/stop.h"
 
 namespace aquafarm::agents {
 namespace {
 
 using nlohmann::json;
-
-bool IsStopped(const std::atomic<bool>* stop) { return stop != nullptr && *stop; }
 
 json ToJson(Cell cell) { return json::array({cell.x, cell.y}); }
 

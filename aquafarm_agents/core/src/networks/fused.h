@@ -11,6 +11,8 @@
 
 namespace aquafarm::agents {
 
+inline const float* Data(const torch::Tensor& tensor) { return tensor.data_ptr<float>(); }
+
 /// Returns whether the functions below accept an input and a network's weight. They throw
 /// LogicError for shapes other than those in their comments.
 bool CanFuse(const torch::Tensor& input, const torch::Tensor& weight);

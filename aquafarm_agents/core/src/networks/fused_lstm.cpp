@@ -13,20 +13,6 @@ using torch::Tensor;
 using torch::autograd::AutogradContext;
 using torch::autograd::variable_list;
 
-enum Saved {
-  kInput,
-  kHidden,
-  kInputWeight,
-  kHiddenWeight,
-  kGates,
-  kCells,
-  kCellTanh,
-  kOutput,
-  kSavedCount
-};
-
-const float* Data(const Tensor& tensor) { return tensor.data_ptr<float>(); }
-
 LstmShape ShapeOf(const Tensor& input, const Tensor& hidden_weight) {
   return {static_cast<std::size_t>(input.size(0)), static_cast<std::size_t>(input.size(1)),
           static_cast<std::size_t>(input.size(2)), static_cast<std::size_t>(hidden_weight.size(1))};
@@ -78,6 +64,18 @@ std::vector<float> EndSlopes(const Tensor& slopes, std::size_t size) {
 }
 
 struct LstmFunction : torch::autograd::Function<LstmFunction> {
+  enum Saved {
+    kInput,
+    kHidden,
+    kInputWeight,
+    kHiddenWeight,
+    kGates,
+    kCells,
+    kCellTanh,
+    kOutput,
+    kSavedCount
+  };
+
   static variable_list forward(AutogradContext* context, const Tensor& input, const Tensor& hidden,
                                const Tensor& cell, const Tensor& input_weight,
                                const Tensor& hidden_weight, const Tensor& input_bias,

@@ -12,12 +12,9 @@ using torch::Tensor;
 using torch::autograd::AutogradContext;
 using torch::autograd::variable_list;
 
-enum Saved { kInput, kFirst, kSecond, kAdvantage, kValue, kFirstOut, kSecondOut, kSavedCount };
-
 std::size_t Size(const Tensor& tensor, std::int64_t dimension) {
   return static_cast<std::size_t>(tensor.size(dimension));
 }
-const float* Data(const Tensor& tensor) { return tensor.data_ptr<float>(); }
 
 // One layer: its weight, and its output or input.
 struct Layer {
@@ -76,6 +73,8 @@ MlpOutputs Evaluate(const Tensor& input, const Tensor& first_weight, const Tenso
 }
 
 struct MlpFunction : torch::autograd::Function<MlpFunction> {
+  enum Saved { kInput, kFirst, kSecond, kAdvantage, kValue, kFirstOut, kSecondOut, kSavedCount };
+
   static Tensor forward(AutogradContext* context, const Tensor& input, const Tensor& first_weight,
                         const Tensor& first_bias, const Tensor& second_weight,
                         const Tensor& second_bias, const Tensor& advantage_weight,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "aquafarm/agents/base/text.h"
 #include "aquafarm/base/hash.h"
 #include "networks/farm_rows.h"
 
@@ -12,10 +13,6 @@ namespace {
 
 constexpr unsigned kActionBits = 4;
 static_assert(kActionCount < 1 << kActionBits);
-
-bool EndsWith(const std::string& name, const std::string& end) {
-  return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
-}
 
 // Names as in Encoder::feature_names. @param has_cell the features contain the ship's cell; if not,
 // the relative positions of the ports identify it

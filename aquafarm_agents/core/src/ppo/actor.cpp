@@ -52,19 +52,18 @@ void Actor::Observe(ActorCritic& network, const StepResults& results) {
 }
 
 const float* Actor::MeanOutputs(ActorCritic& network, SequenceRows rows) {
-  constexpr auto kWidth = static_cast<std::size_t>(kActorCriticOutputs);
   constexpr float kShare = 1.0F / static_cast<float>(kSymmetries);
   const float* const plain = rows.features;
   turned_.resize(slots() * features_);
-  mean_outputs_.assign(slots() * kWidth, 0.0F);
+  mean_outputs_.assign(slots() * kActorCriticOutputs, 0.0F);
   rows.features = turned_.data();
   for (const TokenSymmetry& symmetry : symmetries_) {
     for (std::size_t i = 0; i < slots(); ++i) {
       symmetry.Turn(plain + i * features_, turned_.data() + i * features_);
     }
     const float* outputs = network.Forward(rows, nullptr);
-    for (std::size_t i = 0; i < slots(); ++i, outputs += kWidth) {
-      float* const mean = mean_outputs_.data() + i * kWidth;
+    for (std::size_t i = 0; i < slots(); ++i, outputs += kActorCriticOutputs) {
+      float* const mean = mean_outputs_.data() + i * kActorCriticOutputs;
       for (std::uint8_t a = 0; a < kActionCount; ++a) mean[a] += kShare * outputs[symmetry.Turn(a)];
       mean[kActionCount] += kShare * outputs[kActionCount];
     }

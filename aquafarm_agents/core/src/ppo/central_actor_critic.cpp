@@ -10,7 +10,6 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr auto kOutputs = static_cast<std::size_t>(kActorCriticOutputs);
 constexpr std::size_t kValue = kActionCount;  // index of the value among the outputs
 
 /// Lends a vector to a network: both are exchanged, and exchanged back at the end.
@@ -68,17 +67,18 @@ const float* CentralActorCritic::Forward(const SequenceRows& rows, float* state_
   const bool needs_state = state_after != nullptr;
   const float* const logits = ForwardPart(policy_, rows, needs_state);
   const float* const values = ForwardPart(critic_, rows, needs_state);
-  outputs_.assign(logits, logits + rows.rows() * kOutputs);
-  for (std::size_t i = kValue; i < outputs_.size(); i += kOutputs) outputs_[i] = values[i];
+  outputs_.assign(logits, logits + rows.rows() * kActorCriticOutputs);
+  for (std::size_t i = kValue; i < outputs_.size(); i += kActorCriticOutputs)
+    outputs_[i] = values[i];
   if (needs_state) JoinStates(rows.sequences, state_after);
   return outputs_.data();
 }
 
 void CentralActorCritic::Backward(const SequenceRows& rows, const float* slopes) {
-  const std::size_t size = rows.rows() * kOutputs;
+  const std::size_t size = rows.rows() * kActorCriticOutputs;
   policy_.slopes.assign(slopes, slopes + size);
   critic_.slopes.assign(size, 0.0F);
-  for (std::size_t i = kValue; i < size; i += kOutputs) {
+  for (std::size_t i = kValue; i < size; i += kActorCriticOutputs) {
     std::swap(policy_.slopes[i], critic_.slopes[i]);
   }
   BackwardPart(policy_, rows);

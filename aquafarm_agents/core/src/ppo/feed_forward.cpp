@@ -4,16 +4,10 @@
 #include "ppo/ppo_loss.h"
 
 namespace aquafarm::agents {
-namespace {
-
-constexpr auto kOutputs = static_cast<std::size_t>(kActorCriticOutputs);
-
-}  // namespace
-
 FeedForward::FeedForward(std::size_t features, std::size_t hidden, const WeightOrigin& origin)
     : first_{origin.begin, features, hidden},
       second_{first_.end(), hidden, hidden},
-      head_{second_.end(), hidden, kOutputs} {
+      head_{second_.end(), hidden, kActorCriticOutputs} {
   weights_.resize(head_.end());
   gradient_.resize(head_.end());
   WeightDrawer drawer(origin);
@@ -43,8 +37,8 @@ void FeedForward::Backward(const SequenceRows& rows, const float* slopes) {
 }
 
 void FeedForward::Reserve(std::size_t rows) {
-  if (outputs_.size() >= rows * kOutputs) return;
-  outputs_.resize(rows * kOutputs);
+  if (outputs_.size() >= rows * kActorCriticOutputs) return;
+  outputs_.resize(rows * kActorCriticOutputs);
   for (auto* one : {&first_out_, &second_out_, &first_slopes_, &second_slopes_}) {
     one->resize(rows * first_.outputs);
   }

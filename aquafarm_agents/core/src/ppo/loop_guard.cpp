@@ -3,16 +3,11 @@
 
 #include <string>
 
+#include "aquafarm/agents/base/text.h"
 #include "aquafarm/base/hash.h"
 
 namespace aquafarm::agents {
-namespace {
-
-bool EndsWith(const std::string& name, const std::string& end) {
-  return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 LoopGuard::LoopGuard(const EnvironmentSpec& spec, std::size_t slots, std::int32_t max_visits)
     : max_visits_(max_visits), rule_(LayoutOfTokens(spec.feature_names)), episodes_(slots) {

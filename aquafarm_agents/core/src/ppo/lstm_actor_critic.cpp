@@ -10,8 +10,7 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr std::size_t kGates = 4;  // in the order i, f, g, o
-constexpr auto kOutputs = static_cast<std::size_t>(kActorCriticOutputs);
+constexpr std::size_t kGates = 4;    // in the order i, f, g, o
 constexpr float kForgetBias = 1.0F;  // of the initial weights: the cell state persists at first
 
 Eigen::Map<Eigen::ArrayXf> At(std::vector<float>& values, std::size_t begin, std::size_t size) {
@@ -26,7 +25,7 @@ LstmActorCritic::LstmActorCritic(std::size_t features, std::size_t hidden,
       first_{origin.begin, features, hidden},
       gates_{first_.end(), hidden, kGates * hidden},
       recurrent_{gates_.end(), hidden, kGates * hidden},
-      head_{recurrent_.bias(), 2 * hidden, kOutputs} {
+      head_{recurrent_.bias(), 2 * hidden, kActorCriticOutputs} {
   weights_.resize(std::max(head_.end(), recurrent_.end()));
   WeightDrawer drawer(origin);
   for (const Linear* layer : {&first_, &gates_, &recurrent_}) drawer.Draw(*layer, weights_);
@@ -39,8 +38,8 @@ LstmActorCritic::LstmActorCritic(std::size_t features, std::size_t hidden,
 
 void LstmActorCritic::Reserve(const SequenceRows& rows) {
   const std::size_t count = rows.rows();
-  if (outputs_.size() < count * kOutputs) {
-    outputs_.resize(count * kOutputs);
+  if (outputs_.size() < count * kActorCriticOutputs) {
+    outputs_.resize(count * kActorCriticOutputs);
     for (auto* one : {&seen_, &hidden_before_, &cell_before_, &cell_tanh_, &seen_slopes_}) {
       one->resize(count * hidden_);
     }

@@ -11,7 +11,7 @@
 
 namespace aquafarm::agents {
 
-inline constexpr int kActorCriticOutputs = kActionCount + 1;
+inline constexpr std::size_t kActorCriticOutputs = kActionCount + 1;
 
 /// Max log ratio that is exponentiated. Clipping does not bound the ratio from above if the
 /// advantage is negative, so exp() could overflow and cause NaN gradients. Beyond the bound b the

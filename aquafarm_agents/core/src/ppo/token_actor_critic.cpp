@@ -13,7 +13,6 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr auto kOutputs = static_cast<std::size_t>(kActorCriticOutputs);
 constexpr std::size_t kE = TokenActorCritic::kEmbedding;
 
 using Embedding = Eigen::Map<Eigen::Array<float, static_cast<int>(kE), 1>>;
@@ -58,7 +57,7 @@ TokenActorCritic::TokenActorCritic(const TokenLayout& layout, std::size_t hidden
   query_ = next(hidden, kHeads * kE);
   first_ = next(joined_size_, hidden);
   second_ = next(hidden, hidden);
-  head_ = next(hidden, kOutputs);
+  head_ = next(hidden, kActorCriticOutputs);
   weights_.resize(end);
   gradient_.resize(end);
   WeightDrawer drawer({seed});
@@ -72,8 +71,8 @@ TokenActorCritic::TokenActorCritic(const TokenLayout& layout, std::size_t hidden
 }
 
 void TokenActorCritic::Reserve(std::size_t rows) {
-  if (outputs_.size() >= rows * kOutputs) return;
-  outputs_.resize(rows * kOutputs);
+  if (outputs_.size() >= rows * kActorCriticOutputs) return;
+  outputs_.resize(rows * kActorCriticOutputs);
   ship_in_.resize(rows * ship_.inputs);
   for (auto* one : {&queries_, &query_slopes_}) one->resize(rows * kHeads * kE);
   for (auto* one : {&joined_, &joined_slopes_}) one->resize(rows * joined_size_);

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "aquafarm/agents/base/text.h"
 #include "aquafarm/base/check.h"
 
 namespace aquafarm::agents {
@@ -30,10 +31,6 @@ struct Turning {
 
 std::size_t MoveOf(Cell by) {
   return static_cast<std::size_t>(std::find(kMoves.begin(), kMoves.end(), by) - kMoves.begin());
-}
-
-bool EndsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 /// A feature of the turned ranch as one of the plain ranch.

@@ -9,14 +9,13 @@
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm/tracks/track.h"
 #include "rescue/case_parts.h"
+#include "rescue/constants.h"
 #include "rescue/csv.h"
 #include "rescue/sea_routes.h"
 #include "rescue/trip_search.h"
 
 namespace aquafarm::agents {
 namespace {
-
-constexpr double kHour_s = 3600.0;
 
 std::string Where(GeoPoint place) {
   return Short(place.latitude, 4) + " N " + Short(place.longitude, 4) + " E";

@@ -10,11 +10,10 @@
 #include "aquafarm/tracks/fine_rings.h"
 #include "aquafarm/tracks/reader.h"
 #include "rescue/case_parts.h"
+#include "rescue/constants.h"
 
 namespace aquafarm::agents {
 namespace {
-
-constexpr std::int64_t kHour_s = 3600;
 
 std::string NameOf(const StormTrack& track) { return track.name.empty() ? track.id : track.name; }
 

@@ -10,11 +10,10 @@
 
 #include "aquafarm/base/check.h"
 #include "rescue/case_parts.h"
+#include "rescue/constants.h"
 
 namespace aquafarm::agents {
 namespace {
-
-constexpr double kNormal95 = 1.96;
 
 // The storm without errors, as an ensemble of one member.
 Ensemble Certain(const RescueCase& rescue, const CentralForecast& forecast) {

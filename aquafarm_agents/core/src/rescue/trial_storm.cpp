@@ -11,11 +11,11 @@
 #include "aquafarm/base/rng.h"
 #include "aquafarm/tracks/fine_rings.h"
 #include "aquafarm/tracks/wind_radii.h"
+#include "rescue/constants.h"
 
 namespace aquafarm::agents {
 namespace {
 
-constexpr std::int64_t kHour_s = 3600;
 constexpr double kKmPerDegree = 111.195;
 constexpr std::array<std::int32_t, 8> kLeads_h{12, 24, 36, 48, 60, 72, 96, 120};
 constexpr std::array<std::int32_t, 3> kWinds_kt{34, 50, 64};

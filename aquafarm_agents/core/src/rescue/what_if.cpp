@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "rescue/constants.h"
 #include "rescue/trip_cache.h"
 
 namespace aquafarm::agents {
@@ -27,7 +28,6 @@ WhatIf Compare(const std::string& change, const std::string& text, const RescueP
     row.all_home += other.home_count[member] == plan.devices.size() ? 1.0 / count : 0.0;
   }
   const double variance = std::max(0.0, squares - row.difference * row.difference);
-  constexpr double kNormal95 = 1.96;
   const double half = kNormal95 * std::sqrt(variance / count);
   row.difference_low = row.difference - half;
   row.difference_high = row.difference + half;

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "aquafarm/agents/base/text.h"
 #include "aquafarm/base/check.h"
 
 namespace aquafarm::agents {
@@ -27,10 +28,6 @@ constexpr int kChildSocket = 3;
 constexpr std::uint32_t kMaxWords = 4096;  // bytes of an error
 constexpr const char* kEnded =
     "its Python process has ended, its last lines are above; AQUAFARM_PYTHON selects a Python";
-
-bool EndsWith(const std::string& text, const std::string& end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
 
 // In the workspace that this program is installed in, else in the sources.
 std::string ServerPath() {

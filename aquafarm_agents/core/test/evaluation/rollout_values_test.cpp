@@ -6,14 +6,10 @@
 
 #include "agents_fixture.h"
 #include "aquafarm/agents/base/storage.h"
-#include "aquafarm/agents/planning/planner_policy.h"
+#include "evaluation/clairvoyant.h"
 
 namespace aquafarm::agents::test {
 namespace {
-
-std::unique_ptr<Policy> Plan(const EnvironmentSpec& spec) {
-  return std::make_unique<PlannerPolicy>(spec, Foresight::kOracle);
-}
 
 RolloutValues OfPlanner(const std::shared_ptr<const Scenario>& scenario,
                         std::int32_t episodes = 1) {

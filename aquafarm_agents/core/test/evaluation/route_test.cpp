@@ -9,14 +9,10 @@
 #include "agents_fixture.h"
 #include "aquafarm/agents/base/storage.h"
 #include "aquafarm/agents/learning/tabular.h"
-#include "aquafarm/agents/planning/planner_policy.h"
+#include "evaluation/clairvoyant.h"
 
 namespace aquafarm::agents::test {
 namespace {
-
-std::unique_ptr<Policy> Plan(const EnvironmentSpec& spec) {
-  return std::make_unique<PlannerPolicy>(spec, Foresight::kOracle);
-}
 
 // The device is two cells north of the port: pickup and delivery take six steps.
 TEST(Route, IsTheEpisodeAndTheBestMoveOfEveryFreeCell) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "aquafarm/base/check.h"
-#include "aquafarm/base/rng.h"
 #include "networks/networks.h"
+#include "networks/noise_tensor.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -17,15 +17,6 @@ namespace {
 constexpr std::int64_t kFeatures = 5;
 constexpr std::int64_t kHidden = 7;  // not a multiple of the SIMD width
 constexpr std::int64_t kRows = 4;
-
-torch::Tensor Noise(const std::vector<std::int64_t>& shape, std::uint32_t stream) {
-  RandomStream rng({9, 0, RngStream::kLearner, stream});
-  torch::Tensor tensor = torch::empty(shape);
-  for (std::int64_t i = 0; i < tensor.numel(); ++i) {
-    tensor.data_ptr<float>()[i] = rng.Uniform(-1.0F, 1.0F);
-  }
-  return tensor;
-}
 
 torch::Tensor Leaf(const torch::Tensor& values, torch::Dtype type) {
   return values.detach().to(type).clone().set_requires_grad(true);
@@ -57,8 +48,8 @@ TEST_P(FusedMlpTest, HasTheValuesAndGradientsOfLibtorch) {
   const auto fused = MakeNetwork(spec, options, 3);
   const auto expected = MakeNetwork(spec, options, 3);
   expected->to(torch::kDouble);
-  const torch::Tensor seen = Noise({2, kRows, kFeatures}, 1);  // with a leading dimension
-  const torch::Tensor slopes = Noise({2, kRows, kActionCount}, 2);
+  const torch::Tensor seen = NoiseTensor({2, kRows, kFeatures}, 1);  // with a leading dimension
+  const torch::Tensor slopes = NoiseTensor({2, kRows, kActionCount}, 2);
   const torch::Tensor input = Leaf(seen, torch::kFloat);
   const torch::Tensor input_twin = Leaf(seen, torch::kDouble);
   const torch::Tensor values = fused->Forward(input);
@@ -77,12 +68,12 @@ INSTANTIATE_TEST_SUITE_P(Networks, FusedMlpTest, ::testing::Bool());
 // All values and gradients of an LSTM, whose loss reads each step and the state after the last.
 std::vector<torch::Tensor> EvaluateLstm(RecurrentNetwork& network, std::int64_t steps,
                                         torch::Dtype type) {
-  const torch::Tensor input = Leaf(Noise({steps, kRows, kFeatures}, 1), type);
-  const torch::Tensor hidden = Leaf(Noise({1, kRows, kHidden}, 2), type);
-  const torch::Tensor cell = Leaf(Noise({1, kRows, kHidden}, 3), type);
+  const torch::Tensor input = Leaf(NoiseTensor({steps, kRows, kFeatures}, 1), type);
+  const torch::Tensor hidden = Leaf(NoiseTensor({1, kRows, kHidden}, 2), type);
+  const torch::Tensor cell = Leaf(NoiseTensor({1, kRows, kHidden}, 3), type);
   RecurrentNetwork::State state{hidden, cell};
   const torch::Tensor values = network.Forward(input, state);
-  const torch::Tensor slopes = Noise({steps, kRows, kActionCount}, 4).to(type);
+  const torch::Tensor slopes = NoiseTensor({steps, kRows, kActionCount}, 4).to(type);
   const torch::Tensor loss = (values.square() * slopes).sum() + state.first.square().sum() +
                              0.3 * state.second.pow(3).sum();
   loss.backward();
@@ -111,8 +102,9 @@ TEST(FusedLstm, HasTheValuesAndGradientsOfLibtorch) {
 TEST(FusedLstm, WithoutAGradientItHasTheSameValues) {
   RecurrentNetwork network(kFeatures, kHidden, true);
   DrawWeights(network, 4, 0);
-  const torch::Tensor input = Noise({6, kRows, kFeatures}, 1);
-  RecurrentNetwork::State state{Noise({1, kRows, kHidden}, 2), Noise({1, kRows, kHidden}, 3)};
+  const torch::Tensor input = NoiseTensor({6, kRows, kFeatures}, 1);
+  RecurrentNetwork::State state{NoiseTensor({1, kRows, kHidden}, 2),
+                                NoiseTensor({1, kRows, kHidden}, 3)};
   RecurrentNetwork::State twin = state;
   const torch::Tensor values = network.Forward(input, state);
   const torch::NoGradGuard no_grad;
@@ -126,7 +118,7 @@ TEST(FusedLstm, AStateOfOtherRowsIsRefused) {
   DrawWeights(network, 4, 0);
   RecurrentNetwork::State state{torch::zeros({1, kRows - 1, kHidden}),
                                 torch::zeros({1, kRows, kHidden})};
-  EXPECT_THROW(network.Forward(Noise({6, kRows, kFeatures}, 1), state), LogicError);
+  EXPECT_THROW(network.Forward(NoiseTensor({6, kRows, kFeatures}, 1), state), LogicError);
 }
 
 // What later steps of a loss do not read has no slope.
@@ -139,7 +131,7 @@ TEST(FusedLstm, ALossOfTheStateAloneHasAGradient) {
   const auto slope_of = [](RecurrentNetwork& network, torch::Dtype type) {
     RecurrentNetwork::State state{torch::zeros({1, kRows, kHidden}, type),
                                   torch::zeros({1, kRows, kHidden}, type)};
-    const torch::Tensor input = Leaf(Noise({3, kRows, kFeatures}, 1), type);
+    const torch::Tensor input = Leaf(NoiseTensor({3, kRows, kFeatures}, 1), type);
     network.WarmUp(input, state);
     state.second.square().sum().backward();
     return input.grad();

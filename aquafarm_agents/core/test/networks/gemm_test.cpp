@@ -9,19 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/base/rng.h"
 #include "networks/adam_step.h"
 #include "networks/lstm_cell.h"
+#include "networks/noise.h"
 
 namespace aquafarm::agents {
 namespace {
-
-std::vector<float> Noise(std::size_t size, std::uint32_t stream, float min = -1.0F) {
-  RandomStream rng({9, 0, RngStream::kLearner, stream});
-  std::vector<float> values(size);
-  for (float& one : values) one = rng.Uniform(min, 1.0F);
-  return values;
-}
 
 enum class Kind { kPlain, kByTransposed, kTransposed };
 
@@ -99,21 +92,21 @@ TEST(Transpose, ExchangesRowsAndColumns) {
 }
 
 TEST(LstmCell, HasTheFunctionsOfItsEquations) {
-  constexpr std::size_t kHidden = 19;  // not a multiple of the vector width
+  constexpr std::size_t kCells = 19;  // not a multiple of the vector width
   for (double x = -100.0; x < 100.0; x += 0.173) {
-    std::vector<float> gates(4 * kHidden, static_cast<float>(x));
-    const std::vector<float> before(kHidden, 0.7F);
-    std::vector<float> cell(kHidden);
-    std::vector<float> cell_tanh(kHidden);
-    std::vector<float> output(kHidden);
-    LstmCellForward(kHidden, gates.data(), before.data(), cell.data(), cell_tanh.data(),
+    std::vector<float> gates(4 * kCells, static_cast<float>(x));
+    const std::vector<float> before(kCells, 0.7F);
+    std::vector<float> cell(kCells);
+    std::vector<float> cell_tanh(kCells);
+    std::vector<float> output(kCells);
+    LstmCellForward(kCells, gates.data(), before.data(), cell.data(), cell_tanh.data(),
                     output.data());
     const double input = static_cast<double>(static_cast<float>(x));
     const double sigmoid = 1.0 / (1.0 + std::exp(-input));
     const double c = sigmoid * 0.7 + sigmoid * std::tanh(input);
-    for (std::size_t i = 0; i < kHidden; ++i) {
+    for (std::size_t i = 0; i < kCells; ++i) {
       ASSERT_NEAR(gates[i], sigmoid, 2e-7) << x;
-      ASSERT_NEAR(gates[2 * kHidden + i], std::tanh(input), 2e-7) << x;
+      ASSERT_NEAR(gates[2 * kCells + i], std::tanh(input), 2e-7) << x;
       ASSERT_NEAR(cell[i], c, 4e-7) << x;
       ASSERT_NEAR(output[i], sigmoid * std::tanh(c), 6e-7) << x;
     }
@@ -121,14 +114,14 @@ TEST(LstmCell, HasTheFunctionsOfItsEquations) {
 }
 
 TEST(LstmCell, ANumberThatIsNoneStaysSo) {
-  constexpr std::size_t kHidden = 19;
+  constexpr std::size_t kCells = 19;
   for (const float bad :
        {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::quiet_NaN()}) {
-    std::vector<float> gates(4 * kHidden, bad);
-    std::vector<float> cell(kHidden);
-    std::vector<float> cell_tanh(kHidden);
-    std::vector<float> output(kHidden);
-    LstmCellForward(kHidden, gates.data(), cell.data(), cell.data(), cell_tanh.data(),
+    std::vector<float> gates(4 * kCells, bad);
+    std::vector<float> cell(kCells);
+    std::vector<float> cell_tanh(kCells);
+    std::vector<float> output(kCells);
+    LstmCellForward(kCells, gates.data(), cell.data(), cell.data(), cell_tanh.data(),
                     output.data());
     for (const float one : output) EXPECT_TRUE(std::isnan(one));
   }

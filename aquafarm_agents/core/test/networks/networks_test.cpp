@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "aquafarm/base/check.h"
-#include "aquafarm/base/rng.h"
 #include "networks/deep_policy.h"
 #include "networks/flat_adam.h"
+#include "networks/noise_tensor.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -25,15 +25,6 @@ EnvironmentSpec SmallSpec() {
   spec.height = 6;
   spec.width = 7;
   return spec;
-}
-
-torch::Tensor Noise(std::vector<std::int64_t> shape, std::uint32_t stream) {
-  RandomStream rng({9, 0, RngStream::kLearner, stream});
-  torch::Tensor tensor = torch::empty(shape);
-  for (std::int64_t i = 0; i < tensor.numel(); ++i) {
-    tensor.data_ptr<float>()[i] = rng.Uniform(-1.0F, 1.0F);
-  }
-  return tensor;
 }
 
 /// Compares a network's gradient with central differences, in double.
@@ -67,7 +58,7 @@ TEST(Networks, GradientsOfEveryKindAreDifferences) {
       options.dueling = dueling;
       const auto network = MakeNetwork(SmallSpec(), options, 3);
       const torch::Tensor input =
-          (kind == NetworkKind::kMlp ? Noise({3, 5}, 1) : Noise({3, 2, 6, 7}, 1))
+          (kind == NetworkKind::kMlp ? NoiseTensor({3, 5}, 1) : NoiseTensor({3, 2, 6, 7}, 1))
               .to(torch::kDouble);
       ExpectGradientsAreDifferences(*network,
                                     [&] { return network->Forward(input).square().sum(); });
@@ -138,7 +129,7 @@ TEST(RecurrentNetwork, IsTheLstmOfItsEquations) {
   RecurrentNetwork network(5, 6, false);
   DrawWeights(network, 4, 0);
   FlatParameters parameters(network, torch::kCPU);
-  const torch::Tensor input = Noise({kSteps, 1, 5}, 2);
+  const torch::Tensor input = NoiseTensor({kSteps, 1, 5}, 2);
   std::vector<std::vector<float>> rows;
   for (std::int64_t t = 0; t < kSteps; ++t) {
     const float* row = input.data_ptr<float>() + t * 5;
@@ -156,7 +147,7 @@ TEST(RecurrentNetwork, StepByStepIsTheSameAsAtOnce) {
   RecurrentNetwork network(5, 6, true);
   DrawWeights(network, 4, 0);
   const torch::NoGradGuard no_grad;
-  const torch::Tensor input = Noise({6, 3, 5}, 3);
+  const torch::Tensor input = NoiseTensor({6, 3, 5}, 3);
   RecurrentNetwork::State at_once{torch::zeros({1, 3, 6}), torch::zeros({1, 3, 6})};
   RecurrentNetwork::State step_by_step = at_once;
   const torch::Tensor expected = network.Forward(input, at_once);
@@ -171,7 +162,7 @@ TEST(RecurrentNetwork, StepByStepIsTheSameAsAtOnce) {
 TEST(RecurrentNetwork, GradientsAreDifferences) {
   RecurrentNetwork network(5, 6, true);
   DrawWeights(network, 4, 0);
-  const torch::Tensor input = Noise({4, 2, 5}, 3).to(torch::kDouble);
+  const torch::Tensor input = NoiseTensor({4, 2, 5}, 3).to(torch::kDouble);
   const torch::Tensor empty = torch::zeros({1, 2, 6}, torch::kDouble);
   ExpectGradientsAreDifferences(network, [&] {
     RecurrentNetwork::State state{empty, empty};
@@ -256,7 +247,7 @@ TEST(FlatParameters, GatherTheGradients) {
   const auto network = MakeNetwork(SmallSpec(), {}, 3);
   const auto apart = MakeNetwork(SmallSpec(), {}, 3);
   FlatParameters parameters(*network, torch::kCPU);
-  const torch::Tensor input = Noise({4, 5}, 1);
+  const torch::Tensor input = NoiseTensor({4, 5}, 1);
   for (int twice = 0; twice < 2; ++twice) {
     parameters.values().grad().zero_();
     network->Forward(input).square().sum().backward();
@@ -277,7 +268,7 @@ TEST(FlatParameters, AreTheNetworksOwn) {
   EXPECT_EQ(parameters.ToVector(), of_same.ToVector()) << "the seed gives the weights";
   EXPECT_NE(parameters.ToVector(), of_other.ToVector());
   of_other.FromVector(parameters.ToVector());
-  const torch::Tensor input = Noise({2, 5}, 1);
+  const torch::Tensor input = NoiseTensor({2, 5}, 1);
   EXPECT_TRUE(torch::equal(network->Forward(input), other->Forward(input)));
 }
 

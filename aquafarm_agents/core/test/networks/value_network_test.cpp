@@ -10,6 +10,7 @@
 #include "agents_fixture.h"
 #include "aquafarm/agents/training/algorithms.h"
 #include "networks/deep_policy.h"
+#include "networks/noise.h"
 
 namespace {
 std::atomic<bool> counts{false};
@@ -39,13 +40,6 @@ EnvironmentSpec SmallSpec() {
   spec.height = 6;
   spec.width = 7;
   return spec;
-}
-
-std::vector<float> Noise(std::size_t size, std::uint32_t stream) {
-  RandomStream rng({9, 0, RngStream::kLearner, stream});
-  std::vector<float> values(size);
-  for (float& one : values) one = rng.Uniform(-1.0F, 1.0F);
-  return values;
 }
 
 torch::Tensor ToDouble(std::vector<float> values, const std::vector<std::int64_t>& shape) {

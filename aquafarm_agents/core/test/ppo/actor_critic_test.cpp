@@ -4,24 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
 
 #include "aquafarm/base/rng.h"
 #include "ppo/central_actor_critic.h"
+#include "ppo/complex_step.h"
 #include "ppo/make_actor_critic.h"
 #include "ppo/ppo_loss.h"
 
 namespace aquafarm::agents::test {
 namespace {
 
-using Complex = std::complex<double>;
-using Vector = std::vector<Complex>;
-
 constexpr std::size_t kFeatures = 5;
 constexpr std::size_t kHidden = 6;
-constexpr std::size_t kWidth = kActorCriticOutputs;
 
-Complex Relu(Complex x) { return x.real() > 0.0 ? x : Complex(0.0); }
 Complex Sigmoid(Complex x) { return 1.0 / (1.0 + std::exp(-x)); }
 
 /// Reads layers from a flat parameter vector in order.
@@ -54,7 +49,7 @@ Vector FeedForwardOutputs(const Vector& weights, const Vector& features) {
   Layers layers(weights);
   const Vector first = ReluOf(layers.Apply(features, kHidden));
   const Vector second = ReluOf(layers.Apply(first, kHidden));
-  return layers.Apply(second, kWidth);
+  return layers.Apply(second, kActorCriticOutputs);
 }
 
 /// Updates h and c.
@@ -72,7 +67,7 @@ Vector LstmOutputs(const Vector& weights, const Vector& features, Vector& h, Vec
   }
   joined = h;
   joined.insert(joined.end(), seen.begin(), seen.end());
-  return layers.Apply(joined, kWidth);
+  return layers.Apply(joined, kActorCriticOutputs);
 }
 
 struct Batch {
@@ -95,7 +90,7 @@ Batch MakeBatch(std::size_t steps, std::size_t sequences, std::size_t state_size
   };
   fill(batch.features, steps * sequences * kFeatures);
   fill(batch.state, sequences * state_size);
-  fill(batch.slopes, steps * sequences * kWidth);
+  fill(batch.slopes, steps * sequences * kActorCriticOutputs);
   batch.is_first.resize(steps * sequences);
   if (steps > 3) batch.is_first[2 * sequences] = 1;  // an episode starts in sequence 0
   return batch;
@@ -122,9 +117,9 @@ Complex DefinedLoss(const Vector& weights, const Batch& batch, bool recurrent,
       const Vector features(seen, seen + kFeatures);
       const Vector out =
           recurrent ? LstmOutputs(weights, features, h, c) : FeedForwardOutputs(weights, features);
-      for (std::size_t i = 0; i < kWidth; ++i) {
-        loss += out[i] * static_cast<double>(batch.slopes[row * kWidth + i]);
-        if (outputs != nullptr) (*outputs)[row * kWidth + i] = out[i].real();
+      for (std::size_t i = 0; i < kActorCriticOutputs; ++i) {
+        loss += out[i] * static_cast<double>(batch.slopes[row * kActorCriticOutputs + i]);
+        if (outputs != nullptr) (*outputs)[row * kActorCriticOutputs + i] = out[i].real();
       }
     }
   }
@@ -214,7 +209,9 @@ void ExpectPartAgrees(ActorCritic& central, const Batch& batch, const Batch& joi
   rows.joint = joint.features.data();
   std::vector<float> both(batch.state.size());
   const float* const outputs = central.Forward(rows, recurrent ? both.data() : nullptr);
-  const auto belongs = [&](std::size_t i) { return (i % kWidth == kActionCount) == is_critic; };
+  const auto belongs = [&](std::size_t i) {
+    return (i % kActorCriticOutputs == kActionCount) == is_critic;
+  };
   for (std::size_t i = 0; i < batch.slopes.size(); ++i) {
     if (!belongs(i)) {
       part.slopes[i] = 0.0F;
@@ -269,8 +266,8 @@ TEST(Lstm, StepByStepEqualsTheWholeSequence) {
     const SequenceRows rows{1, batch.sequences, batch.features.data() + row * kFeatures,
                             before.data(), batch.is_first.data() + row};
     const float* const outputs = network->Forward(rows, state.data());
-    for (std::size_t i = 0; i < batch.sequences * kWidth; ++i) {
-      ASSERT_NEAR(outputs[i], expected[row * kWidth + i], 1e-5F) << "step " << t;
+    for (std::size_t i = 0; i < batch.sequences * kActorCriticOutputs; ++i) {
+      ASSERT_NEAR(outputs[i], expected[row * kActorCriticOutputs + i], 1e-5F) << "step " << t;
     }
   }
 }

@@ -14,10 +14,8 @@
 namespace aquafarm::agents::test {
 namespace {
 
-constexpr std::size_t kWidth = kActorCriticOutputs;
-
 struct Case {
-  std::vector<double> outputs;  // [kWidth]
+  std::vector<double> outputs;  // [kActorCriticOutputs]
   ActionMask mask{(1U << kActionCount) - 1};
   std::uint8_t action{};
   double log_prob{};
@@ -82,7 +80,7 @@ Computed Compute(const Case& c, const PpoCoefficients& k, float weight = 1.0F) {
   const auto target = static_cast<float>(c.target);
   ActionDistribution distribution;
   Computed computed;
-  computed.slopes.resize(kWidth);
+  computed.slopes.resize(kActorCriticOutputs);
   const PpoRows rows{&c.mask, &c.action, &log_prob, &value, &advantage, &target, &weight, &c.label};
   computed.loss =
       ComputeLoss(outputs.data(), 1, rows, k, distribution, computed.slopes.data()).Total(k);
@@ -91,7 +89,7 @@ Computed Compute(const Case& c, const PpoCoefficients& k, float weight = 1.0F) {
 
 Case RandomCase(RandomStream& rng) {
   Case c;
-  for (std::size_t i = 0; i < kWidth; ++i) {
+  for (std::size_t i = 0; i < kActorCriticOutputs; ++i) {
     c.outputs.push_back(static_cast<double>(rng.Uniform(-2.0F, 2.0F)));
   }
   c.action = static_cast<std::uint8_t>(rng.Below(kActionCount));
@@ -114,7 +112,7 @@ TEST(PpoLoss, AndItsGradientEqualTheDefinition) {
       const Case c = RandomCase(rng);
       const Computed computed = Compute(c, k);
       ASSERT_NEAR(computed.loss, DefinedLoss(c, k), 1e-4) << trial;
-      for (std::size_t i = 0; i < kWidth; ++i) {
+      for (std::size_t i = 0; i < kActorCriticOutputs; ++i) {
         Case up = c;
         Case down = c;
         up.outputs[i] += kStep;
@@ -131,7 +129,7 @@ TEST(PpoLoss, AndItsGradientEqualTheDefinition) {
 
 TEST(PpoLoss, MaskedActionsHaveNoProbabilityAndNoGradient) {
   Case c;
-  c.outputs.assign(kWidth, 0.0);
+  c.outputs.assign(kActorCriticOutputs, 0.0);
   c.outputs[4] = 80.0;  // masked, and far larger than the others
   c.mask = 0b0000000011;
   c.advantage = 1.0;
@@ -149,7 +147,7 @@ TEST(PpoLoss, MaskedActionsHaveNoProbabilityAndNoGradient) {
 
 TEST(PpoLoss, StaysFiniteWhereANegativeAdvantageDoesNotClipTheRatio) {
   Case c;
-  c.outputs.assign(kWidth, 0.0);
+  c.outputs.assign(kActorCriticOutputs, 0.0);
   c.advantage = -1.0;
   c.log_prob = -200.0;  // e^198 exceeds the range of a float
   const PpoCoefficients k{0.2F, 0.0F, 0.0F, 0.0F};
@@ -165,7 +163,7 @@ TEST(PpoLoss, IgnoresRowsOfNoWeight) {
   RandomStream rng({4, 0, RngStream::kLearner, 0});
   const Computed computed = Compute(RandomCase(rng), {0.2F, 0.0F, 0.5F, 0.1F}, 0.0F);
   EXPECT_EQ(computed.loss, 0.0);
-  EXPECT_EQ(computed.slopes, std::vector<float>(kWidth, 0.0F));
+  EXPECT_EQ(computed.slopes, std::vector<float>(kActorCriticOutputs, 0.0F));
 }
 
 }  // namespace

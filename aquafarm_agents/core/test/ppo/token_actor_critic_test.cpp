@@ -7,12 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 #include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/rng.h"
 #include "aquafarm/observation/tokens.h"
+#include "ppo/complex_step.h"
 #include "ppo/make_actor_critic.h"
 #include "ppo/ppo_loss.h"
 #include "ppo/route_rule.h"
@@ -21,16 +21,10 @@
 namespace aquafarm::agents::test {
 namespace {
 
-using Complex = std::complex<double>;
-using Vector = std::vector<Complex>;
-
-constexpr std::size_t kHidden = 5;
+constexpr std::size_t kTokenHidden = 5;
 constexpr std::size_t kRows = 4;
 constexpr std::size_t kE = TokenActorCritic::kEmbedding;
 constexpr std::size_t kHeads = TokenActorCritic::kHeads;
-constexpr std::size_t kWidth = kActorCriticOutputs;
-
-Complex Relu(Complex x) { return x.real() > 0.0 ? x : Complex(0.0); }
 
 /// Token names with few features: the network reads everything from them.
 const TokenLayout& Layout() {
@@ -71,7 +65,7 @@ Vector Apply(const Complex*& next, const Vector& in, std::size_t outputs, bool r
 Vector Outputs(const Vector& weights, const float* row) {
   const Complex* next = weights.data();
   const auto& groups = Layout().groups;
-  const Vector ship = Apply(next, Vector(row, row + groups[0].size), kHidden);
+  const Vector ship = Apply(next, Vector(row, row + groups[0].size), kTokenHidden);
   Vector joined = ship;
   std::vector<Vector> targets;
   for (std::size_t kind = 1; kind < groups.size(); ++kind) {
@@ -106,12 +100,12 @@ Vector Outputs(const Vector& weights, const float* row) {
     for (Complex& value : sum) value = targets.empty() ? Complex(0.0) : value / total;
     joined.insert(joined.end(), sum.begin(), sum.end());
   }
-  const Vector first = Apply(next, joined, kHidden);
-  const Vector second = Apply(next, first, kHidden);
-  return Apply(next, second, kWidth, false);
+  const Vector first = Apply(next, joined, kTokenHidden);
+  const Vector second = Apply(next, first, kTokenHidden);
+  return Apply(next, second, kActorCriticOutputs, false);
 }
 
-struct Batch {
+struct TokenBatch {
   std::vector<float> features;
   std::vector<float> slopes;  // the loss is Σ slopes · outputs
   SequenceRows rows() const {
@@ -123,9 +117,9 @@ struct Batch {
 };
 
 /// Row 0 has no valid token, row 1 one of each kind, the others some.
-Batch MakeBatch() {
+TokenBatch MakeBatch() {
   RandomStream rng({5, 0, RngStream::kLearner, 0});
-  Batch batch;
+  TokenBatch batch;
   for (std::size_t i = 0; i < kRows * Features(); ++i) {
     batch.features.push_back(rng.Uniform(-1.0F, 1.0F));
   }
@@ -140,31 +134,32 @@ Batch MakeBatch() {
       }
     }
   }
-  for (std::size_t i = 0; i < kRows * kWidth; ++i) batch.slopes.push_back(rng.Uniform(-1.0F, 1.0F));
+  for (std::size_t i = 0; i < kRows * kActorCriticOutputs; ++i)
+    batch.slopes.push_back(rng.Uniform(-1.0F, 1.0F));
   return batch;
 }
 
-Complex LossOf(const Vector& weights, const Batch& batch) {
+Complex LossOf(const Vector& weights, const TokenBatch& batch) {
   Complex loss = 0.0;
   for (std::size_t row = 0; row < kRows; ++row) {
     const Vector out = Outputs(weights, batch.features.data() + row * Features());
-    for (std::size_t i = 0; i < kWidth; ++i) {
-      loss += out[i] * static_cast<double>(batch.slopes[row * kWidth + i]);
+    for (std::size_t i = 0; i < kActorCriticOutputs; ++i) {
+      loss += out[i] * static_cast<double>(batch.slopes[row * kActorCriticOutputs + i]);
     }
   }
   return loss;
 }
 
 TEST(TokenActorCritic, OutputsAndGradientEqualTheDefinition) {
-  TokenActorCritic network(Layout(), kHidden, 9);
+  TokenActorCritic network(Layout(), kTokenHidden, 9);
   for (float& weight : network.weights()) weight *= 3.0F;  // so that the attention is sharp
-  const Batch batch = MakeBatch();
+  const TokenBatch batch = MakeBatch();
   Vector weights(network.weights().begin(), network.weights().end());
   const float* const outputs = network.Forward(batch.rows(), nullptr);
   for (std::size_t row = 0; row < kRows; ++row) {
     const Vector expected = Outputs(weights, batch.features.data() + row * Features());
-    for (std::size_t i = 0; i < kWidth; ++i) {
-      ASSERT_NEAR(static_cast<double>(outputs[row * kWidth + i]), expected[i].real(),
+    for (std::size_t i = 0; i < kActorCriticOutputs; ++i) {
+      ASSERT_NEAR(static_cast<double>(outputs[row * kActorCriticOutputs + i]), expected[i].real(),
                   1e-3 * (1.0 + std::abs(expected[i].real())))
           << row << ' ' << i;
     }
@@ -183,10 +178,10 @@ TEST(TokenActorCritic, OutputsAndGradientEqualTheDefinition) {
 }
 
 TEST(TokenActorCritic, PermutedTokensGiveTheSameOutputs) {
-  TokenActorCritic network(Layout(), kHidden, 9);
-  Batch batch = MakeBatch();
+  TokenActorCritic network(Layout(), kTokenHidden, 9);
+  TokenBatch batch = MakeBatch();
   const float* outputs = network.Forward(batch.rows(), nullptr);
-  const std::vector<float> before(outputs, outputs + kRows * kWidth);
+  const std::vector<float> before(outputs, outputs + kRows * kActorCriticOutputs);
   for (std::size_t row = 0; row < kRows; ++row) {
     for (std::size_t kind = 1; kind < Layout().groups.size(); ++kind) {
       const TokenGroup& group = Layout().groups[kind];

@@ -32,10 +32,10 @@ Scenario Turned(std::size_t symmetry) {
   return TurnedTokenScenario([symmetry](Cell cell) { return Place(cell, symmetry); });
 }
 
-TokenLayout Layout() { return LayoutOfTokens(Encoder(Turned(0)).feature_names()); }
+TokenLayout PlainLayout() { return LayoutOfTokens(Encoder(Turned(0)).feature_names()); }
 
 TEST(TokenSymmetry, TurnedTokensAreThoseOfTheTurnedRanch) {
-  const TokenLayout layout = Layout();
+  const TokenLayout layout = PlainLayout();
   const std::vector<float> plain = TokensOf(Turned(0), kTokenShip);
   for (std::size_t number = 0; number < kSymmetries; ++number) {
     const std::vector<float> expected = TokensOf(Turned(number), Place(kTokenShip, number));
@@ -51,7 +51,7 @@ TEST(TokenSymmetry, TurnedTokensAreThoseOfTheTurnedRanch) {
 }
 
 TEST(TokenSymmetry, ActionsTurnAsTheMapDoes) {
-  const TokenLayout layout = Layout();
+  const TokenLayout layout = PlainLayout();
   for (std::size_t number = 0; number < kSymmetries; ++number) {
     const TokenSymmetry symmetry(layout, number);
     for (std::uint8_t action = 0; action < kActionCount; ++action) {
@@ -85,7 +85,7 @@ StepResults ResultsOf(const std::vector<float>& tokens) {
 TEST(TokenSymmetry, ASymmetricPolicyPlaysATurnedRanchAsTheRanch) {
   const LocalEnvironment environment(std::make_shared<const Scenario>(Turned(0)),
                                      {1, kFeaturesBit, false, 1});
-  const TokenLayout layout = Layout();
+  const TokenLayout layout = PlainLayout();
   int differences = 0;  // of a policy without the option
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     for (const bool is_symmetric : {false, true}) {

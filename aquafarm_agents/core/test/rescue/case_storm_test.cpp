@@ -15,13 +15,14 @@
 #include "aquafarm/tracks/reader.h"
 #include "aquafarm/tracks/wind_radii.h"
 #include "rescue/case_parts.h"
+#include "rescue/constants.h"
+#include "rescue/rescue_samples.h"
 #include "rescue/storm_member.h"
 
 namespace aquafarm::agents {
 namespace {
 
-const std::string kScenarios = AQUAFARM_SCENARIO_DIR;
-constexpr std::int64_t kHour_s = 3600;
+using test::kScenarios;
 constexpr std::size_t kGale = 2;  // ring of 34 kt
 
 // A storm north of the ranch off Zhoushan that moves north by half a degree an hour.

@@ -10,11 +10,12 @@
 #include "aquafarm/agents/rescue/plan_report.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/scenario_yaml.h"
+#include "rescue/rescue_samples.h"
 
 namespace aquafarm::agents {
 namespace {
 
-const std::string kScenarios = AQUAFARM_SCENARIO_DIR;
+using test::kScenarios;
 
 // Three squads' worth of state on the ranch off Zhoushan, with In-Fa as recorded.
 class Fleet : public ::testing::Test {

@@ -9,12 +9,13 @@
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm/tracks/reader.h"
 #include "rescue/case_parts.h"
+#include "rescue/constants.h"
+#include "rescue/rescue_samples.h"
 
 namespace aquafarm::agents {
 namespace {
 
-const std::string kScenarios = AQUAFARM_SCENARIO_DIR;
-constexpr std::int64_t kHour_s = 3600;
+using test::kScenarios;
 
 // A storm south of the ranch off Zhoushan that moves over it within 30 hours.
 class Report : public ::testing::Test {

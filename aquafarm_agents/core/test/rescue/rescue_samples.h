@@ -3,10 +3,14 @@
 
 // A storm that passes a ranch of 12 × 10 cells from the west, and a small rescue.
 
+#include <string>
+
 #include "aquafarm/agents/rescue/rescue_plan.h"
 #include "aquafarm/tracks/wind_radii.h"
 
 namespace aquafarm::agents::test {
+
+inline const std::string kScenarios = AQUAFARM_SCENARIO_DIR;
 
 /// Moves 40 cells of 5 km east in 60 steps of 10 minutes, through the middle of the ranch.
 inline CentralForecast PassingStorm() {

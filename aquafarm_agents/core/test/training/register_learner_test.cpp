@@ -26,10 +26,8 @@ Algorithm Named(const char* name) {
           MakeTabularPolicy};
 }
 
-const bool kRegistered = RegisterLearner(Named("elsewhere"));
-
 TEST(RegisterLearner, ARegisteredLearnerFollowsThoseOfThisPackage) {
-  ASSERT_TRUE(kRegistered);
+  ASSERT_TRUE(RegisterLearner(Named("elsewhere")));
   EXPECT_STREQ(Algorithms().front().name, "random");
   EXPECT_GT(&FindAlgorithm("elsewhere"), &FindAlgorithm("fetch_by_value"));
   LocalEnvironment environment(TinyFarm(), {2, kIndexBit, false, 1});

@@ -9,15 +9,14 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/tracks/wind_radii.h"
+#include "tracks/interpolate.h"
 
 namespace aquafarm {
 namespace {
 
-constexpr double kHour_s = 3600.0;
-
+using internal::Between;
+using internal::kHour_s;
 using Quadrants = std::array<double, kQuadrantCount>;
-
-double Between(double a, double b, double part) { return a + (b - a) * part; }
 
 bool Blows(const WindRing& ring) {
   return *std::max_element(ring.radius_km.begin(), ring.radius_km.end()) > 0.0;

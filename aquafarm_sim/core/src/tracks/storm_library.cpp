@@ -9,13 +9,15 @@
 #include "aquafarm/tracks/archive.h"
 #include "base/text.h"
 #include "base/time.h"
+#include "tracks/interpolate.h"
 
 namespace aquafarm {
 namespace {
 
+using internal::kHour_s;
+
 // Winds of the rings of every archived storm, whatever its source.
 const std::vector<std::int32_t> kWinds_kt{64, 50, 34};
-constexpr double kHour_s = 3600.0;
 
 // Steps are counted from 1970, so that they do not depend on the fixes that are kept.
 StormPath PathOf(const StormTrack& track, const StormSite& site) {

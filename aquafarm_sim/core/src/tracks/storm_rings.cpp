@@ -10,10 +10,12 @@
 #include "base/name_of.h"
 #include "base/time.h"
 #include "grid/longitude.h"
+#include "tracks/interpolate.h"
 
 namespace aquafarm {
 namespace {
 
+using internal::Between;
 using Quadrants = std::array<double, 4>;
 
 double Largest(const Quadrants& quadrants) {
@@ -71,8 +73,6 @@ Offset From(GeoPoint storm, GeoPoint place) {
   const double turned = bearing_deg < 0.0 ? bearing_deg + 360.0 : bearing_deg;
   return {distance_m / 1000.0, static_cast<std::size_t>(turned / 90.0) % 4};
 }
-
-double Between(double a, double b, double part) { return a + (b - a) * part; }
 
 GeoPoint Between(GeoPoint a, GeoPoint b, double part) {
   double step = b.longitude - a.longitude;

@@ -31,7 +31,7 @@ Named Name(const Encoder& encoder, const float* values) {
   return named;
 }
 
-Named FeaturesOf(const Farm& farm, std::int32_t ship = 0) {
+Named NamedFeatures(const Farm& farm, std::int32_t ship = 0) {
   const Encoder encoder(farm.scenario());
   View view;
   Observe(farm, ship, view);
@@ -53,7 +53,7 @@ Scenario WithSlots() {
 TEST(DisasterSlots, ShowADisasterThatArrivesInPlayMostDangerousFirst) {
   Farm farm = MakeFarm(WithSlots());
   test::RandomSteps(farm, 3, 1);
-  Named seen = FeaturesOf(farm);
+  Named seen = NamedFeatures(farm);
   EXPECT_EQ(seen.at("slot0.known"), 1.0F);
   EXPECT_EQ(seen.at("slot0.red_tide"), 1.0F);
   EXPECT_EQ(seen.at("slot1.known"), 0.0F);
@@ -63,7 +63,7 @@ TEST(DisasterSlots, ShowADisasterThatArrivesInPlayMostDangerousFirst) {
   spill.kind = DisasterKind::kOilSpill;
   spill.grade = 2;
   farm.SetDisaster(1, spill);
-  seen = FeaturesOf(farm);
+  seen = NamedFeatures(farm);
   const Cell ship = farm.ships()[0].cell;
   EXPECT_EQ(seen.at("slot0.oil_spill"), 1.0F);
   EXPECT_EQ(seen.at("slot0.red_tide"), 0.0F);
@@ -85,7 +85,7 @@ TEST(DisasterSlots, KeepTheMostDangerousOfTooMany) {
     farm.SetDisaster(i, StillDisaster(40.0F - static_cast<float>(i), 0, {2}, {-10}));
   }
   farm.SetDisaster(5, StillDisaster(60, 0, {2}, {-10}));
-  EXPECT_FLOAT_EQ(FeaturesOf(farm).at("slot0.east"),
+  EXPECT_FLOAT_EQ(NamedFeatures(farm).at("slot0.east"),
                   (36.0F - static_cast<float>(farm.ships()[0].cell.x)) / 5.0F);
 }
 
@@ -147,15 +147,15 @@ TEST(DisasterSlots, HoldForecastPositionsAtTheLeadTimes) {
   const auto north = [](const Farm& farm, float y) {
     return (y - static_cast<float>(farm.ships()[0].cell.y)) / 5.0F;
   };
-  EXPECT_NEAR(FeaturesOf(straight).at("slot0.north_1h"), north(straight, 25.0F - 3.0F), 1e-4);
-  EXPECT_NEAR(FeaturesOf(straight).at("slot0.north_6h"), north(straight, 25.0F - 18.0F), 1e-4);
+  EXPECT_NEAR(NamedFeatures(straight).at("slot0.north_1h"), north(straight, 25.0F - 3.0F), 1e-4);
+  EXPECT_NEAR(NamedFeatures(straight).at("slot0.north_6h"), north(straight, 25.0F - 18.0F), 1e-4);
   storm.forecasts = {{0.0F, {{100.0F, 90.0F, 25.0F}}}};
   Farm told = MakeFarm(scenario);
   test::RandomSteps(told, 10, 1);
   const auto there = ForecastAt(told, 0, 10, 46);
   EXPECT_NEAR(there[0], 36.0F, 1e-4);
-  EXPECT_NEAR(FeaturesOf(told).at("slot0.north_6h"), north(told, there[1]), 1e-4);
-  EXPECT_NEAR(FeaturesOf(told).at("slot0.east_6h"),
+  EXPECT_NEAR(NamedFeatures(told).at("slot0.north_6h"), north(told, there[1]), 1e-4);
+  EXPECT_NEAR(NamedFeatures(told).at("slot0.east_6h"),
               (there[0] - static_cast<float>(told.ships()[0].cell.x)) / 5.0F, 1e-4);
 }
 
@@ -189,7 +189,7 @@ TEST(DisasterSlots, AreAbsentUnlessAskedFor) {
   View view;
   Observe(farm, 0, view);
   EXPECT_TRUE(view.by_danger.empty());
-  EXPECT_EQ(FeaturesOf(farm).count("disaster0.known"), 1U);
+  EXPECT_EQ(NamedFeatures(farm).count("disaster0.known"), 1U);
 }
 
 std::string Refused(const std::string& keys) {

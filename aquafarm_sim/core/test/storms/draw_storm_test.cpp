@@ -211,7 +211,7 @@ TEST(DrawnStorms, FollowTheTrackOfTheArchiveWithoutPerturbation) {
 
 // --- The key in scenario files -------------------------------------------------------------------
 
-constexpr const char* kRanch = R"(name: test
+constexpr const char* kRanchText = R"(name: test
 grid: {width: 20, height: 14, origin: {latitude: 30.1, longitude: 122.6}}
 time: {step_duration_s: 480}
 disasters:
@@ -236,7 +236,7 @@ disasters:
 )";
 
 std::string Refused(const std::string& what, const std::string& by) {
-  std::string text = kRanch;
+  std::string text = kRanchText;
   text.replace(text.find(what), what.size(), by);
   try {
     ParseScenario(text, "ranch.yaml");
@@ -247,7 +247,7 @@ std::string Refused(const std::string& what, const std::string& by) {
 }
 
 TEST(StormsKey, KeepsTheStormsInReach) {
-  const Scenario scenario = ParseScenario(kRanch, "ranch.yaml");
+  const Scenario scenario = ParseScenario(kRanchText, "ranch.yaml");
   const StormLibrary& library = *Storms(scenario).library;
   ASSERT_EQ(library.training.size(), 1U);
   ASSERT_EQ(library.evaluation.size(), 1U);
@@ -297,7 +297,7 @@ TEST(StormsKey, IsRefusedInOneLine) {
 }
 
 TEST(StormsKey, NamesAnArchiveThatIsNotThere) {
-  std::string text = kRanch;
+  std::string text = kRanchText;
   text.resize(text.find("      tracks: |"));
   text += "      archive: [nowhere.txt]\n";
   try {
@@ -313,7 +313,7 @@ TEST(StormsKey, NamesAnArchiveThatIsNotThere) {
 TEST(StormsKey, ReadsTheFilesOfEverySource) {
   const fs::path folder = SharedData() / "tracks";
   if (!fs::exists(folder / "cma_archive")) GTEST_SKIP() << "no real files at " << folder;
-  std::string text = kRanch;
+  std::string text = kRanchText;
   text.resize(text.find("      tracks: |"));
   text += "      archive: [" + (folder / "bst_all_2015-2021.txt").string() + ", " +
           (folder / "cma_archive" / "CH2005BST.txt").string() + ", " +
@@ -341,7 +341,7 @@ TEST(StormsKey, OfAnArchiveOfDecadesIsReadInHalfASecond) {
     files += (files.empty() ? "" : ", ") + entry.path().string();
     ++years;
   }
-  std::string text = kRanch;
+  std::string text = kRanchText;
   text.resize(text.find("      tracks: |"));
   text += "      archive: [" + files + "]\n";
   text.replace(text.find("[2000"), 5, "[1979");

@@ -12,8 +12,8 @@ namespace aquafarm {
 namespace {
 
 constexpr std::int64_t kHour_s = 3600;
-constexpr std::int64_t kStart = 1627192800;  // 2021-07-25 06:00 UTC
-constexpr std::size_t kGale = 2;             // ring of 34 kt
+constexpr std::int64_t kFirstFix = 1627192800;  // 2021-07-25 06:00 UTC
+constexpr std::size_t kGale = 2;                // ring of 34 kt
 
 // A storm on 30 N. The first fix is at the start.
 class Fine : public ::testing::Test {
@@ -21,7 +21,7 @@ class Fine : public ::testing::Test {
   // Adds a fix. @param gale_km radius of 34 kt; negative: not reported, 0: it does not blow
   StormFix& Add(int hours, std::optional<double> wind_mps, double gale_km = -1.0) {
     StormFix fix;
-    fix.time = kStart + hours * kHour_s;
+    fix.time = kFirstFix + hours * kHour_s;
     fix.position = {30.0, 122.0};
     fix.wind_mps = wind_mps;
     fix.averaging_min = 2;
@@ -33,8 +33,8 @@ class Fine : public ::testing::Test {
   }
   // Radius of gales at a time [km].
   double Gale(int hours, RingReduction reduction = RingReduction::kEqualArea) const {
-    return ToFineRings(track_, reduction, kStart)
-        .storm.At(kStart + hours * kHour_s)
+    return ToFineRings(track_, reduction, kFirstFix)
+        .storm.At(kFirstFix + hours * kHour_s)
         ->radii_km[kGale];
   }
   static double Median(double wind_mps) { return EstimateRadius(34, wind_mps, 30.0, 2).median_km; }
@@ -49,7 +49,7 @@ TEST_F(Fine, AStormThatWeakensKeepsItsGalesWhileItsWindIsAGale) {
   EXPECT_NEAR(Gale(6), Median(22.4), 0.1);
   EXPECT_NEAR(Gale(9), Median(17.6), 0.1);
   EXPECT_EQ(Gale(12), 0.0);
-  EXPECT_LT(ToRings(track_, RingReduction::kEqualArea).At(kStart + 9 * kHour_s)->radii_km[kGale],
+  EXPECT_LT(ToRings(track_, RingReduction::kEqualArea).At(kFirstFix + 9 * kHour_s)->radii_km[kGale],
             0.5 * Gale(9))
       << "linear radii are too small";
 }
@@ -85,7 +85,7 @@ TEST_F(Fine, StretchesWithoutAWindHaveTheLargerRadii) {
   Add(0, 32.0, 300.0);
   Add(12, std::nullopt, 100.0);
   Add(24, std::nullopt, 200.0);
-  const auto [storm, held] = ToFineRings(track_, RingReduction::kQuadrants, kStart);
+  const auto [storm, held] = ToFineRings(track_, RingReduction::kQuadrants, kFirstFix);
   EXPECT_EQ(held, 2);
   EXPECT_EQ(storm.waypoints.size(), 9U);
   EXPECT_EQ(storm.waypoints[1].quadrants_km[kGale], (std::array<double, 4>{300, 300, 300, 300}));
@@ -98,7 +98,7 @@ TEST_F(Fine, StretchesWithoutAWindHaveTheLargerRadii) {
 TEST_F(Fine, WindsOfTwoAveragingPeriodsAreNotMixed) {
   Add(0, 32.0, 300.0);
   Add(12, 30.0, 250.0).averaging_min = 10;
-  EXPECT_EQ(ToFineRings(track_, RingReduction::kEqualArea, kStart).held, 1);
+  EXPECT_EQ(ToFineRings(track_, RingReduction::kEqualArea, kFirstFix).held, 1);
   EXPECT_EQ(Gale(6), 300.0);
 }
 
@@ -107,20 +107,20 @@ TEST_F(Fine, NothingIsAddedNextToAPointWithoutWindAndRadii) {
   Add(0, 32.0, 300.0);
   Add(12, std::nullopt);
   Add(24, 32.0, 300.0);
-  const auto [storm, held] = ToFineRings(track_, RingReduction::kEqualArea, kStart);
+  const auto [storm, held] = ToFineRings(track_, RingReduction::kEqualArea, kFirstFix);
   EXPECT_EQ(storm.waypoints.size(), 3U);
   EXPECT_EQ(storm.silent, 1);
   EXPECT_EQ(held, 0);
-  EXPECT_TRUE(storm.At(kStart + 6 * kHour_s)->silent);
-  EXPECT_TRUE(storm.At(kStart + 18 * kHour_s)->silent);
+  EXPECT_TRUE(storm.At(kFirstFix + 6 * kHour_s)->silent);
+  EXPECT_TRUE(storm.At(kFirstFix + 18 * kHour_s)->silent);
 }
 
 TEST_F(Fine, PointsAreAddedAfterATimeAndCountedOnce) {
   Add(0, 32.0);
   Add(12, 20.0);
-  EXPECT_EQ(FineTrack(track_, kStart).fixes.size(), 5U);
-  EXPECT_EQ(FineTrack(track_, kStart + 12 * kHour_s).fixes.size(), 2U) << "it is past";
-  EXPECT_EQ(ToFineRings(track_, RingReduction::kEqualArea, kStart).storm.estimated, 2)
+  EXPECT_EQ(FineTrack(track_, kFirstFix).fixes.size(), 5U);
+  EXPECT_EQ(FineTrack(track_, kFirstFix + 12 * kHour_s).fixes.size(), 2U) << "it is past";
+  EXPECT_EQ(ToFineRings(track_, RingReduction::kEqualArea, kFirstFix).storm.estimated, 2)
       << "of the track's own points";
 }
 
@@ -128,10 +128,10 @@ TEST_F(Fine, PointsBetweenCrossTheDateLineAndKeepCommonRings) {
   Add(0, 30.0, 200.0).position.longitude = 179.0;
   AddRing({50, {80.0, 80.0, 80.0, 80.0}, false}, track_.fixes.front().rings);
   Add(6, 20.0, 100.0).position.longitude = -179.0;
-  const StormTrack fine = FineTrack(track_, kStart);
+  const StormTrack fine = FineTrack(track_, kFirstFix);
   ASSERT_EQ(fine.fixes.size(), 3U);
   const StormFix& middle = fine.fixes[1];
-  EXPECT_EQ(middle.time, kStart + 3 * kHour_s);
+  EXPECT_EQ(middle.time, kFirstFix + 3 * kHour_s);
   EXPECT_NEAR(std::abs(middle.position.longitude), 180.0, 1e-9);
   EXPECT_EQ(middle.wind_mps, 25.0);
   EXPECT_EQ(middle.grade, StormGrade::kSevereTropicalStorm);

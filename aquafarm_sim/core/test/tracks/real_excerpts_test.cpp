@@ -17,11 +17,6 @@ StormFile LoadReal(const char* name) {
   return file;
 }
 
-const StormFix& At(const StormTrack& track, std::int64_t time) {
-  return *std::find_if(track.fixes.begin(), track.fixes.end(),
-                       [time](const StormFix& fix) { return fix.time == time; });
-}
-
 TEST(RealExcerpts, OfJmaHaveEachPointAndItsRings) {
   const StormFile file = LoadReal("jma_in_fa_2021.txt");
   ASSERT_EQ(file.tracks.size(), 1U);

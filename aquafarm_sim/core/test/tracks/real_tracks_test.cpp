@@ -36,11 +36,6 @@ class RealFiles : public testing::Test {
 
 // Three archives contain one storm at the same hour, 2021-07-25 06:00 UTC.
 constexpr std::int64_t kInFaNoon = 1627192800;
-const StormFix& At(const StormTrack& track, std::int64_t time) {
-  return *std::find_if(track.fixes.begin(), track.fixes.end(),
-                       [time](const StormFix& fix) { return fix.time == time; });
-}
-
 void ExpectAt(const StormFix& fix, double latitude, double longitude, double pressure_hpa) {
   EXPECT_DOUBLE_EQ(fix.position.latitude, latitude);
   EXPECT_DOUBLE_EQ(fix.position.longitude, longitude);

@@ -17,6 +17,11 @@ struct Pose2 {
   double bearing_deg{};  ///< rotation, clockwise from north
 };
 
+/// Bits after the point of OpenCV's coordinates, `shift` of its functions: 1/16 pixel.
+inline constexpr int kSubPixelBits = 4;
+/// Returns an image point [pixels] in such coordinates.
+cv::Point Fixed(cv::Point2d point);
+
 /// Returns the pixel coordinates of a point of a placed outline.
 cv::Point2d Place(cv::Point2d point, const Pose2& placing);
 

@@ -19,6 +19,8 @@ std::string FormatNumber(double value);
 /// Time for readers: "3.4 s", "2 min 05 s", "1 h 02 min".
 std::string FormatDuration(double seconds);
 
+bool EndsWith(const std::string& text, const std::string& end);
+
 /// Names separated by commas: "a, b, c".
 std::string Join(const std::vector<std::string>& names);
 

@@ -40,6 +40,7 @@ locked() {
 build_lines='^\[ *[0-9]+%\] (Building|Linking|Generating)|[Ee]rror|[Ww]arning|\*\*\*'
 
 # The same sources are compiled in several kinds of workspace; ccache reuses the results of the first.
+# CCACHE_BASEDIR is the folder of a build: paths in it count relative to the folder of a target.
 use_ccache() {
   command -v ccache >/dev/null || return 0
   export CCACHE_DIR=${CCACHE_DIR:-$ws/ccache} CCACHE_MAXSIZE=${CCACHE_MAXSIZE:-2G}
@@ -84,10 +85,10 @@ set AQUAFARM_WS to another folder, or build with catkin_make there"
   start=$(date +%s)
   touch "$ws/building"
   say "building in $ws ($build_type, $jobs jobs; log: $log)"
-  env -u ROS_PACKAGE_PATH -u CMAKE_PREFIX_PATH catkin_make -C "$ws" --no-color -j"$jobs" \
-    -DCMAKE_BUILD_TYPE="$build_type" -DPYTHON_EXECUTABLE=/usr/bin/python3 \
-    -DCATKIN_ENABLE_TESTING=ON -DBUILD_TESTING=OFF -DAQUAFARM_BUILD_BENCH=OFF \
-    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON "$unity" \
+  env -u ROS_PACKAGE_PATH -u CMAKE_PREFIX_PATH CCACHE_BASEDIR="$ws/build" \
+    catkin_make -C "$ws" --no-color -j"$jobs" -DCMAKE_BUILD_TYPE="$build_type" \
+    -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCATKIN_ENABLE_TESTING=ON -DBUILD_TESTING=OFF \
+    -DAQUAFARM_BUILD_BENCH=OFF -DCMAKE_EXPORT_COMPILE_COMMANDS=ON "$unity" \
     "${warnings[@]}" "$@" 2>&1 |
     tee "$log" | { grep -E --line-buffered "$build_lines" || true; } || {
     { grep -A 8 -E '[Ee]rror' "$log" || tail -n 20 "$log"; } | head -n 60 >&2 || true
@@ -118,11 +119,11 @@ build_core() {
   is_made_from "$dir" "$source" || rm -rf "$dir"
   say "building $1/core with plain cmake"
   if ! { cmake -S "$source" -B "$dir" -DCMAKE_BUILD_TYPE="$build_type" "$unity" "${warnings[@]}" &&
-    cmake --build "$dir" -j "$jobs"; } >"$dir.log" 2>&1; then
+    CCACHE_BASEDIR="$ws/core" cmake --build "$dir" -j "$jobs"; } >"$dir.log" 2>&1; then
     tail -n 40 "$dir.log" >&2
     die "the plain cmake build of $1/core failed; log: $dir.log"
   fi
 }
 
 # build_tests LOG: builds the tests of the workspace.
-build_tests() { make -C "$ws/build" -k -j"$jobs" tests >"$1" 2>&1; }
+build_tests() { CCACHE_BASEDIR="$ws/build" make -C "$ws/build" -k -j"$jobs" tests >"$1" 2>&1; }

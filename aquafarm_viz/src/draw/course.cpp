@@ -137,18 +137,20 @@ void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace&
                 const Layout& layout, const Fonts& fonts) {
   BlockMarks(marks, space, layout);
   for (const CourseMark& mark : marks) {
-    for (const std::string& text : {mark.longer, mark.text}) {
-      if (text.empty()) continue;
+    // Next to the mark rather than above or below it, where the course continues. A label that is
+    // not next to its mark is short, because it covers others.
+    const auto draw = [&](const std::string& text, bool may_be_far) {
       const cv::Size size(fonts.small.Width(text), fonts.small.cap_height());
-      // Next to the mark rather than above or below it, where the course continues.
       const cv::Point2d aside(size.width / 2.0 + 9.0 * layout.unit, 0.0);
       auto place = space.Take(size, mark.at + aside, 6.0 * layout.unit);
       if (!place) place = space.Take(size, mark.at - aside, 6.0 * layout.unit);
-      if (!place) place = space.Take(size, mark.at, 36.0 * layout.unit + size.width / 2.0);
-      if (!place) continue;
-      DrawLabel(image, fonts.small, text, place->tl(), layout);
-      break;
-    }
+      if (!place && may_be_far) {
+        place = space.Take(size, mark.at, 36.0 * layout.unit + size.width / 2.0);
+      }
+      if (place) DrawLabel(image, fonts.small, text, place->tl(), layout);
+      return place.has_value();
+    };
+    if (mark.longer.empty() || !draw(mark.longer, false)) draw(mark.text, true);
   }
 }
 

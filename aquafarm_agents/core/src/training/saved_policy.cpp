@@ -3,7 +3,6 @@
 
 #include <filesystem>
 
-#include "aquafarm/agents/ppo/ppo_options.h"
 #include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/agents/training/run_folder.h"
 #include "aquafarm/base/check.h"
@@ -26,10 +25,9 @@ std::string GeneralistPath() {
 }
 
 std::uint8_t ObservationTypesOf(const Checkpoint& checkpoint) {
-  std::uint8_t bits = FindAlgorithm(checkpoint.algorithm).observation_types(checkpoint.options);
-  // Of PPO only the learner reads the states, if its teacher is a planner.
-  const bool is_ppo = checkpoint.algorithm == "ppo" || checkpoint.algorithm == kMappo;
-  if (is_ppo) bits &= static_cast<std::uint8_t>(~kStatesBit);
+  const Algorithm& algorithm = FindAlgorithm(checkpoint.algorithm);
+  std::uint8_t bits = algorithm.observation_types(checkpoint.options);
+  bits &= static_cast<std::uint8_t>(~algorithm.only_for_training);
   // On farms with other features a policy of tokens reads the states instead.
   return ReadsTokens(checkpoint) ? bits | kStatesBit : bits;
 }

@@ -21,6 +21,15 @@ TEST(Schedule, LinearReachesItsEndAtItsShareAndStays) {
   EXPECT_DOUBLE_EQ(schedule.At(1.0), 0.2);
 }
 
+TEST(Schedule, ThatIsZeroAtBothEndsIsNeverPositive) {
+  for (const char* text : {"0.1", "linear:0:1:0.3", "linear:1:0:0.1"}) {
+    EXPECT_TRUE(ParseSchedule(text, "share", 0, 1).IsEverPositive()) << text;
+  }
+  for (const char* text : {"0", "linear:0:0:0.5"}) {
+    EXPECT_FALSE(ParseSchedule(text, "share", 0, 1).IsEverPositive()) << text;
+  }
+}
+
 TEST(Schedule, ExponentialHalvesInEqualTimes) {
   const Schedule schedule = ParseSchedule("exponential:8:2:1", "rate", 0, 10);
   EXPECT_DOUBLE_EQ(schedule.At(0.0), 8.0);

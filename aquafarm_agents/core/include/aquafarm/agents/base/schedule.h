@@ -30,6 +30,8 @@ struct Schedule {
 
   /// Value at `progress` of the run, [0, 1].
   double At(double progress) const;
+  /// Whether the value is above 0 at some time of the run.
+  bool IsEverPositive() const { return At(0.0) > 0.0 || At(1.0) > 0.0; }
 };
 
 /// Reads "0.1", "linear:1:0.05:0.5" or "exponential:10:0.5:0.5" (kind:start:end:fraction).

@@ -86,11 +86,9 @@ struct PpoOptions {
   const char* algorithm() const { return central ? kMappo : "ppo"; }
   /// Returns whether agents learn from the team's rewards at some time of the training.
   /// @param team_reward as in EnvironmentSpec
-  bool IsTeam(bool team_reward) const {
-    return team_reward || team_share.At(0.0) > 0.0 || team_share.At(1.0) > 0.0;
-  }
+  bool IsTeam(bool team_reward) const { return team_reward || team_share.IsEverPositive(); }
   /// Returns whether the policy imitates a teacher at some time of the training.
-  bool HasTeacher() const { return teacher.At(0.0) > 0.0 || teacher.At(1.0) > 0.0; }
+  bool HasTeacher() const { return teacher.IsEverPositive(); }
   /// Returns the steps per agent in one rollout. @param slots farms × agents
   std::int32_t Horizon(std::size_t slots) const;
 

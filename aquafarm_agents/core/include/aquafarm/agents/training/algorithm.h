@@ -31,6 +31,8 @@ struct Algorithm {
   std::unique_ptr<ShardedLearner> (*make_rank)(const EnvironmentSpec& spec, std::uint64_t seed,
                                                const std::string& options,
                                                ProcessGroup& group){nullptr};
+  /// Those of its ObservationTypeBits that only the learner reads, not the trained policy.
+  std::uint8_t only_for_training{0};
 };
 
 }  // namespace aquafarm::agents

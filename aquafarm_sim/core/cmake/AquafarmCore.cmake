@@ -16,6 +16,9 @@ endif()
 # (docs/decisions/compile_by_folder.md). CMake 3.18 has groups.
 option(AQUAFARM_UNITY "Compile the sources of each folder as one" ON)
 function(aquafarm_compile_by_folder target)
+  if(NOT AQUAFARM_UNITY OR CMAKE_VERSION VERSION_LESS 3.18)
+    return()
+  endif()
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources INCLUDE REGEX "[.]cpp$")
   foreach(source IN LISTS sources)
@@ -23,12 +26,9 @@ function(aquafarm_compile_by_folder target)
     string(MAKE_C_IDENTIFIER "${folder}" group)
     set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${group})
   endforeach()
-  if(AQUAFARM_UNITY AND NOT CMAKE_VERSION VERSION_LESS 3.18)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-    # g++ warns of local types outside the file that it was given
-    target_compile_options(${target} PRIVATE
-      $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
-  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # g++ warns of local types outside the file that it was given.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
 function(aquafarm_set_warnings target)

@@ -68,8 +68,9 @@ const float* CentralActorCritic::Forward(const SequenceRows& rows, float* state_
   const float* const logits = ForwardPart(policy_, rows, needs_state);
   const float* const values = ForwardPart(critic_, rows, needs_state);
   outputs_.assign(logits, logits + rows.rows() * kActorCriticOutputs);
-  for (std::size_t i = kValue; i < outputs_.size(); i += kActorCriticOutputs)
+  for (std::size_t i = kValue; i < outputs_.size(); i += kActorCriticOutputs) {
     outputs_[i] = values[i];
+  }
   if (needs_state) JoinStates(rows.sequences, state_after);
   return outputs_.data();
 }

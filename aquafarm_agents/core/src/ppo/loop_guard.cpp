@@ -7,7 +7,6 @@
 #include "aquafarm/base/hash.h"
 
 namespace aquafarm::agents {
-namespace {}  // namespace
 
 LoopGuard::LoopGuard(const EnvironmentSpec& spec, std::size_t slots, std::int32_t max_visits)
     : max_visits_(max_visits), rule_(LayoutOfTokens(spec.feature_names)), episodes_(slots) {

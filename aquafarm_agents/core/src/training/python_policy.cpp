@@ -84,7 +84,8 @@ class PythonPolicy final : public Policy {
 }  // namespace
 
 bool IsPythonPolicy(const std::string& where) {
-  return EndsWith(where, ".py") || EndsWith(where, ".zip") ||
+  const bool has_stem = where != ".py" && where != ".zip";
+  return (has_stem && (EndsWith(where, ".py") || EndsWith(where, ".zip"))) ||
          where.find(".py:") != std::string::npos;
 }
 

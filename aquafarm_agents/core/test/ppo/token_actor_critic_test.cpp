@@ -134,8 +134,9 @@ TokenBatch MakeBatch() {
       }
     }
   }
-  for (std::size_t i = 0; i < kRows * kActorCriticOutputs; ++i)
+  for (std::size_t i = 0; i < kRows * kActorCriticOutputs; ++i) {
     batch.slopes.push_back(rng.Uniform(-1.0F, 1.0F));
+  }
   return batch;
 }
 

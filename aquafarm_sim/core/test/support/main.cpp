@@ -3,15 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 namespace {
-
-bool IsOfFile(const testing::TestInfo& test, const std::string& name) {
-  const std::string path = test.file();
-  const std::string end = "/" + name + ".cpp";
-  return path.size() > end.size() && path.compare(path.size() - end.size(), end.size(), end) == 0;
-}
 
 // Returns a filter of googletest for the tests of a source; empty if there are none.
 std::string FilterOfFile(const std::string& name) {
@@ -21,7 +16,8 @@ std::string FilterOfFile(const std::string& name) {
     const testing::TestSuite& suite = *all.GetTestSuite(i);
     for (int k = 0; k < suite.total_test_count(); ++k) {
       const testing::TestInfo& test = *suite.GetTestInfo(k);
-      if (IsOfFile(test, name)) filter += std::string(suite.name()) + "." + test.name() + ":";
+      if (std::filesystem::path(test.file()).stem() == name)
+        filter += std::string(suite.name()) + "." + test.name() + ":";
     }
   }
   return filter;
@@ -34,7 +30,8 @@ int main(int argc, char** argv) {
   const std::string option = "--file=";
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    const std::string name = word.substr(0, option.size()) == option ? word.substr(7) : "";
+    const std::string name =
+        word.substr(0, option.size()) == option ? word.substr(option.size()) : "";
     const std::string filter = name.empty() ? "" : FilterOfFile(name);
     if (filter.empty()) {
       std::fprintf(stderr, "%s: got '%s', expected --file=NAME of a source with tests\n", argv[0],

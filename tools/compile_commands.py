@@ -11,9 +11,9 @@ INCLUDED = re.compile(r'^#include "(.*\.cpp)"$', re.MULTILINE)
 def split(entry):
     """Returns an entry for each source that a file of CMake's unity build includes."""
     path = pathlib.Path(entry["file"])
-    if path.parent.name != "Unity":
-        return [entry]
     command = entry["command"].replace(ONLY_FOR_FOLDERS, "")
+    if path.parent.name != "Unity":
+        return [dict(entry, command=command)]
     return [dict(entry, file=source, command=command.replace(f"-c {path}", f"-c {source}"))
             for source in INCLUDED.findall(path.read_text(encoding="utf-8"))]
 

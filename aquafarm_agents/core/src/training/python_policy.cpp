@@ -141,8 +141,10 @@ void PolicyProcess::Start(const std::vector<std::string>& command, bool keeps_py
     throw InputError("policy " + where_ + ": no socket: " + std::strerror(errno));
   }
   socket_ = ends[0];
+  std::vector<std::string> words = command;
   std::vector<char*> arguments;
-  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.reserve(words.size() + 1);
+  for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   std::vector<char*> variables;
   for (char** one = environ; *one != nullptr; ++one) {

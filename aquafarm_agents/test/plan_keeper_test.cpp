@@ -20,8 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using aquafarm_msgs::RescuePlan;
 
-const std::string kScenarios = AQUAFARM_SCENARIO_DIR;
-
 // A bulletin of a typhoon that reaches the ranch off Zhoushan a day later.
 std::string Bulletin(const std::string& name, double latitude) {
   const auto point = [](const std::string& time, double lat, const std::string& more) {
@@ -42,7 +40,7 @@ class Keeper : public ::testing::Test {
   Keeper() : folder_(fs::temp_directory_path() / ("plan_keeper_" + std::to_string(getpid()))) {
     fs::create_directories(folder_);
     inputs_.scenario = std::make_shared<const aquafarm::Scenario>(
-        aquafarm::LoadScenario(kScenarios + "/zhoushan_infa_2021.yaml"));
+        aquafarm::LoadScenario(AQUAFARM_SCENARIO_DIR "/zhoushan_infa_2021.yaml"));
     inputs_.request.members = 50;
     inputs_.request.speed_kn = 12.0;
     inputs_.request.ships = 2;

@@ -20,21 +20,19 @@ namespace {
 namespace agents = aquafarm::agents;
 using aquafarm_msgs::RescuePlan;
 
-const std::string kScenarios = AQUAFARM_SCENARIO_DIR;
-
 // In-Fa in 2021 as recorded, from the early morning of the 24th of July on.
 class PlanMessages : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     agents::RescueRequest request;
-    request.storm = kScenarios + "/archives/zhoushan_cma.txt";
+    request.storm = AQUAFARM_SCENARIO_DIR "/archives/zhoushan_cma.txt";
     request.storm_name = "2106";
     request.at = aquafarm::ParseUtc("at", "2021-07-23T18:00:00Z");
     request.ships = 2;
     request.speed_kn = 12.0;
     request.members = 100;
     const auto scenario = std::make_shared<const aquafarm::Scenario>(
-        aquafarm::LoadScenario(kScenarios + "/zhoushan_infa_2021.yaml"));
+        aquafarm::LoadScenario(AQUAFARM_SCENARIO_DIR "/zhoushan_infa_2021.yaml"));
     case_ = new agents::RescueCase(agents::MakeRescueCase(scenario, request));
     ensemble_ = new agents::Ensemble(case_->forecast, case_->ensemble, case_->Sites());
     report_ = new agents::PlanReport(agents::MakeReport(*case_, *ensemble_));

@@ -11,10 +11,10 @@ else()
   set(uses_blas OFF)
 endif()
 
+# A workspace that builds aquafarm_agents has compiled them. Elsewhere they are compiled under the same
+# name, by which ccache knows them again.
 if(TARGET aquafarm_agents_plain)
-  # A workspace that builds aquafarm_agents has compiled them.
-  add_library(aquafarm_policies STATIC EXCLUDE_FROM_ALL $<TARGET_OBJECTS:aquafarm_agents_plain>)
-  set_target_properties(aquafarm_policies PROPERTIES LINKER_LANGUAGE CXX)
+  set(uses_blas ON)
 else()
   include(${agents_dir}/PlainSources.cmake)
   set(policy_sources ${AQUAFARM_PLAIN_SOURCES} ${AQUAFARM_PPO_POLICY_SOURCES})
@@ -24,16 +24,23 @@ else()
     set_source_files_properties(${AQUAFARM_PPO_POLICY_SOURCES} PROPERTIES
       COMPILE_DEFINITIONS AQUAFARM_GEMM_BY_EIGEN)
   endif()
-  add_library(aquafarm_policies STATIC EXCLUDE_FROM_ALL ${policy_sources})
-  set_target_properties(aquafarm_policies PROPERTIES
+  add_library(aquafarm_agents_plain OBJECT EXCLUDE_FROM_ALL ${policy_sources})
+  target_compile_features(aquafarm_agents_plain PUBLIC cxx_std_17)
+  set_target_properties(aquafarm_agents_plain PROPERTIES
     POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
-  aquafarm_set_warnings(aquafarm_policies)
-  aquafarm_compile_by_folder(aquafarm_policies)
+  target_include_directories(aquafarm_agents_plain PRIVATE ${agents_dir}/include ${agents_dir}/src)
+  target_link_libraries(aquafarm_agents_plain PRIVATE aquafarm::core nlohmann_json::nlohmann_json)
+  if(uses_blas)
+    target_include_directories(aquafarm_agents_plain SYSTEM PRIVATE ${AQUAFARM_BLAS_INCLUDE})
+  endif()
+  aquafarm_set_warnings(aquafarm_agents_plain)
+  aquafarm_compile_by_folder(aquafarm_agents_plain)
 endif()
+add_library(aquafarm_policies STATIC EXCLUDE_FROM_ALL $<TARGET_OBJECTS:aquafarm_agents_plain>)
+set_target_properties(aquafarm_policies PROPERTIES LINKER_LANGUAGE CXX)
 target_include_directories(aquafarm_policies PUBLIC ${agents_dir}/include ${agents_dir}/src)
 target_link_libraries(aquafarm_policies
   PUBLIC aquafarm::core PRIVATE nlohmann_json::nlohmann_json)
-if(uses_blas OR TARGET aquafarm_agents_plain)
-  target_include_directories(aquafarm_policies SYSTEM PRIVATE ${AQUAFARM_BLAS_INCLUDE})
+if(uses_blas)
   target_link_libraries(aquafarm_policies PRIVATE ${AQUAFARM_BLAS})
 endif()

@@ -11,8 +11,9 @@ function(aquafarm_add_test name)
   endif()
   if(CATKIN_ENABLE_TESTING AND COMMAND catkin_run_tests_target)
     set(xml ${CATKIN_TEST_RESULTS_DIR}/${PROJECT_NAME}/gtest-${name}.xml)
-    if(TARGET tests)
+    if(TARGET tests)  # which builds it; `all` does not
       add_dependencies(tests ${name})
+      set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
     endif()
     catkin_run_tests_target(gtest ${name} gtest-${name}.xml
       COMMAND "$<TARGET_FILE:${name}> --gtest_output=xml:${xml}"

@@ -136,6 +136,15 @@ inline aquafarm_msgs::FarmState MakeState(int side = 25) {
   return state;
 }
 
+/// Returns a state of MakeSpec's ranch without ships, devices and disasters.
+inline aquafarm_msgs::FarmState MakeEmptyState(int side = 25) {
+  aquafarm_msgs::FarmState state = MakeState(side);
+  state.ships.clear();
+  state.devices.clear();
+  state.disasters.clear();
+  return state;
+}
+
 /// Returns a policy's values of MakeSpec's ranch: value x + y, greedy action north-east.
 inline sensor_msgs::PointCloud2 MakeCloud(int side = 25) {
   sensor_msgs::PointCloud2 cloud;

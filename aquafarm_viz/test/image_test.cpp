@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "aquafarm_viz/base/palette.h"
 #include "fixture.h"
@@ -40,15 +45,6 @@ cv::Mat MapOf(const cv::Mat& image, int side = 25, ImageSize size = kSize) {
   return image(PlaceMap(side, side, size).map).clone();
 }
 
-// Returns a state without ships, devices and disasters.
-aquafarm_msgs::FarmState Empty() {
-  auto state = test::MakeState();
-  state.ships.clear();
-  state.devices.clear();
-  state.disasters.clear();
-  return state;
-}
-
 TEST(Image, HasTheSizeAskedForWithinLimits) {
   const auto spec = test::MakeSpec();
   const auto state = test::MakeState();
@@ -58,9 +54,9 @@ TEST(Image, HasTheSizeAskedForWithinLimits) {
 
 TEST(Image, ShowsAShipInTheNorthAboveOneInTheSouth) {
   const auto spec = test::MakeSpec();
-  const auto empty = MapOf(DrawFarm(spec, Empty(), kSize));
+  const auto empty = MapOf(DrawFarm(spec, test::MakeEmptyState(), kSize));
   const auto at = [&](int x, int y) {
-    auto state = Empty();
+    auto state = test::MakeEmptyState();
     state.ships.push_back(test::MakeShip(0, x, y));
     return MiddleOfDifference(empty, MapOf(DrawFarm(spec, state, kSize)));
   };
@@ -74,7 +70,7 @@ TEST(Image, ShowsAShipInTheNorthAboveOneInTheSouth) {
 TEST(Image, PointsTheBowWhereTheShipMoves) {
   const auto spec = test::MakeSpec();
   const auto middle = [&](std::uint8_t action) {
-    auto state = Empty();
+    auto state = test::MakeEmptyState();
     state.ships.push_back(test::MakeShip(0, 12, 12));
     state.ships.front().action = action;
     const auto map = MapOf(DrawFarm(spec, state, kSize));
@@ -92,7 +88,7 @@ TEST(Image, PointsTheBowWhereTheShipMoves) {
 TEST(Image, ShowsEveryDeviceKindInItsColour) {
   const auto spec = test::MakeSpec();
   for (std::uint8_t kind = 0; kind < 4; ++kind) {
-    auto state = Empty();
+    auto state = test::MakeEmptyState();
     state.devices.push_back(test::MakeDevice(0, kind, 12, 18, 1.0F));
     const auto map = MapOf(DrawFarm(spec, state, kSize));
     EXPECT_GT(cv::countNonZero(Near(map, DeviceColor(kind))), 15) << DeviceName(kind);
@@ -102,7 +98,7 @@ TEST(Image, ShowsEveryDeviceKindInItsColour) {
 TEST(Image, ShowsHealthAsTheLengthOfABar) {
   const auto spec = test::MakeSpec();
   const auto lit = [&](float health) {
-    auto state = Empty();
+    auto state = test::MakeEmptyState();
     state.devices.push_back(test::MakeDevice(0, 0, 12, 18, health));
     return cv::countNonZero(Near(MapOf(DrawFarm(spec, state, kSize)), HealthColor(health)));
   };
@@ -112,9 +108,9 @@ TEST(Image, ShowsHealthAsTheLengthOfABar) {
 
 TEST(Image, MovesTheDisaster) {
   const auto spec = test::MakeSpec();
-  const auto empty = MapOf(DrawFarm(spec, Empty(), kSize));
+  const auto empty = MapOf(DrawFarm(spec, test::MakeEmptyState(), kSize));
   const auto at = [&](float x, float y) {
-    auto state = Empty();
+    auto state = test::MakeEmptyState();
     state.disasters.push_back(test::MakeDisaster(0, x, y));
     state.disasters.front().speed = 0.0F;  // no arrow, so the difference is symmetric
     Overlays overlays;
@@ -132,9 +128,9 @@ TEST(Image, MovesTheDisaster) {
 
 TEST(Image, ShadesCellsOfARingAndNoneOutside) {
   const auto spec = test::MakeSpec();
-  auto state = Empty();
+  auto state = test::MakeEmptyState();
   state.disasters.push_back(test::MakeDisaster(0, 12.0F, 14.0F));
-  const auto empty = MapOf(DrawFarm(spec, Empty(), kSize));
+  const auto empty = MapOf(DrawFarm(spec, test::MakeEmptyState(), kSize));
   const auto map = MapOf(DrawFarm(spec, state, kSize));
   const MapView view = PlaceMap(25, 25, kSize).view;
   const auto changed = [&](double x, double y) {
@@ -151,8 +147,8 @@ TEST(Image, ShadesCellsOfARingAndNoneOutside) {
 
 TEST(Image, ShowsNoDisasterThatIsOverOrUnknown) {
   const auto spec = test::MakeSpec();
-  const auto empty = MapOf(DrawFarm(spec, Empty(), kSize));
-  auto state = Empty();
+  const auto empty = MapOf(DrawFarm(spec, test::MakeEmptyState(), kSize));
+  auto state = test::MakeEmptyState();
   state.disasters.push_back(test::MakeDisaster(0, 12.0F, 14.0F));
   state.disasters.front().steps_left = 0;
   EXPECT_EQ(cv::norm(empty, MapOf(DrawFarm(spec, state, kSize))), 0.0);
@@ -163,8 +159,8 @@ TEST(Image, ShowsNoDisasterThatIsOverOrUnknown) {
 
 TEST(Image, PointsToADisasterOutside) {
   const auto spec = test::MakeSpec();
-  const auto empty = MapOf(DrawFarm(spec, Empty(), kSize));
-  auto state = Empty();
+  const auto empty = MapOf(DrawFarm(spec, test::MakeEmptyState(), kSize));
+  auto state = test::MakeEmptyState();
   state.disasters.push_back(test::MakeDisaster(0, 60.0F, 12.0F));
   const auto middle = MiddleOfDifference(empty, MapOf(DrawFarm(spec, state, kSize)));
   EXPECT_GT(middle.x, 0.8 * empty.cols);
@@ -178,7 +174,7 @@ TEST(Image, ShowsWhereADisasterOutsideIsHeading) {
                              {12.0F, 60.0F},
                              {12.0F, -40.0F},
                              {60.0F, 60.0F}}) {
-    auto state = Empty();
+    auto state = test::MakeEmptyState();
     state.disasters.push_back(test::MakeDisaster(0, x, y));
     const auto paper = [&](int heading_deg, float speed) {
       state.disasters.front().heading_deg = heading_deg;
@@ -194,7 +190,7 @@ TEST(Image, ShowsWhereADisasterOutsideIsHeading) {
 
 TEST(Image, ShowsIslandAndPorts) {
   const auto spec = test::MakeSpec();
-  const auto map = MapOf(DrawFarm(spec, Empty(), kSize));
+  const auto map = MapOf(DrawFarm(spec, test::MakeEmptyState(), kSize));
   const MapView view = PlaceMap(25, 25, kSize).view;
   const auto land = map.at<cv::Vec3b>(cv::Point(view.ToPixel(1, 2)));
   EXPECT_GT(land[1], land[0]);  // green above blue
@@ -214,8 +210,8 @@ TEST(Image, ShowsRocksWhereTheyAre) {
   auto bare = spec;
   bare.rocks.clear();
   cv::Mat difference;
-  cv::absdiff(MapOf(DrawFarm(spec, Empty(), kSize)), MapOf(DrawFarm(bare, Empty(), kSize)),
-              difference);
+  cv::absdiff(MapOf(DrawFarm(spec, test::MakeEmptyState(), kSize)),
+              MapOf(DrawFarm(bare, test::MakeEmptyState(), kSize)), difference);
   const MapView view = PlaceMap(25, 25, kSize).view;
   for (const auto& rock : spec.rocks) {
     const cv::Rect around(cv::Point(view.ToPixel(rock.cell.x, rock.cell.y)) - cv::Point(8, 8),
@@ -227,7 +223,7 @@ TEST(Image, ShowsRocksWhereTheyAre) {
 
 TEST(Image, PointsADisastersArrowWhereItIsHeading) {
   const auto spec = test::MakeSpec();
-  auto state = Empty();
+  auto state = test::MakeEmptyState();
   state.disasters.push_back(test::MakeDisaster(0, 12.0F, 12.0F));
   state.disasters.front().speed = 0.0F;
   const auto still = MapOf(DrawFarm(spec, state, kSize));
@@ -335,6 +331,44 @@ TEST(Image, SurvivesWhatAnObservationOrAnAttackerMaySend) {
   Trail trail;
   trail.Update(state);
   EXPECT_NO_THROW(DrawFarm(spec, state, kSize, {&trail, &training}));
+}
+
+TEST(Image, ShowsByArrowheadsWhereAShipCameFrom) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeEmptyState();
+  state.ships.push_back(test::MakeShip(0, 0, 20));
+  const auto heads = [&](int first, int last) {
+    Trail route(Trail::kWhole);
+    for (int x = first; x != last; x += first < last ? 1 : -1) {
+      state.ships.front().x = x;
+      ++state.step;
+      route.Update(state);
+    }
+    const MapView view = PlaceMap(25, 25, kSize).view;
+    const cv::Rect between(cv::Point(view.ToPixel(5, 22)), cv::Point(view.ToPixel(19, 18)));
+    const Overlays with{nullptr, nullptr, &route, ParseLayers("route")};
+    cv::Mat difference;
+    cv::absdiff(MapOf(DrawFarm(spec, state, kSize, with))(between),
+                MapOf(DrawFarm(spec, state, kSize))(between), difference);
+    cv::Mat grey;
+    cv::cvtColor(difference, grey, cv::COLOR_BGR2GRAY);
+    std::vector<int> heights;  // of the path, by column
+    for (int x = 0; x < grey.cols; ++x) heights.push_back(cv::countNonZero(grey.col(x) > 20));
+    return heights;
+  };
+  // A head is highest where the ship came from. Returns the largest rise and fall from left to
+  // right.
+  const auto steepest = [](const std::vector<int>& heights) {
+    std::vector<int> changes(heights.size());
+    std::adjacent_difference(heights.begin(), heights.end(), changes.begin());
+    const auto [fall, rise] = std::minmax_element(changes.begin() + 1, changes.end());
+    return std::pair(*rise, -*fall);
+  };
+  const std::vector<int> east = heads(1, 24);
+  EXPECT_GE(*std::max_element(east.begin(), east.end()), 7);
+  EXPECT_GT(steepest(east).first, steepest(east).second);
+  const std::vector<int> west = heads(24, 1);
+  EXPECT_LT(steepest(west).first, steepest(west).second);
 }
 
 // Returns the number of pixels that a layer changes.

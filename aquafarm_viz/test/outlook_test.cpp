@@ -18,12 +18,12 @@ namespace aquafarm_viz {
 namespace {
 
 // A ranch with one device at (10, 12) and a storm that moves west by one cell a step from (40, 12).
-struct Scene {
+struct Outlooks {
   aquafarm_msgs::FarmSpec spec = test::MakeSpec();
   aquafarm_msgs::FarmState state = test::MakeState();
   StormTracks storms;
 
-  Scene() {
+  Outlooks() {
     state.step = 0;
     state.devices = {test::MakeDevice(3, 0, 10, 12, 1.0F)};
     state.disasters = {test::MakeDisaster(0, 40.0F, 12.0F)};
@@ -47,7 +47,7 @@ disasters:
 )";
 
 TEST(Outlook, OfAPresentCourseNamesEachRingAndItsTime) {
-  const Scene scene;
+  const Outlooks scene;
   const Outlook outlook = scene.outlook();
   ASSERT_EQ(outlook.devices.size(), 1U);
   EXPECT_TRUE(outlook.is_known);
@@ -62,7 +62,7 @@ TEST(Outlook, OfAPresentCourseNamesEachRingAndItsTime) {
 }
 
 TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
-  Scene scene;
+  Outlooks scene;
   scene.storms = ReadStormTracks(kRecorded, 1000.0);
   EXPECT_EQ(scene.course().kind, Course::Kind::kRecorded);
   EXPECT_EQ(scene.course().past.size(), 2U);
@@ -88,7 +88,7 @@ std::string WithWinds(const std::string& winds) {
 }
 
 TEST(Outlook, NamesTheWindsOfRingsThatTheScenarioGives) {
-  Scene scene;
+  Outlooks scene;
   scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
             "typhoon, gale (34 kt), reaches F3 in 30 min");
@@ -105,11 +105,12 @@ TEST(Outlook, NamesTheWindsOfRingsThatTheScenarioGives) {
 }
 
 TEST(Outlook, NamesTheWorstRingToComeAfterTheNext) {
-  Scene scene;
+  Outlooks scene;
   DeviceOutlook device{3, 0.0, 0U, 0, {}};
   device.arrivals = {{10.0, -5.0, 0U, 34}, {40.0, -10.0, 0U, 50}, {60.0, -20.0, 0U, 64}};
   Outlook outlook;
   outlook.devices = {device};
+  outlook.names = {"typhoon"};
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
             "typhoon, gale (34 kt), reaches F3 in 30 min, hurricane force (64 kt) in 3.0 h");
   EXPECT_EQ(DangerText(scene.spec, device), "gale in 30 min, hurricane force in 3.0 h");
@@ -124,7 +125,7 @@ TEST(Outlook, StrengthHasMetresPerSecondAndKnots) {
 }
 
 TEST(Outlook, NamesNoWindThatIsNotGiven) {
-  Scene scene;
+  Outlooks scene;
   scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
   scene.state.disasters[0].radii = {2.0F, 5.0F, 10.0F};  // of a bulletin with other rings
   scene.state.disasters[0].risks = {-20.0F, -10.0F, -5.0F};
@@ -137,7 +138,7 @@ TEST(Outlook, NamesNoWindThatIsNotGiven) {
 }
 
 TEST(RiskKey, NamesRingsOnlyIfAllAreGiven) {
-  Scene scene;
+  Outlooks scene;
   scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
   const RiskKey key = MakeRiskKey(scene.state, {scene.course()});
   ASSERT_EQ(key.size(), 2U);
@@ -149,8 +150,37 @@ TEST(RiskKey, NamesRingsOnlyIfAllAreGiven) {
   EXPECT_TRUE(MakeRiskKey(scene.state, {named, CourseOf(scene.spec, scene.state, 1, {})}).empty());
 }
 
+TEST(RiskKey, LeavesOutARingThatTheDisasterNeverHas) {
+  Outlooks scene;
+  scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
+  Course course = scene.course();
+  for (TrackPoint& point : course.ahead) point.radii[0] = {};
+  const RiskKey key = MakeRiskKey(scene.state, {course});
+  ASSERT_EQ(key.size(), 1U);
+  EXPECT_EQ(key[0].wind_kt, 34);
+}
+
+TEST(Outlook, NamesATyphoonByTheClassOfItsWind) {
+  Outlooks scene;
+  Course course = scene.course();
+  const auto text = [&](double wind_mps) {
+    course.ahead.front().wind_mps = wind_mps;
+    const Outlook outlook = ComputeOutlook(scene.spec, scene.state, {course});
+    EXPECT_EQ(CentreText(scene.spec, scene.state.disasters[0], course).rfind(outlook.names[0], 0),
+              0U);
+    const std::string sentence = OutlookText(scene.spec, scene.state, outlook);
+    return sentence.substr(0, sentence.find(','));
+  };
+  EXPECT_EQ(text(17.1), "tropical depression");
+  EXPECT_EQ(text(17.2), "tropical storm");
+  EXPECT_EQ(text(24.5), "severe tropical storm");
+  EXPECT_EQ(text(32.7), "typhoon");
+  scene.state.disasters[0].kind = aquafarm_msgs::DisasterState::WAVE;
+  EXPECT_EQ(text(17.2), "wave");
+}
+
 TEST(Outlook, OfADeviceInARingIsNow) {
-  Scene scene;
+  Outlooks scene;
   scene.state.disasters[0].x = 12.0F;
   scene.state.disasters[0].speed = 0.0F;
   const Outlook outlook = scene.outlook();
@@ -161,7 +191,7 @@ TEST(Outlook, OfADeviceInARingIsNow) {
 }
 
 TEST(Outlook, ListsTheDeviceThatIsReachedFirst) {
-  Scene scene;
+  Outlooks scene;
   scene.state.devices.push_back(test::MakeDevice(4, 1, 20, 12, 1.0F));
   scene.state.devices.push_back(test::MakeDevice(5, 1, 24, 12, 1.0F));
   scene.state.devices.back().status = aquafarm_msgs::DeviceState::DELIVERED;
@@ -172,7 +202,7 @@ TEST(Outlook, ListsTheDeviceThatIsReachedFirst) {
 }
 
 TEST(Outlook, ListsADeviceInARingBeforeOneThatIsReachedLater) {
-  Scene scene;
+  Outlooks scene;
   scene.state.devices.push_back(test::MakeDevice(2, 1, 21, 12, 1.0F));
   scene.state.devices.push_back(test::MakeDevice(6, 1, 17, 12, 1.0F));
   scene.state.disasters[0].x = 22.0F;
@@ -187,7 +217,7 @@ TEST(Outlook, ListsADeviceInARingBeforeOneThatIsReachedLater) {
 }
 
 TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
-  Scene scene;
+  Outlooks scene;
   scene.state.disasters[0].x = 18.0F;
   const Outlook outlook = scene.outlook();
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
@@ -196,7 +226,7 @@ TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
 }
 
 TEST(Outlook, IsInTheHeadLineEvenWhereThereIsLittleSpace) {
-  Scene scene;
+  Outlooks scene;
   scene.state.disasters[0].x = 12.0F;
   scene.state.seed = 18446744073709551615ULL;
   scene.state.episode = 123456789;
@@ -212,7 +242,7 @@ TEST(Outlook, IsInTheHeadLineEvenWhereThereIsLittleSpace) {
 }
 
 TEST(Outlook, SaysUntilWhenItIsKnown) {
-  Scene scene;
+  Outlooks scene;
   scene.state.disasters[0].x = 212.0F;  // it arrives after the 60 steps of a present course
   EXPECT_FALSE(IsInDanger(scene.outlook()));
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "disasters known until +3.0 h");
@@ -221,7 +251,7 @@ TEST(Outlook, SaysUntilWhenItIsKnown) {
 }
 
 TEST(Outlook, UsesTheRadiusOfTheQuadrant) {
-  Scene scene;
+  Outlooks scene;
   scene.state.disasters[0].y = 9.0F;  // the device is to the north-west
   scene.state.disasters[0].quadrants = {1.0F, 1.0F, 1.0F, 1.0F, 10.0F, 10.0F, 10.0F, 5.1F};
   const Outlook outlook = scene.outlook();
@@ -230,10 +260,10 @@ TEST(Outlook, UsesTheRadiusOfTheQuadrant) {
 }
 
 TEST(Outlook, SaysNothingOfTooManyDevicesAndOfDisastersThatAreOver) {
-  Scene scene;
+  Outlooks scene;
   scene.state.disasters[0].steps_left = 0;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "");
-  Scene crowd;
+  Outlooks crowd;
   crowd.state.devices.assign(1000, crowd.state.devices[0]);
   EXPECT_NE(OutlookText(crowd.spec, crowd.state, crowd.outlook()), "") << "the most of a scenario";
   crowd.state.devices.push_back(crowd.state.devices[0]);
@@ -242,7 +272,7 @@ TEST(Outlook, SaysNothingOfTooManyDevicesAndOfDisastersThatAreOver) {
 }
 
 TEST(Course, OfAnObservationOrAMovedStormIsExtrapolated) {
-  Scene scene;
+  Outlooks scene;
   scene.storms = ReadStormTracks(kRecorded, 1000.0);
   scene.state.observer = 0;
   EXPECT_EQ(scene.course().kind, Course::Kind::kExtrapolated);
@@ -252,7 +282,7 @@ TEST(Course, OfAnObservationOrAMovedStormIsExtrapolated) {
 }
 
 TEST(Course, IsTheNewestPublishedForecastThatHasNotExpired) {
-  Scene scene;
+  Outlooks scene;
   scene.storms = ReadStormTracks(std::string(kRecorded) + R"(
     forecasts:
       - {step: -9, points: [{step: 20, x: 0, y: 12}]}
@@ -270,7 +300,7 @@ TEST(Course, IsTheNewestPublishedForecastThatHasNotExpired) {
 
 TEST(Course, ContinuesAfterTheLastPointOfAForecast) {
   // The true storm comes to (20, 12); the forecast stops short of it, on its way to the device.
-  Scene scene;
+  Outlooks scene;
   const auto forecast = [&scene](const char* points) {
     scene.storms = ReadStormTracks(
         std::string(kRecorded) + "    forecasts: [{step: 0, points: [" + points + "]}]\n", 1000.0);
@@ -292,7 +322,7 @@ TEST(Course, ContinuesAfterTheLastPointOfAForecast) {
 }
 
 TEST(Course, OfAStormThatHasNoRingsYetHasTheRisksOfItsForecast) {
-  Scene scene;
+  Outlooks scene;
   scene.state.disasters[0].radii.clear();
   scene.state.disasters[0].risks.clear();
   scene.storms = ReadStormTracks(R"(
@@ -309,7 +339,7 @@ disasters:
 }
 
 TEST(Course, OfADisasterWithoutATrackGrowsButNeverShrinks) {
-  Scene scene;
+  Outlooks scene;
   scene.state.disasters[0].speed = 0.0F;  // 30 cells east of the device
   EXPECT_TRUE(scene.outlook().devices[0].arrivals.empty());
   scene.storms = ReadStormTracks("disasters: [{radius_growth: 0.5}]", 1000.0);
@@ -324,7 +354,7 @@ TEST(Course, OfADisasterWithoutATrackGrowsButNeverShrinks) {
 }
 
 TEST(Course, HasAConeWhereForecastsHaveAnError) {
-  Scene scene;
+  Outlooks scene;
   scene.spec.step_duration_s = 3600.0;
   scene.storms =
       ReadStormTracks(std::string(kRecorded) + "view: {forecast_error_km: [48, 96]}\n", 1000.0);
@@ -354,7 +384,7 @@ int CountParts(const Layout& layout, Draw draw) {
 }
 
 TEST(LabelDanger, NamesEveryDeviceThatHasAFreePlaceNearby) {
-  Scene scene;
+  Outlooks scene;
   scene.state.disasters[0].x = 12.0F;
   scene.state.disasters[0].speed = 0.0F;
   scene.state.disasters[0].radii = {1.0F, 100.0F};
@@ -376,7 +406,7 @@ TEST(LabelDanger, NamesEveryDeviceThatHasAFreePlaceNearby) {
 }
 
 TEST(Outlook, GivesTheMotionAndTheClosestApproach) {
-  Scene scene;
+  Outlooks scene;
   EXPECT_EQ(ApproachText(scene.spec, scene.state.disasters[0], scene.course()),
             "W, 1.00 cells a step")
       << "the present motion does not say when a storm is closest";

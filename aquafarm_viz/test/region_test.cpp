@@ -19,7 +19,7 @@ namespace {
 
 using aquafarm_msgs::DisasterState;
 
-constexpr ImageSize kSize{640, 640};
+constexpr ImageSize kRegionSize{640, 640};
 constexpr const char* kTrack = R"(
 disasters:
   - kind: red_tide
@@ -63,18 +63,20 @@ TEST(Region, IsShownForADisasterWhoseCentreIsOutsideAlone) {
   auto spec = test::MakeSpec();
   auto state = test::MakeState();
   state.disasters = {test::MakeDisaster(0, 12.0F, 12.0F)};
-  const cv::Mat near = Panel(DrawFarm(spec, state, kSize));
+  const cv::Mat near = Panel(DrawFarm(spec, state, kRegionSize));
   state.disasters[0].x = 13.0F;
-  EXPECT_LT(cv::norm(near, Panel(DrawFarm(spec, state, kSize)), cv::NORM_INF), 1.0)
+  EXPECT_LT(cv::norm(near, Panel(DrawFarm(spec, state, kRegionSize)), cv::NORM_INF), 1.0)
       << "the map shows it";
   for (const float outside : {34.0F, 300.0F}) {
     state.disasters[0].x = outside;
-    EXPECT_GT(cv::norm(near, Panel(DrawFarm(spec, state, kSize))), 1000.0) << outside;
+    EXPECT_GT(cv::norm(near, Panel(DrawFarm(spec, state, kRegionSize))), 1000.0) << outside;
   }
   state.disasters[0].steps_left = 0;
   auto calm = state;
   calm.disasters[0].x = 12.0F;
-  EXPECT_EQ(cv::norm(Panel(DrawFarm(spec, calm, kSize)), Panel(DrawFarm(spec, state, kSize))), 0.0)
+  EXPECT_EQ(
+      cv::norm(Panel(DrawFarm(spec, calm, kRegionSize)), Panel(DrawFarm(spec, state, kRegionSize))),
+      0.0)
       << "it is over";
 }
 
@@ -84,19 +86,20 @@ TEST(Region, ShowsATrackOnlyWhereItIsTheDisasters) {
   state.step = 0;
   state.ships.clear();  // leaves room for the inset
   state.disasters = {test::MakeDisaster(0, -90.0F, 12.0F), test::MakeDisaster(1, 100.0F, -200.0F)};
-  const cv::Mat without = Panel(DrawFarm(spec, state, kSize));
+  const cv::Mat without = Panel(DrawFarm(spec, state, kRegionSize));
   spec.scenario_yaml = kTrack;
-  EXPECT_GT(cv::norm(without, Panel(DrawFarm(spec, state, kSize))), 1000.0);
+  EXPECT_GT(cv::norm(without, Panel(DrawFarm(spec, state, kRegionSize))), 1000.0);
   auto seen = state;
   seen.observer = 0;
-  EXPECT_EQ(cv::norm(without, Panel(DrawFarm(spec, seen, kSize))), 0.0) << "a ship knows no track";
+  EXPECT_EQ(cv::norm(without, Panel(DrawFarm(spec, seen, kRegionSize))), 0.0)
+      << "a ship knows no track";
   auto replaced = state;
   replaced.disasters[1].x = 103.0F;
   auto no_track = spec;
   no_track.scenario_yaml.clear();
-  EXPECT_EQ(
-      cv::norm(Panel(DrawFarm(no_track, replaced, kSize)), Panel(DrawFarm(spec, replaced, kSize))),
-      0.0)
+  EXPECT_EQ(cv::norm(Panel(DrawFarm(no_track, replaced, kRegionSize)),
+                     Panel(DrawFarm(spec, replaced, kRegionSize))),
+            0.0)
       << "set_disaster has moved it";
 }
 
@@ -246,7 +249,7 @@ TEST(Region, MarksHaveTheWindAhead) {
   course.kind = Course::Kind::kRecorded;
   course.ahead = {{0.0, 2.0, 2.0, {}, {}, 30.0}, {400.0, 22.0, 22.0, {}, {}, 50.0}};
   cv::Mat image(640, 640, CV_8UC3, cv::Scalar(0, 0, 0));
-  const Layout layout = MakeLayout(25, 25, kSize);
+  const Layout layout = MakeLayout(25, 25, kRegionSize);
   const auto marks = DrawCourse(
       image, spec, course,
       [](double x, double y) {
@@ -276,7 +279,7 @@ TEST(RegionWords, SayUntilWhenAForecastIsKnown) {
 
 // Mean colour of a part of the map.
 cv::Scalar MeanAt(const cv::Mat& image, double x, double y, double cells) {
-  const MapPlace place = PlaceMap(25, 25, kSize);
+  const MapPlace place = PlaceMap(25, 25, kRegionSize);
   const cv::Point2d at = place.view.ToPixel(x, y);
   const int half = static_cast<int>(cells * place.view.cell_px() / 2.0);
   return cv::mean(image(place.map)(
@@ -291,7 +294,7 @@ TEST(Rings, LeaveTheWaterBlue) {
   state.disasters = {test::MakeDisaster(0, 16.0F, 16.0F)};
   state.disasters[0].radii = {0.1F, 0.2F, 60.0F};
   state.disasters[0].risks = {-20.0F, -12.0F, -5.0F};
-  const cv::Scalar water = MeanAt(DrawFarm(spec, state, kSize), 20.0, 20.0, 4.0);
+  const cv::Scalar water = MeanAt(DrawFarm(spec, state, kRegionSize), 20.0, 20.0, 4.0);
   EXPECT_GT(water[0], water[2] + 15.0) << "more blue than red in the gale";
 }
 
@@ -314,8 +317,8 @@ TEST(Rings, HaveAPatternForEachKind) {
   std::vector<cv::Mat> drawn;
   for (std::uint8_t kind = DisasterState::TYPHOON; kind <= DisasterState::CHEMICAL_SPILL; ++kind) {
     state.disasters[0].kind = kind;
-    const cv::Mat image = DrawFarm(spec, state, kSize);
-    const MapPlace place = PlaceMap(25, 25, kSize);
+    const cv::Mat image = DrawFarm(spec, state, kRegionSize);
+    const MapPlace place = PlaceMap(25, 25, kRegionSize);
     const cv::Point2d at = place.view.ToPixel(19.0, 19.0);  // apart from the sign at the centre
     drawn.push_back(image(place.map)(cv::Rect(int(at.x) - 14, int(at.y) - 14, 28, 28)).clone());
     for (std::size_t i = 0; i + 1 < drawn.size(); ++i) {

@@ -12,7 +12,7 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr ImageSize kSize{800, 640};
+constexpr ImageSize kSeaSize{800, 640};
 
 /// Returns a ranch of 8 x 8 cells. The sea gets warmer to the north; the NE corner is unknown.
 aquafarm_msgs::FarmSpec Warm() {
@@ -30,16 +30,8 @@ aquafarm_msgs::FarmSpec Warm() {
   return spec;
 }
 
-aquafarm_msgs::FarmState Empty() {
-  aquafarm_msgs::FarmState state = test::MakeState(8);
-  state.ships.clear();
-  state.devices.clear();
-  state.disasters.clear();
-  return state;
-}
-
 cv::Vec3b At(const cv::Mat& picture, double x, double y) {
-  const MapPlace place = PlaceMap(8, 8, kSize);
+  const MapPlace place = PlaceMap(8, 8, kSeaSize);
   const cv::Point2d pixel = place.view.ToPixel(x, y);
   return picture.at<cv::Vec3b>(place.map.y + cvRound(pixel.y), place.map.x + cvRound(pixel.x));
 }
@@ -51,21 +43,22 @@ Overlays With(const std::string& layers) {
 }
 
 TEST(SeaLayer, IsPaintedFromDarkToBrightBelowTheFarm) {
-  const cv::Mat plain = DrawFarm(Warm(), Empty(), kSize, With("none"));
-  const cv::Mat warm = DrawFarm(Warm(), Empty(), kSize, With("sea:warmth"));
+  const cv::Mat plain = DrawFarm(Warm(), test::MakeEmptyState(8), kSeaSize, With("none"));
+  const cv::Mat warm = DrawFarm(Warm(), test::MakeEmptyState(8), kSeaSize, With("sea:warmth"));
   const auto brightness = [](const cv::Vec3b& pixel) { return pixel[0] + pixel[1] + pixel[2]; };
   EXPECT_NE(At(plain, 4, 1), At(warm, 4, 1));
   EXPECT_LT(brightness(At(warm, 4, 2)), brightness(At(warm, 4, 6)));
   EXPECT_EQ(At(plain, 7, 7), At(warm, 7, 7)) << "nothing is known there";
-  FarmPainter painter(kSize);
-  painter.Draw(Warm(), Empty(), With("none"));
-  EXPECT_EQ(At(painter.Draw(Warm(), Empty(), With("sea:warmth")), 4, 6), At(warm, 4, 6))
+  FarmPainter painter(kSeaSize);
+  painter.Draw(Warm(), test::MakeEmptyState(8), With("none"));
+  EXPECT_EQ(At(painter.Draw(Warm(), test::MakeEmptyState(8), With("sea:warmth")), 4, 6),
+            At(warm, 4, 6))
       << "the background follows the layer";
 }
 
 std::string Refused(const aquafarm_msgs::FarmSpec& spec, const std::string& layers) {
   try {
-    DrawFarm(spec, Empty(), kSize, With(layers));
+    DrawFarm(spec, test::MakeEmptyState(8), kSeaSize, With(layers));
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -86,18 +79,20 @@ TEST(SeaLayer, ThatIsNotThereIsRefused) {
 }
 
 TEST(SeaLayer, ThatWasRefusedIsRefusedAgain) {
-  FarmPainter painter(kSize);
-  const cv::Mat warm = painter.Draw(Warm(), Empty(), With("sea:warmth")).clone();
+  FarmPainter painter(kSeaSize);
+  const cv::Mat warm = painter.Draw(Warm(), test::MakeEmptyState(8), With("sea:warmth")).clone();
   for (int i = 0; i < 2; ++i) {
-    EXPECT_THROW(painter.Draw(Warm(), Empty(), With("sea:salt")), std::invalid_argument) << i;
+    EXPECT_THROW(painter.Draw(Warm(), test::MakeEmptyState(8), With("sea:salt")),
+                 std::invalid_argument)
+        << i;
   }
-  const cv::Mat again = painter.Draw(Warm(), Empty(), With("sea:warmth"));
+  const cv::Mat again = painter.Draw(Warm(), test::MakeEmptyState(8), With("sea:warmth"));
   EXPECT_EQ(cv::norm(warm, again, cv::NORM_INF), 0.0) << "and what was drawn before is drawn whole";
 }
 
 /// Returns a state with a storm in the centre whose rings reach only to the north-east.
 aquafarm_msgs::FarmState Lopsided() {
-  aquafarm_msgs::FarmState state = Empty();
+  aquafarm_msgs::FarmState state = test::MakeEmptyState(8);
   state.disasters.push_back(test::MakeDisaster(0, 3.5F, 3.5F));
   auto& storm = state.disasters[0];
   storm.radii = {3.0F};
@@ -107,8 +102,8 @@ aquafarm_msgs::FarmState Lopsided() {
 }
 
 TEST(Quadrants, AreShadedWhereTheyReach) {
-  const cv::Mat calm = DrawFarm(Warm(), Empty(), kSize, With("risk"));
-  const cv::Mat storm = DrawFarm(Warm(), Lopsided(), kSize, With("risk"));
+  const cv::Mat calm = DrawFarm(Warm(), test::MakeEmptyState(8), kSeaSize, With("risk"));
+  const cv::Mat storm = DrawFarm(Warm(), Lopsided(), kSeaSize, With("risk"));
   EXPECT_NE(At(storm, 5.2, 4.7), At(calm, 5.2, 4.7)) << "north-east";
   EXPECT_EQ(At(storm, 5.5, 2.0), At(calm, 5.5, 2.0)) << "south-east";
   EXPECT_EQ(At(storm, 1.5, 5.0), At(calm, 1.5, 5.0)) << "north-west";

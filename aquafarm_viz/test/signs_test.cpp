@@ -18,7 +18,7 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr ImageSize kSize{640, 640};
+constexpr ImageSize kSignsSize{640, 640};
 
 TEST(Signs, HaveOneLineOfTheKeyEach) {
   auto spec = test::MakeSpec();
@@ -36,7 +36,7 @@ TEST(Signs, HaveOneLineOfTheKeyEach) {
   std::vector<Course> courses;
   for (std::size_t i = 0; i < 2; ++i) courses.push_back(CourseOf(spec, state, i, {}));
   const Outlook outlook = ComputeOutlook(spec, state, courses);
-  const Layout layout = MakeLayout(25, 25, kSize);
+  const Layout layout = MakeLayout(25, 25, kSignsSize);
   const auto signs = SignsOf(spec, state, overlays, outlook, layout);
   std::set<std::string> words;
   const Fonts fonts(layout.unit);
@@ -57,7 +57,7 @@ TEST(Signs, OfAPortStandNextToAShipInIt) {
   auto spec = test::MakeSpec();
   spec.ports[2].cell = test::MakeCell(12, 15);  // next to each other
   spec.ports[3].cell = test::MakeCell(11, 15);
-  const Layout layout = MakeLayout(spec.width, spec.height, kSize);
+  const Layout layout = MakeLayout(spec.width, spec.height, kSignsSize);
   auto state = test::MakeState();
   for (const auto& port : spec.ports) {
     state.ships.front().x = port.cell.x;
@@ -80,7 +80,7 @@ TEST(Signs, OfAPortStandNextToAShipInIt) {
 cv::Mat FirstState(const aquafarm_msgs::FarmState& state, const Trail* trail = nullptr) {
   Overlays overlays;
   overlays.trail = trail;
-  return DrawFarm(test::MakeSpec(), state, kSize, overlays)(cv::Rect(570, 74, 65, 16)).clone();
+  return DrawFarm(test::MakeSpec(), state, kSignsSize, overlays)(cv::Rect(570, 74, 65, 16)).clone();
 }
 
 TEST(Signs, OfADeviceThatNothingThreatensHaveItsState) {
@@ -111,7 +111,7 @@ TEST(Signs, OfAFetchedDeviceHaveItsTime) {
 }
 
 TEST(Signs, OfRingsHaveTheirKnotsInANarrowPanelToo) {
-  const Layout layout = MakeLayout(25, 25, kSize);
+  const Layout layout = MakeLayout(25, 25, kSignsSize);
   const Fonts fonts(layout.unit);
   EXPECT_EQ(FittingRingName(64, 500, fonts.small), "hurricane force (64 kt)");
   const int room = layout.panel.width - fonts.small.Width("risk -20") - 46;
@@ -136,7 +136,7 @@ std::vector<double> FromRings(cv::Point2d pixel, const aquafarm_msgs::DisasterSt
 
 TEST(Signs, OfRingsAreLabelledOnTheirOwnLineAndOffTheLand) {
   const auto spec = test::MakeSpec();
-  const Layout layout = MakeLayout(spec.width, spec.height, kSize);
+  const Layout layout = MakeLayout(spec.width, spec.height, kSignsSize);
   auto state = test::MakeState();
   const Fonts fonts(layout.unit);
   for (const float x : {3.0F, 8.0F, 12.0F, -2.0F}) {
@@ -184,7 +184,7 @@ TEST(Signs, OfDevicesStandNextToTheirDeviceAndNotNearerToARock) {
   state.devices.front().x = cell.x;
   state.devices.front().y = cell.y;
   spec.rocks.resize(1);
-  const Layout layout = MakeLayout(spec.width, spec.height, kSize);
+  const Layout layout = MakeLayout(spec.width, spec.height, kSignsSize);
   const Fonts fonts(layout.unit);
   for (const cv::Point side : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, -1)}) {
     spec.rocks.front().cell.x = cell.x + side.x;

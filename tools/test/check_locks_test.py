@@ -46,7 +46,7 @@ class CheckLocksTest(unittest.TestCase):
     def test_a_guarded_member_under_its_mutex_passes(self):
         done = self.check("const aquafarm::MutexLock lock(mutex_);")
         self.assertEqual(0, done.returncode, done.stderr)
-        self.assertEqual("check_locks: 1 sources, 0 with complaints\n", done.stdout)
+        self.assertEqual("check_locks: 1 compilations, 0 with complaints\n", done.stdout)
 
     def test_a_guarded_member_without_its_mutex_is_refused(self):
         done = self.check("")

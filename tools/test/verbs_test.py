@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 import unittest.mock
 from unittest import mock
@@ -42,7 +43,14 @@ class TestRun(unittest.TestCase):
                         path.write_text("<testsuite/>", encoding="utf-8")
                 return code
 
-            with mock.patch.multiple(tests, RESULTS=results, WS=pathlib.Path(folder),
+            def popen(command, **_):
+                code = run_child(command[len(tests.IDLE):])
+                child = mock.MagicMock(poll=lambda: None, wait=lambda: code)
+                child.__enter__.return_value = child
+                return child
+
+            with mock.patch.object(tests.subprocess, "Popen", popen), \
+                    mock.patch.multiple(tests, RESULTS=results, WS=pathlib.Path(folder),
                                      run_child=run_child, run_children=run_children,
                                      enter_ros=lambda: False,
                                      build_core=lambda name: None, bootstrap=lambda *words: None,
@@ -55,8 +63,8 @@ class TestRun(unittest.TestCase):
     def test_every_stage_passes(self):
         code, commands, results, _ = self.run_with(fast=False)
         self.assertEqual(0, code)
-        self.assertEqual(["python3", "bash", "bash", "run_ros_tests", "check_workspaces",
-                          "check_python", "python3"],
+        self.assertEqual(["check_workspaces", "check_python", "python3", "python3", "bash", "bash",
+                          "run_ros_tests", "python3"],
                          [pathlib.Path(line.split()[0]).name for line in commands])
         self.assertFalse({name for name in results if name.startswith("stage-")})
 
@@ -67,6 +75,22 @@ class TestRun(unittest.TestCase):
 
     def test_a_failed_stage_fails_the_whole(self):
         self.assertEqual(1, self.run_with(fast=True, bash=1)[0])
+
+    def test_a_failure_in_another_workspace_fails_the_whole(self):
+        code, _, results, words = self.run_with(fast=False, check_workspaces=2)
+        self.assertEqual(1, code)
+        self.assertIn("stage-another_kind_of_workspace.xml", results)
+        self.assertIn("waiting for: another kind of workspace (log: ", words)
+
+    def test_a_step_next_to_others_ends_with_them_if_they_raise(self):
+        with tempfile.TemporaryDirectory() as folder:
+            step = tests.Step("sleep", ["sleep", "60"], pathlib.Path(folder, "log"))
+            started = time.monotonic()
+            with self.assertRaises(SystemExit), tests.Stages().next_to(step):
+                os.kill(os.getpid(), signal.SIGTERM)
+                time.sleep(30)
+            self.assertLess(time.monotonic() - started, 20)
+        self.assertIs(signal.SIG_DFL, signal.getsignal(signal.SIGTERM))
 
     def test_a_stage_without_results_counts_as_a_failed_test(self):
         code, _, results, words = self.run_with(fast=True, bash=2)

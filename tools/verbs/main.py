@@ -66,7 +66,8 @@ def run_tests(words):
     parser = Parser("test", "--fast or nothing", "Builds and runs every test; the last line is "
                     "'N passed, N failed, N skipped'.")
     parser.add_argument("--fast", action="store_true",
-                        help="leave out the builds in other kinds of workspace and the wheel")
+                        help="leave out tests that take more than 20 s, campaigns, checks with clang, "
+                             "other kinds of workspace and the wheel")
     return tests.run(parser.parse(words).fast)
 
 

@@ -5,6 +5,8 @@ import dataclasses
 import os
 import pathlib
 import shutil
+import signal
+import subprocess
 import sys
 import time
 
@@ -18,6 +20,9 @@ EXTRAS = {"the tests of HTML pages are skipped": ("chromium", "chromium-driver",
           "the check of locks is skipped": ("clang-14",),
           "the check of clang-tidy is skipped": ("clang-tidy-14",)}
 SLURM = {"the tests of batch files are skipped": ("munge", "slurmctld", "slurmd", "slurm-client")}
+# Core tests that take more than 20 s; --fast leaves them out.
+SLOW = ("dqn_test", "multi_agent_test", "plan_program", "planner_test", "process_group_test",
+        "ranks_test", "resume_test", "run_test")
 BROKEN = """<testsuite tests="1" failures="1"><testcase classname="stage" name="{}"><failure/>\
 </testcase></testsuite>
 """
@@ -25,6 +30,8 @@ LAST_LINES = 20
 # CI ends the test command after 90 minutes. Checks of the wheel that begin later than this after the
 # start are skipped, and one that has begun may take a quarter of an hour more.
 WHEEL_END_S = 55 * 60
+# Of a step next to others: it gets what processor time they leave.
+IDLE = ["chrt", "--idle", "0"]
 
 
 @dataclasses.dataclass
@@ -54,7 +61,7 @@ class Stages:
         say(f"{seconds // 60:2d}:{seconds % 60:02d} {what}")
 
     def run(self, *steps):
-        """Runs steps at the same time. Each exits with 0 if all its tests pass."""
+        """Runs steps at the same time to their ends. Each exits with 0 if all its tests pass."""
         with contextlib.ExitStack() as stack:
             commands = []
             for step in steps:
@@ -65,9 +72,32 @@ class Stages:
                 commands.append((step.command, options))
             codes = run_children(commands)
         for step, code in zip(steps, codes):
-            self.has_failed |= code != 0
-            if code != 0 if step.xml is None else is_empty(step.xml):
-                self.break_off(step.name, step.log)
+            self.judge(step, code)
+
+    @contextlib.contextmanager
+    def next_to(self, *steps):
+        """Runs steps next to what the block does, which has precedence; waits for their ends when it
+        ends, and ends them if it raises or a signal ends this process."""
+        with contextlib.ExitStack() as stack:
+            for number in (signal.SIGTERM, signal.SIGHUP):
+                stack.callback(signal.signal, number, signal.signal(number, exit_by_signal))
+            children = []
+            for step in steps:
+                words = stack.enter_context(open(step.log, "w", encoding="utf-8"))
+                child = stack.enter_context(subprocess.Popen(
+                    [*IDLE, *map(str, step.command)], stdout=words, stderr=words))
+                stack.callback(child.terminate)
+                children.append(child)
+            yield
+            for step, child in zip(steps, children):
+                if child.poll() is None:
+                    self.begin(f"waiting for: {step.name} (log: {step.log})")
+                self.judge(step, child.wait())
+
+    def judge(self, step, code):
+        self.has_failed |= code != 0
+        if code != 0 if step.xml is None else is_empty(step.xml):
+            self.break_off(step.name, step.log)
 
     def break_off(self, name, log):
         """A stage that breaks off counts as a failed test; otherwise its missing cases would not be
@@ -77,6 +107,10 @@ class Stages:
         lines = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
         print(f"aquafarm: the stage '{name}' broke off; the end of {log}:", file=sys.stderr)
         print("\n".join(lines.splitlines()[-LAST_LINES:]), file=sys.stderr, flush=True)
+
+
+def exit_by_signal(number, _):
+    sys.exit(128 + number)
 
 
 def is_empty(path):
@@ -97,13 +131,27 @@ def build(stages):
     for folder in (RESULTS, WS / "build/test_results", *WS.glob("core/*/test_results")):
         shutil.rmtree(folder, ignore_errors=True)
     RESULTS.mkdir(parents=True)
+    log = RESULTS / "build_tests.log"
+    stages.begin(f"building the tests through ROS (log: {log})")
+    if run_bootstrap("--build-tests", log) != 0:
+        stages.break_off("build of the tests through ROS", log)
 
 
-def tools_step():
-    xml = RESULTS / "tools.xml"
-    return Step("tools", [PYTHON, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={xml}",
-                          *sorted(ROOT.glob("tools/test/*_test.py"))],
-                RESULTS / "tools.log", xml, variables={"AQUAFARM_CAMPAIGNS": str(WS)})
+def pytest_step(name, files, variables):
+    xml = RESULTS / f"{name}.xml"
+    return Step(name, [PYTHON, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={xml}",
+                       *files],
+                RESULTS / f"{name}.log", xml, variables=variables)
+
+
+def tools_steps(fast):
+    """Two steps of about the same length; with `fast` one, without checks of the build."""
+    campaigns = ROOT / "tools/test/campaign_test.py"
+    others = sorted({*ROOT.glob("tools/test/*_test.py")} - {campaigns})
+    if fast:
+        return [pytest_step("tools", others, {})]
+    variables = {"AQUAFARM_CAMPAIGNS": str(WS)}
+    return [pytest_step("campaigns", [campaigns], variables), pytest_step("tools", others, variables)]
 
 
 # A line for each test that ended; sed leaves out the rest of what ctest prints.
@@ -112,22 +160,23 @@ CTEST = """ctest "$@" | sed -unE \
 """
 
 
-def core_step(core):
+def core_step(core, fast):
+    left_out = ["-E", f"^({'|'.join(SLOW)})$"] if fast else []
     jobs = os.environ.get("AQUAFARM_JOBS") or str(len(os.sched_getaffinity(0)))
     xml, log = RESULTS / f"ctest-{core}.xml", RESULTS / f"{core}.log"
     return Step(f"{core} core",
                 ["bash", "-o", "pipefail", "-c", CTEST, core, "--test-dir", WS / "core" / core,
-                 "-j", jobs, "--timeout", "900", "--output-on-failure", "--output-log", log,
+                 "-j", jobs, *left_out, "--timeout", "900", "--output-on-failure", "--output-log", log,
                  "--output-junit", xml],
                 log, xml, is_shown=True)
 
 
-def ros_step(log):
+def ros_step(log, fast):
     # Two at a time is what has been tried on two cores; a rostest waits for most of its time.
     jobs = min(2, len(os.sched_getaffinity(0)))
     return Step("tests through ROS",
                 [ROOT / "tools/run_ros_tests", WS / "build", log, "--jobs",
-                 os.environ.get("AQUAFARM_TEST_JOBS") or str(jobs)], log, is_shown=True,
+                 os.environ.get("AQUAFARM_TEST_JOBS") or str(jobs), *(["--fast"] if fast else [])], log, is_shown=True,
                 variables={"CTEST_OUTPUT_ON_FAILURE": "1",
                            "ROS_TEST_RESULTS_DIR": str(WS / "build/test_results")})
 
@@ -136,41 +185,37 @@ def workspaces_step():
     xml = RESULTS / "workspaces.xml"
     return Step("another kind of workspace",
                 [ROOT / "tools/check_workspaces", WS / "workspaces", xml],
-                RESULTS / "workspaces.log", xml, is_shown=True)
+                RESULTS / "workspaces.log", xml)
 
 
-def test_through_ros(stages):
-    enter_ros()
-    log = RESULTS / "build_tests.log"
-    stages.begin(f"building the tests through ROS (log: {log})")
-    if run_bootstrap("--build-tests", log) != 0:
-        stages.break_off("build of the tests through ROS", log)
+def wheel_step(stages):
+    xml = RESULTS / "python.xml"
+    return Step("wheel with tools from PyPI",
+                [ROOT / "tools/check_python", WS / "python", "--short", "--limit",
+                 max(1, WHEEL_END_S - stages.seconds()), "--xml", xml], RESULTS / "python.log", xml)
+
+
+def test_all(stages, fast):
+    stages.begin("testing the cores without ROS, and the tools, which mostly wait")
+    stages.run(*tools_steps(fast), *(core_step(core, fast) for core in CORES))
     log = RESULTS / "run_tests.log"
     stages.begin(f"testing through ROS (log: {log})")
-    stages.run(ros_step(log))
-
-
-def test_wheel(stages):
-    log = RESULTS / "python.log"
-    stages.begin(f"testing the wheel with tools from PyPI, as far as there is time (log: {log})")
-    xml = RESULTS / "python.xml"
-    stages.run(Step("wheel", [ROOT / "tools/check_python", WS / "python", "--short", "--limit",
-                              max(1, WHEEL_END_S - stages.seconds()), "--xml", xml], log, xml))
+    enter_ros()
+    stages.run(ros_step(log, fast))
 
 
 def run(fast):
-    """Runs every test; `fast` leaves out the builds in other kinds of workspace. Returns 1 if a
-    test failed."""
+    """Runs every test; `fast` leaves out slow ones and the builds in other kinds of workspace.
+    Returns 1 if a test failed."""
     stages = Stages()
     build(stages)
-    stages.begin("testing the cores without ROS, and the tools, which mostly wait")
-    stages.run(tools_step(), *map(core_step, CORES))
-    test_through_ros(stages)
-    if not fast:
-        # Not during the tests through ROS: some of them have limits that a compiler breaks.
-        stages.begin("building and running in another kind of workspace")
-        stages.run(workspaces_step())
-        test_wheel(stages)
+    if fast:
+        say("--fast leaves out tests that take more than 20 s, campaigns, checks with clang, and other "
+            "kinds of workspace")
+        test_all(stages, fast)
+    else:
+        with stages.next_to(workspaces_step(), wheel_step(stages)):
+            test_all(stages, fast)
     stages.begin("adding up the results")
     code = run_child([PYTHON, ROOT / "tools/sum_results.py", RESULTS,
                       *WS.glob("core/*/test_results"), WS / "build/test_results"])

@@ -12,8 +12,9 @@ if(AQUAFARM_FUZZ)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
-# Compiles the sources of a folder as one, which takes a third of the time
-# (docs/decisions/compile_by_folder.md). CMake 3.18 has groups.
+# aquafarm_compile_by_folder(TARGET [FOLDER…]): compiles the sources of a folder as one, which takes a
+# third of the time (docs/decisions/compile_by_folder.md), and those of all FOLDERs, whose paths are
+# relative to the current one, as one, too. CMake 3.18 has groups.
 option(AQUAFARM_UNITY "Compile the sources of each folder as one" ON)
 function(aquafarm_compile_by_folder target)
   if(NOT AQUAFARM_UNITY OR CMAKE_VERSION VERSION_LESS 3.18)
@@ -23,7 +24,14 @@ function(aquafarm_compile_by_folder target)
   list(FILTER sources INCLUDE REGEX "[.]cpp$")
   foreach(source IN LISTS sources)
     get_filename_component(folder ${source} DIRECTORY)
-    string(MAKE_C_IDENTIFIER "${folder}" group)
+    # The same in every build that compiles the folder, so that ccache knows it again.
+    string(REGEX REPLACE "^.*/src/" "src/" group "${folder}")
+    string(MAKE_C_IDENTIFIER "${group}" group)
+    if(NOT group)
+      set(group here)
+    elseif(folder IN_LIST ARGN)
+      set(group together)
+    endif()
     set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${group})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
@@ -40,18 +48,19 @@ endfunction()
 
 # Adds a shared library with C++17, all warnings and no undefined symbols; a static library with
 # AQUAFARM_STATIC_CORE, for a Python module that contains it, and for fuzz targets, which are faster
-# if they contain only what they use.
+# if they contain only what they use. Sources of folders after TOGETHER are compiled as one.
 function(aquafarm_add_core_library target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "TOGETHER")
   if(AQUAFARM_STATIC_CORE OR AQUAFARM_FUZZ)
-    add_library(${target} STATIC ${ARGN})
+    add_library(${target} STATIC ${arg_UNPARSED_ARGUMENTS})
   else()
-    add_library(${target} SHARED ${ARGN})
+    add_library(${target} SHARED ${arg_UNPARSED_ARGUMENTS})
   endif()
   target_compile_features(${target} PUBLIC cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   target_link_options(${target} PRIVATE LINKER:--no-undefined)
   aquafarm_set_warnings(${target})
-  aquafarm_compile_by_folder(${target})
+  aquafarm_compile_by_folder(${target} ${arg_TOGETHER})
 endfunction()
 
 # Fails the build of `target` when a file of this core includes ROS.
@@ -63,22 +72,30 @@ function(aquafarm_check_no_ros target)
   add_dependencies(${target} ${target}_no_ros)
 endfunction()
 
-# Compiles a test with few optimisations: that takes half the time, and the tested code is in libraries.
+# Compiles a program with few optimisations: that takes half the time, and the code that has to be
+# fast is in libraries.
 function(aquafarm_compile_fast target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
 # Adds test/<folder>/<name>.cpp as the ctest test <name>, for each path <folder>/<name> of `paths`. The
 # tests of a folder share the program <folder>_tests, which links ARGN. The result of each is where
-# catkin expects it.
+# catkin expects it. Sets AQUAFARM_TEST_PROGRAMS to the programs.
 function(aquafarm_add_core_tests paths)
+  if(NOT TARGET aquafarm_tests_main)
+    add_library(aquafarm_tests_main OBJECT
+      ${AQUAFARM_CORE_CMAKE_DIR}/../test/support/main.cpp)
+    target_link_libraries(aquafarm_tests_main PRIVATE GTest::gtest)
+    aquafarm_set_warnings(aquafarm_tests_main)
+    aquafarm_compile_fast(aquafarm_tests_main)
+  endif()
   set(programs)
   foreach(path IN LISTS paths)
     get_filename_component(name ${path} NAME)
     get_filename_component(folder ${path} DIRECTORY)
     set(program ${folder}_tests)
     if(NOT TARGET ${program})
-      add_executable(${program} ${AQUAFARM_CORE_CMAKE_DIR}/../test/support/main.cpp)
+      add_executable(${program} $<TARGET_OBJECTS:aquafarm_tests_main>)
       list(APPEND programs ${program})
     endif()
     target_sources(${program} PRIVATE test/${path}.cpp)
@@ -94,6 +111,7 @@ function(aquafarm_add_core_tests paths)
     aquafarm_compile_fast(${program})
     aquafarm_compile_by_folder(${program})
   endforeach()
+  set(AQUAFARM_TEST_PROGRAMS ${programs} PARENT_SCOPE)
 endfunction()
 
 # Adds fuzz/fuzz_<name>.cpp, which links ARGN. With AQUAFARM_FUZZ it uses libFuzzer; without it,

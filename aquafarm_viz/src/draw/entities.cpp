@@ -126,12 +126,23 @@ void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, d
 
 namespace {
 
+constexpr double kBetweenHeads = 50.0;  // of the arrowheads of a path [design units]
+
 // The colour of a part of a ship's path: green, which no risk has, or that of the ship where there
 // are several. It fades into the sea.
 // @param age  0: now, 1: the oldest part
 Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
   const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.6) : style.good;
-  return Mix(fresh, style.sea_south, 0.45 * age);
+  return Mix(fresh, style.sea_south, 0.55 * age);
+}
+
+// Draws in which direction a ship moved from one point to another.
+void DrawDirection(cv::Mat& map, cv::Point2d from, cv::Point2d to, const cv::Scalar& color,
+                   const Layout& layout) {
+  static const std::vector<cv::Point2f> kHead{{0.0F, 1.0F}, {-0.9F, -0.8F}, {0.9F, -0.8F}};
+  const cv::Point2d way = to - from;
+  const double bearing_deg = std::atan2(way.x, -way.y) * 180.0 / CV_PI;
+  FillShape(map, kHead, {(from + to) / 2.0, double(layout.Px(5.5)), bearing_deg}, color);
 }
 
 }  // namespace
@@ -150,14 +161,20 @@ void DrawPaths(cv::Mat& map, const FarmState& state, const Trail& paths, const L
   for (const auto& ship : state.ships) {
     const ShipTrail* way = ship.visible ? paths.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
+    double since_head_px = 0.0;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
       const auto& from = way->places[i - 1];
       const auto& to = way->places[i];
       if (Trail::IsGap(from, to)) continue;
       const double age = 1.0 - double(i) / double(way->places.size());
-      const Rgb color = PathColor(state, ship.id, age, *layout.style);
-      DrawLine(map, layout.view.ToPixel(from.x, from.y), layout.view.ToPixel(to.x, to.y),
-               Bgr(color), layout.Px(2.5));
+      const cv::Scalar color = Bgr(PathColor(state, ship.id, age, *layout.style));
+      const cv::Point2d start = layout.view.ToPixel(from.x, from.y);
+      const cv::Point2d end = layout.view.ToPixel(to.x, to.y);
+      DrawLine(map, start, end, color, layout.Px(2.5));
+      since_head_px += cv::norm(end - start);
+      if (since_head_px < kBetweenHeads * layout.unit) continue;
+      DrawDirection(map, start, end, color, layout);
+      since_head_px = 0.0;
     }
   }
 }
@@ -213,7 +230,8 @@ void DrawDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, con
       const int index = delivered[{device.x, device.y}]++;
       const double step = 9.0 * layout.unit;
       const double down = -DeliveredSide(spec, device.y);
-      at += cv::Point2d(step * (index % 4 - 1.0), down * step * (1.9 + index / 4));
+      const int row = index / 4;
+      at += cv::Point2d(step * (index % 4 - 1.0), down * step * (1.9 + row));
       DrawDeviceSymbol(map, device.kind, {at, 4.5 * layout.unit, 0.0}, 0.35);
     } else if (device.status == DeviceState::DEPLOYED && !device.self_propelled) {
       DrawDeviceSymbol(map, device.kind, {at, radius, 0.0}, device.health_known ? 0.0 : 0.6);

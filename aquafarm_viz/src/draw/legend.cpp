@@ -120,6 +120,19 @@ void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, cons
                spec.cell_size_m, layout, fonts);
 }
 
+namespace {
+
+// Returns whether a ring has a radius now or later.
+bool HasRing(const Course& course, std::size_t ring) {
+  return std::any_of(course.ahead.begin(), course.ahead.end(), [ring](const TrackPoint& point) {
+    return ring < point.radii.size() &&
+           std::any_of(point.radii[ring].begin(), point.radii[ring].end(),
+                       [](double cells) { return cells > 0.0; });
+  });
+}
+
+}  // namespace
+
 RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) {
   constexpr std::size_t kMaxColors = 4;
   RiskKey key;
@@ -128,6 +141,7 @@ RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) 
     const std::vector<std::int32_t>& winds = courses[i].ring_winds_kt;
     if (winds.empty()) return {};  // its risks have no name
     for (std::size_t ring = winds.size(); ring-- > 0;) {
+      if (!HasRing(courses[i], ring)) continue;
       const NamedRing one{winds[ring], std::round(courses[i].ahead.front().risks[ring])};
       const auto is_same = [&one](const NamedRing& other) {
         return other.wind_kt == one.wind_kt && other.risk == one.risk;

@@ -292,7 +292,8 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
     const bool over = disaster.steps_left <= 0;
     FillCircle(panel.image(), panel.SymbolAt(), 5.5 * layout.unit,
                Bgr(over ? layout.style->rule : GradeColor(disaster.grade)));
-    const std::string kind = DisasterName(disaster.kind);
+    const std::string kind =
+        over ? DisasterName(disaster.kind) : NameNow(disaster.kind, courses[i].ahead.front());
     const std::string grade = over                              ? "over"
                               : disaster.grade < kGrades.size() ? kGrades[disaster.grade]
                                                                 : "";

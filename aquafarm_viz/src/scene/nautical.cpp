@@ -7,6 +7,7 @@
 #include <string>
 
 #include "aquafarm/tracks/track.h"
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
@@ -79,6 +80,15 @@ std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, dou
 
 std::string WindText(const TrackPoint& point) {
   return point.wind_mps ? Number(*point.wind_mps, 0) + " m/s" : "";
+}
+
+std::string NameNow(std::uint8_t kind, const TrackPoint& now) {
+  if (kind != aquafarm_msgs::DisasterState::TYPHOON || !now.wind_mps) return DisasterName(kind);
+  const double wind_mps = *now.wind_mps;
+  return wind_mps < 17.2   ? "tropical depression"
+         : wind_mps < 24.5 ? "tropical storm"
+         : wind_mps < 32.7 ? "severe tropical storm"
+                           : DisasterName(kind);
 }
 
 std::string StrengthText(const TrackPoint& point) {

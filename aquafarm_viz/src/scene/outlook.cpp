@@ -195,6 +195,11 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
       outlook.devices.push_back({device.id, 0.0, 0U, 0, {}});
     }
   }
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    const std::uint8_t kind = state.disasters[i].kind;
+    const std::vector<TrackPoint>& ahead = courses[i].ahead;
+    outlook.names.push_back(ahead.empty() ? DisasterName(kind) : NameNow(kind, ahead.front()));
+  }
   outlook.is_known = devices.size() <= kMaxOutlookDevices;
   if (!outlook.is_known) {
     outlook.devices.clear();
@@ -278,8 +283,8 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
   if (outlook.devices.empty()) return "";
   const DeviceOutlook& first = outlook.devices.front();
   const bool is_now = first.risk_now < 0.0;
-  const std::string now = is_now ? DisasterName(state.disasters[first.disaster_now].kind) +
-                                       " over " + DeviceLabel(first.id) + ": " + NowText(first)
+  const std::string now = is_now ? outlook.names[first.disaster_now] + " over " +
+                                       DeviceLabel(first.id) + ": " + NowText(first)
                                  : "";
   if (first.arrivals.empty()) return is_now ? now : KnownText(spec, outlook);
   const RingArrival& next = first.arrivals.front();
@@ -288,8 +293,8 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
   const std::string risk = RingText(next);
   const std::string worst = WorstToCome(spec, first);
   if (is_now) return now + ", " + risk + when + worst;
-  return DisasterName(state.disasters[next.disaster].kind) + ", " + risk + ", reaches " +
-         DeviceLabel(first.id) + when + worst;
+  return outlook.names[next.disaster] + ", " + risk + ", reaches " + DeviceLabel(first.id) + when +
+         worst;
 }
 
 std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
@@ -333,7 +338,8 @@ std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const ch
 
 std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
                        const Course& course) {
-  return DisasterName(disaster.kind) + StrengthText(course.ahead.front()) + ", centre " +
+  const TrackPoint& now = course.ahead.front();
+  return NameNow(disaster.kind, now) + StrengthText(now) + ", centre " +
          DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) + " " +
          PointFromFarm(spec, disaster.x, disaster.y);
 }

@@ -34,8 +34,9 @@ struct DeviceOutlook {
 
 /// The danger to all deployed devices.
 struct Outlook {
-  bool is_known{};         ///< false: too many devices to compute it; nothing can be said
-  bool is_extrapolated{};  ///< true: at least one course is the present motion continued
+  bool is_known{};                 ///< false: too many devices to compute it; nothing can be said
+  bool is_extrapolated{};          ///< true: at least one course is the present motion continued
+  std::vector<std::string> names;  ///< of the state's disasters, see NameNow
   /// Steps from now until which all courses are known; infinite: until the disasters end.
   double known_until{std::numeric_limits<double>::infinity()};
   std::vector<DeviceOutlook> devices;  ///< deployed devices, the soonest danger first: those in a

@@ -8,6 +8,7 @@
 
 #include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/base/check.h"
+#include "learning/moving_error.h"
 #include "learning/saved_numbers.h"
 #include "maddpg/maddpg_networks.h"
 #include "maddpg/maddpg_policy.h"
@@ -17,7 +18,6 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr float kErrorShare = 0.01F;  // weight of a new mean squared error in the moving average
 constexpr std::uint32_t kActorStream = 0;
 constexpr std::uint32_t kCriticStream = 2;
 constexpr std::uint32_t kActingStream = 3;
@@ -368,7 +368,7 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
   const double scale = options_.reward_scale * options_.reward_scale;
   const auto error = static_cast<float>(
       ((predicted.detach() - targets).square() * weights).sum().item<double>() / scale);
-  loss_ = std::isnan(loss_) ? error : loss_ + kErrorShare * (error - loss_);
+  loss_ = MoveError(loss_, error);
   if (options_.priority_exponent > 0.0) Reprioritise((predicted.detach() - targets).abs());
   return (torch::smooth_l1_loss(predicted, targets, at::Reduction::None) * weights).sum();
 }

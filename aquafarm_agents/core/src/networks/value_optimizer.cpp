@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "aquafarm/base/check.h"
+#include "learning/moving_error.h"
 #include "learning/saved_numbers.h"
 
 namespace aquafarm::agents {
 namespace {
 
-constexpr float kErrorShare = 0.01F;  // weight of a new mean squared error in the moving average
 constexpr std::uint64_t kUpdatesPerLook = 8;
 constexpr const char* kAverage = "average_weights";
 
@@ -99,7 +99,7 @@ void ValueOptimizer::Fail(const std::string& what, const BatchOrigin& origin) co
 void ValueOptimizer::Measure(double mean_square) {
   const auto value =
       static_cast<float>(mean_square / (options_.reward_scale * options_.reward_scale));
-  loss_ = std::isnan(loss_) ? value : loss_ + kErrorShare * (value - loss_);
+  loss_ = MoveError(loss_, value);
 }
 
 LearnerStatus ValueOptimizer::status(double exploration) const {

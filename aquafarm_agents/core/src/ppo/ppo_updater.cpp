@@ -8,14 +8,14 @@
 
 #include "aquafarm/agents/learning/learner.h"
 #include "aquafarm/base/check.h"
+#include "learning/moving_error.h"
 #include "learning/saved_numbers.h"
 #include "ppo/central_actor_critic.h"
 
 namespace aquafarm::agents {
 namespace {
 
-constexpr float kErrorShare =
-    0.05F;  // weight of an update in the moving average of the squared error
+constexpr float kErrorShare = 0.05F;  // an update has many batches
 constexpr float kMinDeviation = 1e-6F;
 constexpr std::size_t kLossTerms = 5;  // members of PpoLoss
 enum AdvantageSum : std::size_t { kSum, kSquares, kRows, kSums };
@@ -114,8 +114,7 @@ void PpoUpdater::Update(const std::vector<Input>& inputs, const Context& context
   const double scale = options_.reward_scale * options_.reward_scale;
   const auto error = static_cast<float>(sum.square_error / learned / scale);
   entropy_ = static_cast<float>(sum.entropy / learned);
-  value_error_ =
-      std::isnan(value_error_) ? error : value_error_ + kErrorShare * (error - value_error_);
+  value_error_ = MoveError(value_error_, error, kErrorShare);
 }
 
 void PpoUpdater::Fail(const std::string& what, const Context& context) const {

@@ -48,8 +48,8 @@ class Resume : public FolderTest {
   }
 
   static std::string StepsOf(const std::string& run) {
-    if (run.find(".memory") != std::string::npos) return "200000";
-    return run.find("ppo") != std::string::npos ? "400000" : "8000000";
+    if (run.find(".memory") != std::string::npos) return "100000";
+    return run.find("ppo") != std::string::npos ? "200000" : "4000000";
   }
   /// @param run name of the run: the name of the algorithm, `.memory` for a recurrent network, and
   /// more

@@ -65,11 +65,7 @@ class Stages:
         with contextlib.ExitStack() as stack:
             commands = []
             for step in steps:
-                options = {"env": dict(os.environ, **step.variables)}
-                if not step.is_shown:
-                    words = stack.enter_context(open(step.log, "w", encoding="utf-8"))
-                    options.update(stdout=words, stderr=words)
-                commands.append((step.command, options))
+                commands.append((step.command, options_of(step, stack)))
             codes = run_children(commands)
         for step, code in zip(steps, codes):
             self.judge(step, code)
@@ -83,9 +79,8 @@ class Stages:
                 stack.callback(signal.signal, number, signal.signal(number, exit_by_signal))
             children = []
             for step in steps:
-                words = stack.enter_context(open(step.log, "w", encoding="utf-8"))
                 child = stack.enter_context(subprocess.Popen(
-                    [*IDLE, *map(str, step.command)], stdout=words, stderr=words))
+                    [*IDLE, *map(str, step.command)], **options_of(step, stack)))
                 stack.callback(child.terminate)
                 children.append(child)
             yield
@@ -107,6 +102,15 @@ class Stages:
         lines = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
         print(f"aquafarm: the stage '{name}' broke off; the end of {log}:", file=sys.stderr)
         print("\n".join(lines.splitlines()[-LAST_LINES:]), file=sys.stderr, flush=True)
+
+
+def options_of(step, stack):
+    """Returns the options of Popen for a step; `stack` closes its log."""
+    options = {"env": dict(os.environ, **step.variables)}
+    if not step.is_shown:
+        words = stack.enter_context(open(step.log, "w", encoding="utf-8"))
+        options.update(stdout=words, stderr=words)
+    return options
 
 
 def exit_by_signal(number, _):
@@ -176,7 +180,8 @@ def ros_step(log, fast):
     jobs = min(2, len(os.sched_getaffinity(0)))
     return Step("tests through ROS",
                 [ROOT / "tools/run_ros_tests", WS / "build", log, "--jobs",
-                 os.environ.get("AQUAFARM_TEST_JOBS") or str(jobs), *(["--fast"] if fast else [])], log, is_shown=True,
+                 os.environ.get("AQUAFARM_TEST_JOBS") or str(jobs), *(["--fast"] if fast else [])],
+                log, is_shown=True,
                 variables={"CTEST_OUTPUT_ON_FAILURE": "1",
                            "ROS_TEST_RESULTS_DIR": str(WS / "build/test_results")})
 
@@ -212,10 +217,9 @@ def run(fast):
     if fast:
         say("--fast leaves out tests that take more than 20 s, campaigns, checks with clang, and other "
             "kinds of workspace")
+    others = [] if fast else [workspaces_step(), wheel_step(stages)]
+    with stages.next_to(*others):
         test_all(stages, fast)
-    else:
-        with stages.next_to(workspaces_step(), wheel_step(stages)):
-            test_all(stages, fast)
     stages.begin("adding up the results")
     code = run_child([PYTHON, ROOT / "tools/sum_results.py", RESULTS,
                       *WS.glob("core/*/test_results"), WS / "build/test_results"])

@@ -5,7 +5,6 @@
 #include <ctime>
 #include <opencv2/imgproc.hpp>
 
-#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "draw/legend.h"
@@ -292,8 +291,7 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
     const bool over = disaster.steps_left <= 0;
     FillCircle(panel.image(), panel.SymbolAt(), 5.5 * layout.unit,
                Bgr(over ? layout.style->rule : GradeColor(disaster.grade)));
-    const std::string kind =
-        over ? DisasterName(disaster.kind) : NameNow(disaster.kind, courses[i].ahead.front());
+    const std::string kind = NameNow(disaster, courses[i]);
     const std::string grade = over                              ? "over"
                               : disaster.grade < kGrades.size() ? kGrades[disaster.grade]
                                                                 : "";

@@ -82,13 +82,16 @@ std::string WindText(const TrackPoint& point) {
   return point.wind_mps ? Number(*point.wind_mps, 0) + " m/s" : "";
 }
 
-std::string NameNow(std::uint8_t kind, const TrackPoint& now) {
-  if (kind != aquafarm_msgs::DisasterState::TYPHOON || !now.wind_mps) return DisasterName(kind);
-  const double wind_mps = *now.wind_mps;
+std::string NameNow(const aquafarm_msgs::DisasterState& disaster, const Course& course) {
+  const bool has_class = disaster.kind == aquafarm_msgs::DisasterState::TYPHOON &&
+                         disaster.steps_left > 0 && !course.ahead.empty() &&
+                         course.ahead.front().wind_mps;
+  if (!has_class) return DisasterName(disaster.kind);
+  const double wind_mps = *course.ahead.front().wind_mps;
   return wind_mps < 17.2   ? "tropical depression"
          : wind_mps < 24.5 ? "tropical storm"
          : wind_mps < 32.7 ? "severe tropical storm"
-                           : DisasterName(kind);
+                           : DisasterName(disaster.kind);
 }
 
 std::string StrengthText(const TrackPoint& point) {

@@ -6,7 +6,6 @@
 #include <aquafarm_msgs/DisasterState.h>
 #include <aquafarm_msgs/FarmSpec.h>
 
-#include <cstdint>
 #include <ctime>
 #include <string>
 
@@ -41,10 +40,10 @@ std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, dou
 /// Returns a disaster's max sustained wind, such as "38 m/s"; empty if it is not given.
 std::string WindText(const TrackPoint& point);
 
-/// Returns the name of a disaster. A typhoon whose wind is given has that of its class, such as
-/// "tropical storm" (Typhoon Committee Operational Manual, WMO TD 196: from 17.2, 24.5 and 32.7
-/// m/s).
-std::string NameNow(std::uint8_t kind, const TrackPoint& now);
+/// Returns the name of a disaster. A typhoon whose wind is given has that of its class until it is
+/// over, such as "tropical storm" (Typhoon Committee Operational Manual, WMO TD 196:
+/// from 17.2, 24.5 and 32.7 m/s).
+std::string NameNow(const aquafarm_msgs::DisasterState& disaster, const Course& course);
 
 /// Returns WindText also in knots, after a space: " 37 m/s (72 kt)"; empty if not given.
 std::string StrengthText(const TrackPoint& point);

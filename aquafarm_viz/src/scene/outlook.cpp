@@ -7,7 +7,6 @@
 
 #include "aquafarm/tracks/wind_name.h"
 #include "aquafarm_viz/base/checks.h"
-#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
@@ -196,9 +195,7 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
     }
   }
   for (std::size_t i = 0; i < courses.size(); ++i) {
-    const std::uint8_t kind = state.disasters[i].kind;
-    const std::vector<TrackPoint>& ahead = courses[i].ahead;
-    outlook.names.push_back(ahead.empty() ? DisasterName(kind) : NameNow(kind, ahead.front()));
+    outlook.names.push_back(NameNow(state.disasters[i], courses[i]));
   }
   outlook.is_known = devices.size() <= kMaxOutlookDevices;
   if (!outlook.is_known) {
@@ -338,8 +335,7 @@ std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const ch
 
 std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
                        const Course& course) {
-  const TrackPoint& now = course.ahead.front();
-  return NameNow(disaster.kind, now) + StrengthText(now) + ", centre " +
+  return NameNow(disaster, course) + StrengthText(course.ahead.front()) + ", centre " +
          DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) + " " +
          PointFromFarm(spec, disaster.x, disaster.y);
 }

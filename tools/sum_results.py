@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Adds up JUnit-style results (gtest, ctest, rostest, nosetests) under the given folders.
 
-Lists each failed case and ends with one line 'N passed, N failed, N skipped'. Exits with 1 if a
+Lists each failed case with the end of what it reports, and ends with one line 'N passed, N failed, N skipped'. Exits with 1 if a
 case failed, a file is not a result file, or no test was run. catkin_test_results is not used
 because it ignores unreadable files and does not support ctest results.
 """
 import pathlib
 import sys
 import xml.etree.ElementTree as ElementTree
+
+LAST_LINES = 12
 
 
 def outcome(case):
@@ -20,12 +22,20 @@ def outcome(case):
     return "passed"
 
 
+def last_lines(case):
+    """Returns the last lines of what a failed <testcase> reports."""
+    found = [one for kind in ("failure", "error") for one in case.iter(kind)]
+    text = "\n".join(one.text or one.get("message") or "" for one in found)
+    return [line for line in text.splitlines() if line.strip()][-LAST_LINES:]
+
+
 def cases_of(path, stems):
-    """Returns (outcome, name) of each case in a result file; an unreadable file is a failure."""
+    """Returns (outcome, name, lines) of each case in a result file; lines are empty unless it failed.
+    An unreadable file is a failure."""
     try:
         root = ElementTree.parse(path).getroot()
     except ElementTree.ParseError as error:
-        return [("failed", f"no readable result ({error})")]
+        return [("failed", f"no readable result ({error})", [])]
     found = [(outcome(case), f"{case.get('classname', '')}.{case.get('name', '')}", case)
              for case in root.iter("testcase")]
     # rostest reports the result of a test program in addition to the program's own results in
@@ -39,8 +49,8 @@ def cases_of(path, stems):
     reported = int(root.get("errors") or 0) + int(root.get("failures") or 0)
     unlisted = reported - sum(entry[0] == "failed" for entry in found)
     if not path.name.startswith("ctest-"):
-        found += [("failed", "outside its cases", None)] * max(0, unlisted)
-    return [entry[:2] for entry in found]
+        found += [("failed", "outside its cases", ElementTree.Element("testcase"))] * max(0, unlisted)
+    return [(result, name, last_lines(case)) for result, name, case in found]
 
 
 def seconds_of(path):
@@ -69,10 +79,10 @@ def main(folders):
     stems = {path.stem for path in paths}
     counts = {"passed": 0, "failed": 0, "skipped": 0}
     for path in paths:
-        for result, name in cases_of(path, stems):
+        for result, name, lines in cases_of(path, stems):
             counts[result] += 1
             if result != "passed":
-                print(f"{result.upper()} {name} ({path})")
+                print(f"{result.upper()} {name} ({path})", *lines, sep="\n    ")
     show_slowest(paths)
     print("{passed} passed, {failed} failed, {skipped} skipped".format(**counts))
     return 1 if counts["failed"] or not counts["passed"] else 0

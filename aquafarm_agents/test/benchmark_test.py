@@ -411,6 +411,13 @@ class BenchmarkTest(unittest.TestCase):
         unfit = dataclasses.replace(jobs[2], command=0, started=None)
         self.assertEqual({"unfit": "too large"}, run_all([unfit], words.append))
 
+    def test_the_command_line_loads_no_library_of_trainings_or_figures(self):
+        loaded = subprocess.run(
+            [sys.executable, "-c", "import sys, aquafarm_benchmark.cli; print(*sys.modules)"],
+            capture_output=True, text=True, check=True, timeout=60).stdout.split()
+        self.assertIn("aquafarm_benchmark.runs", loaded)
+        self.assertFalse({"distributed", "matplotlib", "scipy.stats"} & set(loaded))
+
     def test_arguments_are_refused_with_what_is_allowed(self):
         (self.folder / "full").mkdir()
         (self.folder / "full/thesis.txt").write_text("dear")

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Helpers for the tests of the agents' nodes: programs that are started, watched and ended."""
+import contextlib
 import ipaddress
 import os
 import pathlib
+import random
 import re
 import shutil
 import signal
@@ -16,6 +18,7 @@ import roslib.packages
 
 LIMIT_S = 60.0
 DATA = pathlib.Path(__file__).resolve().parent / "data"
+PORTS = range(20000, 32768)  # below those that Linux gives to sockets without one (ip(7))
 
 
 def program(package, name):
@@ -71,10 +74,13 @@ class Program:
 
 
 def free_port():
-    """A port that is currently unused."""
-    with socket.socket() as one:
-        one.bind(("", 0))
-        return one.getsockname()[1]
+    """Returns an unused port. A node of another test cannot get it before its user binds it, since
+    nodes do not choose their ports."""
+    while True:
+        port = random.SystemRandom().choice(PORTS)
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("", port))
+            return port
 
 
 class SecondHost:

@@ -171,7 +171,7 @@ class TrainNodeTest(unittest.TestCase):
 
     def test_killed_and_resumed_it_ends_in_the_same_bits(self):
         start_sim(self, self.namespace, TINY)
-        parameters = ("_steps:=300000", "_farms:=8", "_checkpoint_period_s:=0.05")
+        parameters = ("_steps:=150000", "_farms:=8", "_checkpoint_period_s:=0.05")
         whole = self.train("whole", *parameters)
         self.assertEqual(0, whole.code(), whole.words())
         for resume in ("false", "true"):
@@ -200,7 +200,7 @@ class TrainNodeTest(unittest.TestCase):
 
     def test_a_training_continues_with_a_sim_node_that_returns(self):
         sim = start_sim(self, self.namespace, TINY)
-        run = self.train("run", "_steps:=400000", "_farms:=8")
+        run = self.train("run", "_steps:=200000", "_farms:=8")
         metrics = self.folder / "run" / "metrics.csv"
         run.wait_for(lambda: metrics.exists() and metrics.stat().st_size > 4096, "episodes")
         sim.send(signal.SIGKILL)
@@ -229,13 +229,13 @@ class TrainNodeTest(unittest.TestCase):
         start_sim(self, self.namespace, TINY)
         statuses = []
         rospy.Subscriber(f"{self.namespace}/training", TrainingStatus, statuses.append)
-        run = self.train("run", "_steps:=500000", "_farms:=8")
+        run = self.train("run", "_steps:=200000", "_farms:=8")
         self.assertEqual(0, run.code(), run.words())
         phases = [status.phase for status in statuses]
         self.assertIn(TrainingStatus.TRAINING, phases)
         self.assertEqual(TrainingStatus.DONE, phases[-1])
         last = statuses[-1]
-        self.assertEqual(500000, last.steps - last.steps % 500000)
+        self.assertGreaterEqual(last.steps, 200000)
         self.assertEqual(str(self.folder / "run"), last.run_dir)
         self.assertGreaterEqual(last.evaluation_success, 0.99)
 

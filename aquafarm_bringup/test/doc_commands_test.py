@@ -17,7 +17,10 @@ import roslib.packages
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from ranch import load_script  # noqa: E402
 from script_test import LIMIT_S, PACKAGE, SCRIPT, built_tree  # noqa: E402
+
+check_arguments = load_script("check_arguments")
 
 REPOSITORY = SCRIPT.parent
 DOCS = REPOSITORY / "docs"
@@ -189,12 +192,8 @@ class DocCommandsTest(unittest.TestCase):
     def check_launch(self, verb, words):
         """Checks the launch arguments of a command that is not run; returns what is wrong."""
         arguments = [word for word in shlex.split(words) if ":=" in word]
-        done = subprocess.run(
-            [sys.executable, PACKAGE / "scripts" / "check_arguments",
-             PACKAGE / "launch" / f"{verb}.launch", *arguments],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=LIMIT_S,
-            check=False)
-        return "" if done.returncode == 0 else f"{verb} {words}\n{done.stdout}"
+        fault = check_arguments.fault(PACKAGE / "launch" / f"{verb}.launch", arguments)
+        return "" if fault is None else f"{verb} {words}\n{fault}"
 
     def test_every_command_of_the_start_pages_runs_or_has_a_reason(self):
         done, faults = set(), []

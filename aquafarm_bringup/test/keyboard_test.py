@@ -1,8 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Key handling and output of the keyboard node."""
-import importlib.machinery
-import importlib.util
 import os
 import pathlib
 import pty
@@ -14,11 +12,10 @@ import rostest
 from aquafarm_msgs.msg import (Cell, CommandResult, DeviceState, DisasterState, FarmSpec, FarmState,
                                Outcome, PortInfo, RewardTerms, RockInfo, ShipState)
 
-PATH = pathlib.Path(__file__).resolve().parent.parent / "scripts" / "keyboard"
-sys.dont_write_bytecode = True
-LOADER = importlib.machinery.SourceFileLoader("keyboard_node", str(PATH))
-keyboard = importlib.util.module_from_spec(importlib.util.spec_from_loader("keyboard_node", LOADER))
-LOADER.exec_module(keyboard)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from ranch import load_script  # noqa: E402
+
+keyboard = load_script("keyboard")
 
 
 class KeyboardTest(unittest.TestCase):
@@ -72,13 +69,13 @@ class KeyboardTest(unittest.TestCase):
         ours, theirs = pty.openpty()
         self.addCleanup(os.close, ours)
         self.addCleanup(os.close, theirs)
-        done = subprocess.run([str(PATH), "__name:=keys", "_shpi:=1"], stdin=theirs, text=True,
+        done = subprocess.run([keyboard.__file__, "__name:=keys", "_shpi:=1"], stdin=theirs, text=True,
                               stderr=subprocess.PIPE, timeout=60, check=False)
         self.assertEqual(2, done.returncode, done.stderr)
         self.assertIn("keyboard: ~shpi: unknown parameter (did you mean 'ship'?)", done.stderr)
 
     def test_without_a_terminal_it_says_what_it_needs(self):
-        done = subprocess.run([str(PATH)], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
+        done = subprocess.run([keyboard.__file__], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
                               text=True, timeout=60, check=False)
         self.assertEqual(2, done.returncode)
         self.assertIn("input is not a terminal", done.stderr)

@@ -4,13 +4,15 @@
 import os
 import pathlib
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
 import unittest
 
 import rostest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from ranch import free_port  # noqa: E402
 
 PROGRAM = pathlib.Path(__file__).resolve().parent.parent / "scripts" / "quiet_roslaunch"
 LAUNCH = """<launch>
@@ -19,12 +21,6 @@ LAUNCH = """<launch>
         args="{}"/>
 </launch>
 """
-
-
-def free_port():
-    with socket.socket() as server:
-        server.bind(("127.0.0.1", 0))
-        return server.getsockname()[1]
 
 
 class QuietRoslaunchTest(unittest.TestCase):

@@ -1,19 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs a launch file as a user would, on its own port and in its own folders, with a time limit."""
+"""Runs a launch file as a user would, on its own port and in its own folders, with a time limit.
+Loads programs of scripts/ as modules."""
+import importlib.machinery
+import importlib.util
 import os
 import pathlib
 import signal
-import socket
 import subprocess
+import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "aquafarm_agents" / "test"))
+from processes import free_port  # noqa: E402, F401: tests import it from here
 
-def free_port():
-    """Returns a port that is currently unused."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+
+def load_script(name):
+    """Returns a program of scripts/ as a module."""
+    sys.dont_write_bytecode = True  # a new file in scripts/ would count as a changed source
+    path = pathlib.Path(__file__).resolve().parent.parent / "scripts" / name
+    loader = importlib.machinery.SourceFileLoader(name, str(path))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+    loader.exec_module(module)
+    return module
 
 
 def verify(*bags):

@@ -127,7 +127,7 @@ class RecordReplayTest(unittest.TestCase):
         bag = self.folder / "a day.bag"
         with Ranch("record", "of:=evaluate", "policy:=random", "episodes:=1", f"bag:={bag}",
                    "viz:=false", "rate_hz:=100") as ranch:
-            self.assertEqual(0, ranch.exit_code(60), ranch.words())
+            self.assertEqual(0, ranch.exit_code(90), ranch.words())
         self.assertTrue(bag.exists())
         bag.unlink()
 

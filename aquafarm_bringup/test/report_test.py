@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The report of a run and of a benchmark: required contents and error messages."""
 import base64
+import contextlib
 import csv
 import html
 import html.parser
+import io
 import json
 import os
 import pathlib
@@ -15,6 +17,7 @@ import sys
 import tempfile
 import time
 import unittest
+from unittest import mock
 
 import cv2
 import numpy as np
@@ -25,7 +28,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from aquafarm_report import (curves, intervals, outcomes, references, report,  # noqa: E402
                              videos)
 from aquafarm_report.page import page as make_page, tiles  # noqa: E402
-from ranch import Ranch  # noqa: E402
+from ranch import Ranch, load_script  # noqa: E402
 
 SCENARIO = """
 name: cove
@@ -131,25 +134,27 @@ class ReportTest(unittest.TestCase):
         browser.parent.mkdir()
         browser.write_text(f"#!/bin/sh\necho \"$1\" >{opened}.part && mv {opened}.part {opened}\n")
         browser.chmod(0o755)
-        page = self.folder / "opened.html"
-        arguments = ("aquafarm_bringup", "make_report", "--open", "-o", page, "--episodes", 2,
-                     self.trained)
-        environment = dict(os.environ, PATH=f"{browser.parent}:{os.environ['PATH']}")
-        environment.pop("DISPLAY", None)
-        self.assertEqual(0, run(*arguments, env=environment)[0])
+        without = ":".join(folder for folder in os.environ["PATH"].split(":")
+                           if not pathlib.Path(folder, "xdg-open").exists())
+        page = self.trained / "report.html"
+        self.assertEqual("", self.open_page(page, PATH=f"{browser.parent}:{without}", DISPLAY=""))
         self.assertFalse(opened.exists())  # there is no display
-        environment["DISPLAY"] = ":7"
-        self.assertEqual(0, run(*arguments, env=environment)[0])
+        self.assertEqual("", self.open_page(page, PATH=f"{browser.parent}:{without}", DISPLAY=":7"))
         end = time.monotonic() + 60
         while not opened.exists() and time.monotonic() < end:
             time.sleep(0.05)
         self.assertEqual(f"{page}\n", opened.read_text())
-        environment["PATH"] = ":".join(
-            folder for folder in os.environ["PATH"].split(":")
-            if not pathlib.Path(folder, "xdg-open").exists())
-        code, words = run(*arguments, env=environment)
-        self.assertEqual(0, code, words)
-        self.assertIn("make_report: not opened: ", words)
+        self.assertIn("make_report: not opened: ", self.open_page(page, PATH=without, DISPLAY=":7"))
+
+    def open_page(self, page, **environment):
+        """Runs make_report --open, as if it had made this page; returns its errors."""
+        module = load_script("make_report")
+        with mock.patch.object(module, "make", return_value=page), \
+                mock.patch.object(sys, "argv", ["make_report", "--open", str(self.trained)]), \
+                mock.patch.dict(os.environ, WAYLAND_DISPLAY="", **environment), \
+                contextlib.redirect_stderr(io.StringIO()) as errors:
+            self.assertEqual(0, module.main())
+        return errors.getvalue()
 
     def test_it_loads_nothing_from_anywhere(self):
         for address in self.page.addresses:
@@ -459,6 +464,7 @@ class ReportTest(unittest.TestCase):
                           "/proc/none.html", env=dict(os.environ))
         self.assertEqual(2, code)
         self.assertIn("make_report: /proc/none.html: cannot be written: ", words)
+        self.assertFalse(list(self.folder.rglob("*.part")))
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ except ImportError:  # the package stands alone; its tests are skipped
 PACKAGE = pathlib.Path(__file__).resolve().parent.parent
 SCRIPT = PACKAGE.parent / "aquafarm"
 TOOLS = SCRIPT.parent / "tools"
-LIMIT_S = 60
+LIMIT_S = 120
 INTERRUPTED = 130
 
 

@@ -113,14 +113,14 @@ class TrainLaunchTest(unittest.TestCase):
         self.assertTrue(list(self.run_dir.rglob("step_*.ckpt")), "nothing was saved")
 
     def test_a_training_continues_after_its_sim_node_returns(self):
-        with self.train("episodes:=20000") as ranch:
+        with self.train("episodes:=8000") as ranch:
             self.wait_until_training(ranch)
             os.kill(ranch.node_pid("sim_node"), signal.SIGKILL)
             self.assertEqual(0, ranch.exit_code(90), ranch.words())
             self.assertIn("starting it again", ranch.words())
 
     def test_ctrl_c_saves_and_resume_ends_in_the_bits_of_a_run_never_stopped(self):
-        begun = ("episodes:=6000", "algorithm:=sarsa", "options:=gamma=0.9 mask_illegal=true",
+        begun = ("episodes:=3000", "algorithm:=sarsa", "options:=gamma=0.9 mask_illegal=true",
                  "exploration:=epsilon_greedy:0.2", "credit:=shared", "seed:=3", "farms:=32")
         with self.train(*begun, "checkpoint_period_s:=1000") as ranch:
             self.wait_until_training(ranch)

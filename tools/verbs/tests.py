@@ -10,8 +10,8 @@ import subprocess
 import sys
 import time
 
-from .workspace import (PYTHON, ROOT, WS, bootstrap, build_core, enter_ros, run_bootstrap, run_child,
-                        run_children, say, use_ccache)
+from .workspace import (PYTHON, ROOT, WS, bootstrap, bootstrap_command, build_core, enter_ros,
+                        run_bootstrap, run_child, run_children, say, use_ccache)
 
 RESULTS = WS / "results"
 CORES = ("aquafarm_sim", "aquafarm_agents")
@@ -30,8 +30,10 @@ LAST_LINES = 20
 # CI ends the test command after 90 minutes. Checks of the wheel that begin later than this after the
 # start are skipped, and one that has begun may take a quarter of an hour more.
 WHEEL_END_S = 55 * 60
-# Of a step next to others: it gets what processor time they leave.
-IDLE = ["chrt", "--idle", "0"]
+# Of a step next to others: it gets what processor time they leave. Linux first shares the time among
+# sessions by their "autogroup" (sched(7)), and within each by class, so both are set.
+IDLE = ["setsid", "bash", "-c",
+        'echo 19 2>/dev/null >/proc/self/autogroup; exec chrt --idle 0 "$@"', "idle"]
 
 
 @dataclasses.dataclass
@@ -121,13 +123,24 @@ def is_empty(path):
     return not path.is_file() or path.stat().st_size == 0
 
 
-def build(stages):
+def build_workspace():
+    """Builds the workspace, and installs what some tests need at the same time."""
     extras = {**EXTRAS, **(SLURM if os.environ.get("AQUAFARM_TEST_SLURM") == "1" else {})}
-    for left_out, packages in extras.items():
-        if run_bootstrap("--install", *packages) != 0:
+    code, *codes = run_children([
+        (bootstrap_command("build"), {}),
+        *((bootstrap_command("--install", *packages), {"stdout": subprocess.DEVNULL})
+          for packages in extras.values())])
+    if code != 0:
+        sys.exit(code)
+    for (left_out, packages), installed in zip(extras.items(), codes):
+        if installed != 0:
             say(f"{', '.join(packages)} cannot be installed: {left_out}")
+
+
+def build(stages):
+    bootstrap("setup")
     stages.begin("building the workspace")
-    bootstrap("build")
+    build_workspace()
     use_ccache()
     stages.begin("building the cores with plain cmake")
     for core in CORES:

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from scipy import stats
 
 WINDOW = 50  # episodes in a moving mean
 BAND = 0.05  # half-width of the band of a converged learner, as a fraction of the plateau
@@ -79,6 +78,8 @@ def bootstrap_interval(values, statistic=interquartile_mean, level=0.95, draws=2
     """Returns the percentile bootstrap (Efron 1979) of a statistic over runs: (low, high)."""
     if len(values) < 2:
         return (math.nan, math.nan)
+    from scipy import stats  # takes a third of a second to load
+
     found = stats.bootstrap((np.asarray(values, dtype=float),), statistic, vectorized=False,
                             n_resamples=draws, confidence_level=level, method="percentile",
                             random_state=np.random.default_rng(seed)).confidence_interval
@@ -87,6 +88,8 @@ def bootstrap_interval(values, statistic=interquartile_mean, level=0.95, draws=2
 
 def wilson_interval(hits, count, level=0.95):
     """Returns the interval of a proportion (Wilson 1927): (low, high)."""
+    from scipy import stats
+
     found = stats.binomtest(int(hits), count).proportion_ci(level, method="wilson")
     return (float(found.low), float(found.high))
 

@@ -43,6 +43,7 @@ class Contestant:
     name: str  # of the row and of its folder
     label: str  # for tables and figures
     colour: str
+    dashes: typing.Any = "-"  # linestyle of matplotlib
     algorithm: str = ""  # name for --algorithm and policy; empty: the row's name
     learns: bool = True
     exploration: str = ""  # empty: the algorithm's default
@@ -130,10 +131,11 @@ OPTIMUM = Contestant("clairvoyant", "clairvoyant", "#000000", learns=False, cost
 PLAIN_SCENARIO = "paper_plain"
 
 
-def _printed(one, colour, options, cost):
-    """Returns a row with the settings printed in the paper, on the plain observation."""
+def _printed(one, options, cost):
+    """Returns a row with the settings printed in the paper, on the plain observation. Its line has
+    the learner's colour and is dashed."""
     return dataclasses.replace(one, name=f"{one.name}_printed", algorithm=one.algorithm_name,
-                               label=f"{one.label}, printed", colour=colour, options=options,
+                               label=f"{one.label}, printed", dashes=(0, (3, 1)), options=options,
                                exploration="", cost=cost, scenario=PLAIN_SCENARIO)
 
 
@@ -158,10 +160,10 @@ _PAPER_REPLAY = ("priority_exponent=0", "loss=mse", "max_grad_norm=0", "double_d
 
 _PAPER_CONTESTANTS = (
     dataclasses.replace(_RANDOM, scenario=PLAIN_SCENARIO),
-    _printed(_Q_LEARNING, "#332288", ("gamma=0.99",), cost=0.02),
-    _printed(_SARSA, "#117733", ("gamma=0.99",), cost=0.02),
-    _printed(_DQN, "#999933", ("preset=paper", "device=cpu"), cost=2.0),
-    _printed(_LSTM_DQN, "#882255", ("preset=paper", "device=cpu"), cost=4.0),
+    _printed(_Q_LEARNING, ("gamma=0.99",), cost=0.02),
+    _printed(_SARSA, ("gamma=0.99",), cost=0.02),
+    _printed(_DQN, ("preset=paper", "device=cpu"), cost=2.0),
+    _printed(_LSTM_DQN, ("preset=paper", "device=cpu"), cost=4.0),
     _tuned(_Q_LEARNING),
     _tuned(_SARSA),
     _tuned(_DQN),

@@ -14,7 +14,6 @@ import socket
 import subprocess
 import time
 
-from distributed import get_worker
 
 TOPIC = "aquafarm"  # of the events that report each started command
 
@@ -88,6 +87,8 @@ def perform(folder, commands, resumable, cwd, environment):
     resumes, words (last line of the log)}, or None once no client wants the run any more. Raises
     RuntimeError, one line, if this worker cannot execute the run.
     """
+    from distributed import get_worker  # takes a third of a second to load
+
     worker, host = get_worker(), socket.gethostname()
     key = worker.get_current_task()
     folder = pathlib.Path(folder)

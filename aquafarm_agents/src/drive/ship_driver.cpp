@@ -14,6 +14,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm_agents/link/call_limit.h"
 #include "aquafarm_agents/link/service_link.h"
 #include "aquafarm_agents/link/ship_claim.h"
 #include "aquafarm_agents/link/slow_warning.h"
@@ -29,7 +30,6 @@ using aquafarm::InputError;
 using aquafarm_msgs::Outcome;
 
 constexpr double kPollPeriod_s = 0.01;
-constexpr double kRetryPeriod_s = 0.1;
 
 }  // namespace
 

@@ -31,7 +31,6 @@ static_assert(int{StepResult::PLANES} == int{aquafarm::kPlanesField});
 static_assert(int{StepResult::HASHES} == int{aquafarm::kHashesField});
 static_assert(int{StepResult::TERMS} == int{aquafarm::kTermsField});
 
-constexpr double kRetryPeriod_s = 0.1;
 // Max restarts without a completed episode. More indicate another client on the same farms.
 constexpr int kMaxRestarts = 20;
 // Observation types that the sim node also provides.

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Contents of the report of a run or of a benchmark."""
+import contextlib
 import csv
 import json
 import os
@@ -103,9 +104,9 @@ CAPTIONS = {
     "mean_square_error": "50-episode mean square error of the value estimates (Fig. 12c): median of "
                          "the runs, shaded their middle half, thin each run",
     "repeated_trainings": "50-episode mean return over the runs of each learner (Fig. 14); shaded: "
-                          "one standard deviation",
-    "mean_score": "Return per step during the training (Fig. 13); shaded: one standard deviation "
-                  "over the runs",
+                          "lowest to highest run",
+    "mean_score": "Return per step during the training (Fig. 13); shaded: lowest to highest "
+                  "run",
     "evaluation": "Return in the evaluation episodes, with 95 % intervals",
     "losses": "Losses of the trained policies in money",
 }
@@ -173,23 +174,32 @@ def make_one(source, folder, episodes):
     raise ReportError(f"{source}: neither a run (run.json) nor a benchmark (results.json)")
 
 
+def make_text(sources, episodes):
+    """Page of a run or benchmark, or of the comparison of runs."""
+    with tempfile.TemporaryDirectory(prefix="aquafarm_report_") as folder:
+        work = pathlib.Path(folder)
+        try:
+            if len(sources) == 1:
+                return make_one(sources[0], work, episodes)
+            return compare.report(sources, work, episodes, read_metrics)
+        except (OSError, ValueError, KeyError) as error:
+            named = ", ".join(map(str, sources))
+            raise ReportError(f"{named}: cannot be reported on: {error!r}") from error
+
+
 def make(sources, output, episodes=EPISODES):
     """Writes the report of a run or benchmark, or the comparison of runs; returns its path."""
     sources = [pathlib.Path(source).resolve() for source in sources]
     default = sources[0] / "report.html" if len(sources) == 1 else "comparison.html"
     output = pathlib.Path(output or default).resolve()
-    with tempfile.TemporaryDirectory(prefix="aquafarm_report_") as folder:
-        work = pathlib.Path(folder)
-        try:
-            text = (make_one(sources[0], work, episodes) if len(sources) == 1 else
-                    compare.report(sources, work, episodes, read_metrics))
-        except (OSError, ValueError, KeyError) as error:
-            named = ", ".join(map(str, sources))
-            raise ReportError(f"{named}: cannot be reported on: {error!r}") from error
+    temporary = output.with_name(output.name + ".part")
     try:
-        temporary = output.with_name(output.name + ".part")
-        temporary.write_text(text, encoding="utf-8")
+        temporary.touch()  # fails before the work, which may take minutes
+        temporary.write_text(make_text(sources, episodes), encoding="utf-8")
         os.replace(temporary, output)
     except OSError as error:
         raise ReportError(f"{output}: cannot be written: {error.strerror}") from None
+    finally:
+        with contextlib.suppress(OSError):
+            temporary.unlink(missing_ok=True)
     return output

@@ -39,6 +39,15 @@ function(aquafarm_compile_by_folder target)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
+# aquafarm_compile_as_one(TARGET): compiles all sources of a target as one: for nodes, where the headers
+# of ROS take most of the time of each folder.
+function(aquafarm_compile_as_one target)
+  if(AQUAFARM_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
+endfunction()
+
 function(aquafarm_set_warnings target)
   # Without contraction of a*b+c to a fused operation, results are bit-identical on every machine.
   # Functions of the library are never interposed, so calls inside it may be inlined.
@@ -78,10 +87,13 @@ function(aquafarm_compile_fast target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# Adds test/<folder>/<name>.cpp as the ctest test <name>, for each path <folder>/<name> of `paths`. The
-# tests of a folder share the program <folder>_tests, which links ARGN. The result of each is where
-# catkin expects it. Sets AQUAFARM_TEST_PROGRAMS to the programs.
+# aquafarm_add_core_tests(PATHS LIBRARY… [TOGETHER FOLDER…]): adds test/<folder>/<name>.cpp as the ctest
+# test <name>, for each path <folder>/<name>. The tests of a folder share the program <folder>_tests,
+# which links the libraries; those of all FOLDERs share that of the first one. The result of each is
+# where catkin expects it. Sets AQUAFARM_TEST_PROGRAMS to the programs.
 function(aquafarm_add_core_tests paths)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "TOGETHER")
+  list(TRANSFORM arg_TOGETHER PREPEND test/ OUTPUT_VARIABLE together)
   if(NOT TARGET aquafarm_tests_main)
     add_library(aquafarm_tests_main OBJECT
       ${AQUAFARM_CORE_CMAKE_DIR}/../test/support/main.cpp)
@@ -93,6 +105,9 @@ function(aquafarm_add_core_tests paths)
   foreach(path IN LISTS paths)
     get_filename_component(name ${path} NAME)
     get_filename_component(folder ${path} DIRECTORY)
+    if(folder IN_LIST arg_TOGETHER)
+      list(GET arg_TOGETHER 0 folder)
+    endif()
     set(program ${folder}_tests)
     if(NOT TARGET ${program})
       add_executable(${program} $<TARGET_OBJECTS:aquafarm_tests_main>)
@@ -105,11 +120,11 @@ function(aquafarm_add_core_tests paths)
   endforeach()
   foreach(program IN LISTS programs)
     target_include_directories(${program} PRIVATE test src)
-    target_link_libraries(${program} PRIVATE ${ARGN} GTest::gtest)
+    target_link_libraries(${program} PRIVATE ${arg_UNPARSED_ARGUMENTS} GTest::gtest)
     target_compile_definitions(${program} PRIVATE AQUAFARM_CORE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
     aquafarm_set_warnings(${program})
     aquafarm_compile_fast(${program})
-    aquafarm_compile_by_folder(${program})
+    aquafarm_compile_by_folder(${program} ${together})
   endforeach()
   set(AQUAFARM_TEST_PROGRAMS ${programs} PARENT_SCOPE)
 endfunction()
@@ -122,7 +137,12 @@ function(aquafarm_add_fuzz_target name)
   if(AQUAFARM_FUZZ)
     target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
   else()
-    target_sources(fuzz_${name} PRIVATE ${AQUAFARM_CORE_CMAKE_DIR}/../fuzz/mutate.cpp)
+    if(NOT TARGET aquafarm_mutate)
+      add_library(aquafarm_mutate OBJECT ${AQUAFARM_CORE_CMAKE_DIR}/../fuzz/mutate.cpp)
+      target_link_libraries(aquafarm_mutate PRIVATE ${ARGN})
+      aquafarm_set_warnings(aquafarm_mutate)
+    endif()
+    target_sources(fuzz_${name} PRIVATE $<TARGET_OBJECTS:aquafarm_mutate>)
   endif()
   aquafarm_set_warnings(fuzz_${name})
 endfunction()

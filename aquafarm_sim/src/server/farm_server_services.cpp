@@ -223,7 +223,7 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
     }
     const aquafarm::Layout& layout = batch_->farm(0).layout();
     const std::int64_t cells =
-        farms * static_cast<std::int64_t>(layout.cells.size() + layout.routes.size());
+        farms * (layout.cells.size() + static_cast<std::int64_t>(layout.routes.size()));
     if (scenario_->layout == aquafarm::LayoutMode::kPerEpisode && cells > kMaxDrawnCells) {
       return Answer(Outcome::BAD_VALUE,
                     "farms: " + std::to_string(farms) + " layouts would have " +

@@ -17,8 +17,6 @@ const QColor kReturn(0xff, 0xd4, 0x3b);
 const QColor kSuccess(0x5f, 0xe0, 0x8a);
 const QColor kWords(0xe6, 0xed, 0xf3);
 
-QString Text(const std::string& text) { return QString::fromStdString(text); }
-
 // Draws text around a point: -1 to its left, 0 below it, 1 to its right.
 void DrawTick(QPainter& painter, const QPointF& at, const QString& text, int side) {
   const QSizeF size(80.0, painter.fontMetrics().height());

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QString>
 #include <QWidget>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "aquafarm_viz/scene/ranch_model.h"
 
 namespace aquafarm_viz {
+
+inline QString Text(const std::string& text) { return QString::fromStdString(text); }
 
 /// The part of an axis that is shown.
 struct CurveRange {

@@ -16,8 +16,6 @@
 namespace aquafarm_viz {
 namespace {
 
-QString Text(const std::string& text) { return QString::fromStdString(text); }
-
 QTableWidget* MakeTable(const RanchModel::Row& columns, int rows_seen) {
   auto* table = new QTableWidget(0, static_cast<int>(columns.size()));
   QStringList names;

@@ -12,7 +12,7 @@ namespace {
 
 namespace nn = torch::nn;
 
-constexpr std::int64_t kHidden = 64;
+constexpr std::int64_t kHiddenSize = 64;
 constexpr std::int64_t kSize = 32;     // length of φ
 constexpr double kForwardShare = 0.2;  // β of the paper
 constexpr double kLearningRate = 1e-3;
@@ -20,7 +20,8 @@ constexpr double kGradientLimit = 10.0;
 constexpr std::size_t kBatch = 64;  // transitions per update
 
 nn::Sequential TwoLayers(std::int64_t inputs, std::int64_t outputs) {
-  return nn::Sequential(nn::Linear(inputs, kHidden), nn::ReLU(), nn::Linear(kHidden, outputs));
+  return nn::Sequential(nn::Linear(inputs, kHiddenSize), nn::ReLU(),
+                        nn::Linear(kHiddenSize, outputs));
 }
 
 template <typename T>

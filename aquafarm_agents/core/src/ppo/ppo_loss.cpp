@@ -71,7 +71,7 @@ void ActionDistribution::Compute(const float* outputs, const ActionMask* masks,
   log_probs.resize(rows, kActionCount);
   probs.resize(rows, kActionCount);
   for (Index row = 0; row < rows; ++row) {
-    const float* const logits = outputs + row * kActorCriticOutputs;
+    const float* const logits = outputs + static_cast<std::size_t>(row) * kActorCriticOutputs;
     const ActionMask mask = masks[row];
     for (int a = 0; a < kActionCount; ++a) {
       log_probs(row, a) = ((mask >> a) & 1U) != 0 ? logits[a] : kFarBelow;

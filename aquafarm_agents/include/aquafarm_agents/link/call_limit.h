@@ -12,6 +12,8 @@
 
 namespace aquafarm_agents {
 
+inline constexpr double kRetryPeriod_s = 0.1;  ///< between attempts to reach a sim node
+
 /// Adds the timeout that roscpp lacks to service calls: a call that exceeds the limit is aborted
 /// and returns false. For a single caller whose calls do not overlap.
 class CallLimit {

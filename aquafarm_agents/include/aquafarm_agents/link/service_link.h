@@ -50,8 +50,6 @@ class ServiceLink {
   }
 
  private:
-  inline static constexpr double kRetryPeriod_s = 0.1;
-
   ros::NodeHandle node_;
   double wait_limit_s_;
   const std::atomic<bool>* stop_;

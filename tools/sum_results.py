@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Adds up JUnit-style results (gtest, ctest, rostest, nosetests) under the given folders.
 
-Lists each failed case with the end of what it reports, and ends with one line 'N passed, N failed, N skipped'. Exits with 1 if a
+Lists each failed case with the last lines of its report, and ends with one line 'N passed, N failed,
+N skipped'. Exits with 1 if a
 case failed, a file is not a result file, or no test was run. catkin_test_results is not used
 because it ignores unreadable files and does not support ctest results.
 """
@@ -24,9 +25,11 @@ def outcome(case):
 
 def last_lines(case):
     """Returns the last lines of what a failed <testcase> reports."""
-    found = [one for kind in ("failure", "error") for one in case.iter(kind)]
-    text = "\n".join(one.text or one.get("message") or "" for one in found)
-    return [line for line in text.splitlines() if line.strip()][-LAST_LINES:]
+    texts = [(one.text or "").strip() or one.get("message") or ""
+             for kind in ("failure", "error") for one in case.iter(kind)]
+    if texts == ["Failed"] or texts == [""]:  # of ctest, which reports the output in addition
+        texts = [case.findtext("system-out") or ""]
+    return [line for line in "\n".join(texts).splitlines() if line.strip()][-LAST_LINES:]
 
 
 def cases_of(path, stems):

@@ -10,7 +10,7 @@ import rosunit
 from matplotlib.text import Text
 
 from aquafarm_benchmark import figures, route_figure
-from aquafarm_benchmark.protocol import CONTESTANTS
+from aquafarm_benchmark.protocol import CONTESTANTS, PROFILES
 
 WINDOW = 50
 OPTIMUM = {"clairvoyant": 90.0}
@@ -195,6 +195,14 @@ class FiguresTest(unittest.TestCase):
         panels = [set(self.lines(axes)) for axes in figure.axes]
         self.assertEqual([{"LSTM-DQN"}, {"SARSA"}, {"SARSA", "LSTM-DQN"}], panels)
 
+    def test_a_row_with_printed_settings_has_the_colour_of_its_learner_dashed(self):
+        printed = next(one for one in PROFILES["paper"].contestants if one.name == "sarsa_printed")
+        self.runs["sarsa_printed"] = self.runs["sarsa"]
+        figures.plot_repeated(self.axes, [by_name("sarsa"), printed], self.runs, {})
+        ours, theirs = self.axes.lines
+        self.assertEqual(ours.get_color(), theirs.get_color())
+        self.assertEqual(("-", "--"), (ours.get_linestyle(), theirs.get_linestyle()))
+
     def test_fig_14_shades_from_the_lowest_run_to_the_highest(self):
         figures.plot_repeated(self.axes, self.contestants, self.runs, {})
         _, y = self.lines()["SARSA, 2 runs"]
@@ -249,16 +257,19 @@ class FiguresTest(unittest.TestCase):
                  {"cell": [0, 0], "aboard": 1, "delivered": 0}]
         steps = [{**step, "disasters": [storm]} for step in steps[:3]] + [
             {**steps[3], "disasters": []}]
-        route = {"chart": chart, "steps": steps}
+        route = {"chart": chart, "steps": steps, "reason": "time_limit", "return": -12.4}
         self.assertEqual([[3, 2]], route_figure.devices_left(route))
-        route_figure.plot_unfinished(self.axes, "ranch 7", route)
+        route_figure.plot_unfinished(self.axes, "ranch 7", route, (9, 5))
         marks = {marks.get_label(): marks.get_offsets().tolist()
                  for marks in self.axes.collections}
         self.assertEqual([[3, 2]], marks["device that was not fetched"])
         self.assertEqual([[0, 0]], marks["ship at the end"])
         self.assertIn("ring of a disaster in the last step",
                       [patch.get_label() for patch in self.axes.patches])
-        self.assertEqual("ranch 7: 0 of 2 in port after 3 steps", self.axes.get_title())
+        self.assertEqual("ranch 7: 0 of 2 devices in port\ntime limit after 3 steps, return -12",
+                         self.axes.get_title())
+        self.assertEqual((8.5, 4.5), (self.axes.get_xlim()[1], self.axes.get_ylim()[1]),
+                         "the scale of the largest ranch")
 
 
 if __name__ == "__main__":

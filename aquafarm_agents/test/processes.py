@@ -18,7 +18,7 @@ import roslib.packages
 
 LIMIT_S = 60.0
 DATA = pathlib.Path(__file__).resolve().parent / "data"
-PORTS = range(20000, 32768)  # below those that Linux gives to sockets without one (ip(7))
+PORTS = range(20000, 32768)  # ip_local_port_range begins at 32768 (ip(7))
 
 
 def program(package, name):
@@ -74,13 +74,12 @@ class Program:
 
 
 def free_port():
-    """Returns an unused port. A node of another test cannot get it before its user binds it, since
-    nodes do not choose their ports."""
-    while True:
-        port = random.SystemRandom().choice(PORTS)
+    """Returns an unused port below the range from which Linux assigns ports to nodes."""
+    for port in random.SystemRandom().sample(PORTS, 100):
         with socket.socket() as probe, contextlib.suppress(OSError):
             probe.bind(("", port))
             return port
+    raise AssertionError(f"of 100 ports from {PORTS.start} to {PORTS.stop - 1} none is free")
 
 
 class SecondHost:

@@ -235,7 +235,7 @@ class TrainNodeTest(unittest.TestCase):
         self.assertIn(TrainingStatus.TRAINING, phases)
         self.assertEqual(TrainingStatus.DONE, phases[-1])
         last = statuses[-1]
-        self.assertGreaterEqual(last.steps, 200000)
+        self.assertTrue(200000 <= last.steps < 400000, last.steps)
         self.assertEqual(str(self.folder / "run"), last.run_dir)
         self.assertGreaterEqual(last.evaluation_success, 0.99)
 

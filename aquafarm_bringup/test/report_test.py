@@ -137,9 +137,10 @@ class ReportTest(unittest.TestCase):
         without = ":".join(folder for folder in os.environ["PATH"].split(":")
                            if not pathlib.Path(folder, "xdg-open").exists())
         page = self.trained / "report.html"
-        self.assertEqual("", self.open_page(page, PATH=f"{browser.parent}:{without}", DISPLAY=""))
+        with_browser = f"{browser.parent}:{os.environ['PATH']}"
+        self.assertEqual("", self.open_page(page, PATH=with_browser, DISPLAY=""))
         self.assertFalse(opened.exists())  # there is no display
-        self.assertEqual("", self.open_page(page, PATH=f"{browser.parent}:{without}", DISPLAY=":7"))
+        self.assertEqual("", self.open_page(page, PATH=with_browser, DISPLAY=":7"))
         end = time.monotonic() + 60
         while not opened.exists() and time.monotonic() < end:
             time.sleep(0.05)
@@ -460,11 +461,29 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(2, code)
         self.assertIn("make_report: ", words)
         self.assertEqual(1, len(words.splitlines()), words)
-        code, words = run("aquafarm_bringup", "make_report", self.trained, "--episodes", 3, "-o",
-                          "/proc/none.html", env=dict(os.environ))
-        self.assertEqual(2, code)
-        self.assertIn("make_report: /proc/none.html: cannot be written: ", words)
-        self.assertFalse(list(self.folder.rglob("*.part")))
+
+    def test_a_file_that_cannot_be_written_is_refused_before_the_work(self):
+        folder = self.folder / "place"
+        folder.mkdir()
+        for output, words in ((self.folder / "none/page.html", "No such file or directory"),
+                              (folder, "it is a folder")):
+            with mock.patch.object(report, "make_text", side_effect=AssertionError("it worked")), \
+                    self.assertRaisesRegex(report.ReportError,
+                                           f"^{output}: cannot be written: {words}; .* -o$"):
+                report.make([self.trained], output)
+
+    def test_a_report_that_fails_leaves_the_page_before_and_no_other_file(self):
+        page = self.folder / "place.html"
+        page.write_text("before")
+        files = sorted(self.folder.iterdir())
+        with mock.patch.object(report, "make_text", side_effect=report.ReportError("no films")), \
+                self.assertRaisesRegex(report.ReportError, "^no films$"):
+            report.make([self.trained], page)
+        self.assertEqual(("before", files), (page.read_text(), sorted(self.folder.iterdir())))
+
+    def test_a_folder_that_is_not_there_is_named(self):
+        with self.assertRaisesRegex(report.ReportError, "/none: neither a run"):
+            report.make([self.folder / "none"], None)
 
 
 if __name__ == "__main__":

@@ -10,14 +10,15 @@ import subprocess
 import sys
 import time
 
-from .workspace import (PYTHON, ROOT, WS, bootstrap, bootstrap_command, build_core, enter_ros,
-                        run_bootstrap, run_child, run_children, say, use_ccache)
+from .workspace import (PYTHON, ROOT, WS, bootstrap, build_core, enter_ros, run_bootstrap, run_child,
+                        run_children, say, use_ccache)
 
 RESULTS = WS / "results"
 CORES = ("aquafarm_sim", "aquafarm_agents")
 # What some tests need and the suite does not: packages, and what is left out without them.
 EXTRAS = {"the tests of HTML pages are skipped": ("chromium", "chromium-driver", "python3-selenium"),
-          "the check of locks is skipped": ("clang-14",),
+          "the check of locks is skipped, and the isolated workspace is built with g++":
+          ("clang-14",),
           "the check of clang-tidy is skipped": ("clang-tidy-14",)}
 SLURM = {"the tests of batch files are skipped": ("munge", "slurmctld", "slurmd", "slurm-client")}
 # Core tests that take more than 20 s; --fast leaves them out.
@@ -30,10 +31,8 @@ LAST_LINES = 20
 # CI ends the test command after 90 minutes. Checks of the wheel that begin later than this after the
 # start are skipped, and one that has begun may take a quarter of an hour more.
 WHEEL_END_S = 55 * 60
-# Of a step next to others: it gets what processor time they leave. Linux first shares the time among
-# sessions by their "autogroup" (sched(7)), and within each by class, so both are set.
-IDLE = ["setsid", "bash", "-c",
-        'echo 19 2>/dev/null >/proc/self/autogroup; exec chrt --idle 0 "$@"', "idle"]
+IDLE = ["chrt", "--idle", "0"]
+END_S = 20  # time for a step next to others to end after SIGTERM
 
 
 @dataclasses.dataclass
@@ -45,6 +44,7 @@ class Step:
     xml: pathlib.Path | None = None  # the results that it writes; None: only its exit code counts
     is_shown: bool = False  # otherwise its output goes to the log
     variables: dict = dataclasses.field(default_factory=dict)  # of the environment
+    is_idle: bool = False  # gets what processor time the others leave, if it runs next to others
 
 
 class Stages:
@@ -74,16 +74,19 @@ class Stages:
 
     @contextlib.contextmanager
     def next_to(self, *steps):
-        """Runs steps next to what the block does, which has precedence; waits for their ends when it
-        ends, and ends them if it raises or a signal ends this process."""
+        """Runs steps, in sessions of their own, next to what the block does; waits for their ends when
+        it ends, and ends them if it raises or a signal ends this process."""
         with contextlib.ExitStack() as stack:
             for number in (signal.SIGTERM, signal.SIGHUP):
                 stack.callback(signal.signal, number, signal.signal(number, exit_by_signal))
             children = []
             for step in steps:
-                child = stack.enter_context(subprocess.Popen(
-                    [*IDLE, *map(str, step.command)], **options_of(step, stack)))
-                stack.callback(child.terminate)
+                command = [*(IDLE if step.is_idle else []), *map(str, step.command)]
+                child = stack.enter_context(subprocess.Popen(command, start_new_session=True,
+                                                             **options_of(step, stack)))
+                stack.callback(end_session, child)
+                if step.is_idle:
+                    lower_weight(child.pid)
                 children.append(child)
             yield
             for step, child in zip(steps, children):
@@ -115,6 +118,29 @@ def options_of(step, stack):
     return options
 
 
+def lower_weight(session):
+    """Gives the processes of a session the lowest weight among sessions. Linux first shares the
+    processor time among sessions ("autogroup", sched(7)), and within each by class, so the idle class
+    alone leaves a step its share. Linux accepts ten changes a second of users without privileges."""
+    for _ in range(10):
+        try:
+            pathlib.Path(f"/proc/{session}/autogroup").write_text("19", encoding="ascii")
+            return
+        except BlockingIOError:
+            time.sleep(0.1)
+        except OSError:  # without autogroups, or the step has ended
+            return
+
+
+def end_session(child):
+    """Ends what is left of the session that a child leads."""
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        with contextlib.suppress(ProcessLookupError, subprocess.TimeoutExpired):
+            os.killpg(child.pid, number)
+            child.wait(END_S)
+            return
+
+
 def exit_by_signal(number, _):
     sys.exit(128 + number)
 
@@ -123,31 +149,23 @@ def is_empty(path):
     return not path.is_file() or path.stat().st_size == 0
 
 
-def build_workspace():
-    """Builds the workspace, and installs what some tests need at the same time."""
+def build_workspace(stages):
     extras = {**EXTRAS, **(SLURM if os.environ.get("AQUAFARM_TEST_SLURM") == "1" else {})}
-    code, *codes = run_children([
-        (bootstrap_command("build"), {}),
-        *((bootstrap_command("--install", *packages), {"stdout": subprocess.DEVNULL})
-          for packages in extras.values())])
-    if code != 0:
-        sys.exit(code)
-    for (left_out, packages), installed in zip(extras.items(), codes):
-        if installed != 0:
+    for left_out, packages in extras.items():
+        if run_bootstrap("--install", *packages) != 0:
             say(f"{', '.join(packages)} cannot be installed: {left_out}")
-
-
-def build(stages):
-    bootstrap("setup")
     stages.begin("building the workspace")
-    build_workspace()
+    bootstrap("build")
     use_ccache()
-    stages.begin("building the cores with plain cmake")
-    for core in CORES:
-        build_core(core)
     for folder in (RESULTS, WS / "build/test_results", *WS.glob("core/*/test_results")):
         shutil.rmtree(folder, ignore_errors=True)
     RESULTS.mkdir(parents=True)
+
+
+def build_tests(stages):
+    stages.begin("building the cores with plain cmake")
+    for core in CORES:
+        build_core(core)
     log = RESULTS / "build_tests.log"
     stages.begin(f"building the tests through ROS (log: {log})")
     if run_bootstrap("--build-tests", log) != 0:
@@ -210,7 +228,8 @@ def wheel_step(stages):
     xml = RESULTS / "python.xml"
     return Step("wheel with tools from PyPI",
                 [ROOT / "tools/check_python", WS / "python", "--short", "--limit",
-                 max(1, WHEEL_END_S - stages.seconds()), "--xml", xml], RESULTS / "python.log", xml)
+                 max(1, WHEEL_END_S - stages.seconds()), "--xml", xml], RESULTS / "python.log", xml,
+                is_idle=True)
 
 
 def test_all(stages, fast):
@@ -226,12 +245,14 @@ def run(fast):
     """Runs every test; `fast` leaves out slow ones and the builds in other kinds of workspace.
     Returns 1 if a test failed."""
     stages = Stages()
-    build(stages)
+    build_workspace(stages)
     if fast:
         say("--fast leaves out tests that take more than 20 s, campaigns, checks with clang, and other "
             "kinds of workspace")
-    others = [] if fast else [workspaces_step(), wheel_step(stages)]
-    with stages.next_to(*others):
+    # Tests have time limits, so no other build runs next to them but the idle one of the wheel.
+    with stages.next_to(*([] if fast else [workspaces_step()])):
+        build_tests(stages)
+    with stages.next_to(*([] if fast else [wheel_step(stages)])):
         test_all(stages, fast)
     stages.begin("adding up the results")
     code = run_child([PYTHON, ROOT / "tools/sum_results.py", RESULTS,

@@ -68,14 +68,9 @@ def run_child(command, goes_on=False, **options):
     return run_children([(command, options)], goes_on)[0]
 
 
-def bootstrap_command(*words):
-    """Returns the command that runs ./aquafarm for one of its own steps."""
-    return ["bash", ROOT / "aquafarm", *words]
-
-
 def run_bootstrap(*words):
     """Runs ./aquafarm for one of its own steps; returns its exit code."""
-    return run_child(bootstrap_command(*words))
+    return run_child(["bash", ROOT / "aquafarm", *words])
 
 
 def bootstrap(*words):

@@ -121,9 +121,9 @@ def _plot_references(axes, references, end):
     return [(end, value, "black", f"{name} {value:.0f}") for name, value in references.items()]
 
 
-def _look(one):
+def _line_style(one):
     """Returns the options of the line of a contestant."""
-    return {"color": one.colour, "linestyle": one.dashes}
+    return {"color": one.colour, "linestyle": one.linestyle}
 
 
 def _runs_text(count):
@@ -135,7 +135,7 @@ def plot_rewards_by_steps(axes, contestants, runs, references):
     for one in contestants:
         curve = runs[one.name][0]["curve"]
         episodes, means = _smooth(curve["return"])
-        axes.plot(np.cumsum(curve["steps"])[episodes - 1], means, **_look(one), label=one.label)
+        axes.plot(np.cumsum(curve["steps"])[episodes - 1], means, **_line_style(one), label=one.label)
     axes.set_xscale("log")
     return _plot_references(axes, references, axes.get_xlim()[1])
 
@@ -147,7 +147,7 @@ def plot_rewards_by_episodes(axes, contestants, runs, references):
         curve = runs[one.name][0]["curve"]["return"]
         axes.plot(np.arange(1, len(curve) + 1), curve, color=one.colour, alpha=0.12, linewidth=0.5)
         episodes, means = _smooth(curve)
-        axes.plot(episodes, means, **_look(one), label=one.label)
+        axes.plot(episodes, means, **_line_style(one), label=one.label)
         ends.append((episodes[-1], means[-1], one.colour, one.label))
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
@@ -175,7 +175,7 @@ def plot_average_rewards(axes, contestants, runs, references):
     for one in contestants:
         curve = _curves(runs[one.name], "return").mean(axis=0)
         curve = np.cumsum(curve) / np.arange(1, len(curve) + 1)
-        axes.plot(np.arange(1, len(curve) + 1), curve, **_look(one), label=one.label)
+        axes.plot(np.arange(1, len(curve) + 1), curve, **_line_style(one), label=one.label)
         ends.append((len(curve), curve[-1], one.colour, one.label))
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
@@ -206,7 +206,7 @@ def plot_square_error(axes, contestants, runs):
             continue
         logs = np.log(smooth[:, known])
         low, median, high = np.exp(np.quantile(logs, (0.25, 0.5, 0.75), axis=0))
-        axes.plot(episodes[known], median, **_look(one), linewidth=2.2, label=one.label)
+        axes.plot(episodes[known], median, **_line_style(one), linewidth=2.2, label=one.label)
         if len(smooth) > 1:
             axes.plot(episodes[known], np.exp(logs).T, color=one.colour, linewidth=0.7, alpha=0.45,
                       label="_run")
@@ -230,13 +230,14 @@ def draw_mean_score(path, contestants, runs):
     all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)
     for letter, panel in [*panels, ("c", contestants)]:
         _label(all_axes[letter], f"Return per step (Fig. 13{letter})",
-               f"{measures.WINDOW}-episode mean, range of the runs")
+               f"{measures.WINDOW}-episode mean\nmean and range of the runs")
         plot_mean_score(all_axes[letter], panel, runs)
     save(figure, path)
 
 
 def plot_mean_score(axes, contestants, runs):
-    """50-episode mean return per step, mean over the runs, shaded from the lowest to the highest."""
+    """50-episode mean return per step, mean over the runs, shaded between their lowest
+    and highest value."""
     ends = []
     for one in contestants:
         returns, steps = _curves(runs[one.name], "return"), _curves(runs[one.name], "steps")
@@ -301,7 +302,7 @@ def plot_exceedance(axes, contestants, rows):
     for one, money in _with_money(contestants, rows):
         x, probability = money["exceedance"]
         axes.step([0.0, *x], [1.0 if x[0] > 0.0 else probability[0], *probability], where="post",
-                  label=one.label, **_look(one))
+                  label=one.label, **_line_style(one))
         axes.plot(money["cvar"], losses.TAIL, marker="v", color=one.colour)
     axes.axhline(losses.TAIL, color="black", linewidth=0.5, linestyle="--")
     axes.set_ylim(-0.02, 1.02)
@@ -326,15 +327,15 @@ def plot_loss_by_kind(axes, contestants, rows):
 
 
 def draw_repeated(path, contestants, runs, references):
-    """Fig. 14: 50-episode means over all runs, shaded from the lowest run to the highest."""
-    _draw_returns(path, "Repeated trainings (Fig. 14): mean of the runs, shaded from the lowest run "
-                  "to the highest", [
+    """Fig. 14: 50-episode means over all runs, shaded between their lowest and highest value."""
+    _draw_returns(path, "Repeated trainings (Fig. 14): mean of the runs, shaded between their lowest "
+                  "and highest value", [
         (lambda axes: plot_repeated(axes, contestants, runs, references),
          "50-episode mean return", "episode")])
 
 
 def plot_repeated(axes, contestants, runs, references):
-    """Mean over the runs of their 50-episode means, shaded from the lowest run to the highest."""
+    """Mean over the runs of their 50-episode means, shaded between their lowest and highest value."""
     ends = []
     for one in contestants:
         smooth = [_smooth(curve) for curve in _curves(runs[one.name], "return")]
@@ -346,8 +347,8 @@ def plot_repeated(axes, contestants, runs, references):
 
 
 def _plot_shaded(axes, episodes, values, one, label):
-    """Plots the mean of values [runs, episodes], shaded from the lowest run to the highest."""
-    axes.plot(episodes, values.mean(axis=0), **_look(one), label=label)
+    """Plots the mean of values [runs, episodes], shaded between their lowest and highest value."""
+    axes.plot(episodes, values.mean(axis=0), **_line_style(one), label=label)
     axes.fill_between(episodes, values.min(axis=0), values.max(axis=0), color=one.colour, alpha=0.2,
                       linewidth=0)
 

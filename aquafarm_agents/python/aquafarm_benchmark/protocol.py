@@ -43,7 +43,7 @@ class Contestant:
     name: str  # of the row and of its folder
     label: str  # for tables and figures
     colour: str
-    dashes: typing.Any = "-"  # linestyle of matplotlib
+    linestyle: str = "solid"  # of matplotlib
     algorithm: str = ""  # name for --algorithm and policy; empty: the row's name
     learns: bool = True
     exploration: str = ""  # empty: the algorithm's default
@@ -135,7 +135,7 @@ def _printed(one, options, cost):
     """Returns a row with the settings printed in the paper, on the plain observation. Its line has
     the learner's colour and is dashed."""
     return dataclasses.replace(one, name=f"{one.name}_printed", algorithm=one.algorithm_name,
-                               label=f"{one.label}, printed", dashes=(0, (3, 1)), options=options,
+                               label=f"{one.label}, printed", linestyle="dashed", options=options,
                                exploration="", cost=cost, scenario=PLAIN_SCENARIO)
 
 

@@ -4,7 +4,7 @@ episodes that ended with devices at sea."""
 import json
 
 import numpy as np
-from matplotlib.patches import Polygon
+from matplotlib.patches import Polygon, Rectangle
 
 from aquafarm_benchmark.figures import plt, save
 
@@ -15,8 +15,9 @@ _EVERY = 2  # an arrow stands in each second column and row, so that it can be l
 _SHOWN_STEPS = 4  # number of steps whose rings are drawn
 _LANE = 0.14  # distance of a leg from the middle of its cells; the next leg has the other side
 # Legs by whether something is aboard; colours of Okabe and Ito (2008).
-_LEGS = {False: ("#0072b2", (0, (4, 1.5)), "nothing aboard"),
-         True: ("#d55e00", "solid", "a device aboard")}
+_LEGS = {False: ("#0072b2", (0, (4, 1.5)), "route with nothing aboard"),
+         True: ("#d55e00", "solid", "route with a device aboard")}
+_SEA = "#eaf3f9"
 _STOPS = {"pickup": ("P", "pickup"), "drop_off": ("X", "drop-off")}
 _STOP_STYLE = {"s": 130, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 7}
 
@@ -55,18 +56,22 @@ def devices_left(route):
 
 
 def draw_unfinished(path, routes):
-    """Draws the routes of episodes that ended with devices at sea, with the rings in the last step.
+    """Draws the routes of episodes that ended with devices at sea, with the rings in the last step,
+    at the same scale.
 
     routes: {name of the ranch: route file}
     """
     columns = 3
     rows = -(-(len(routes) + 1) // columns)  # the last place is for the explanation
-    figure, all_axes = plt.subplots(rows, columns, figsize=(4.2 * columns, 4.3 * rows),
-                                    squeeze=False, layout="constrained")
+    routes = {name: json.loads(file.read_text()) for name, file in routes.items()}
+    size = [max(route["chart"][side] for route in routes.values()) for side in ("width", "height")]
+    figure, all_axes = plt.subplots(
+        rows, columns, figsize=(4.2 * columns, (0.7 + 4.2 * size[1] / size[0]) * rows),
+        squeeze=False, layout="constrained")
     all_axes = list(all_axes.flat)
     charts = all_axes[:len(routes)]
-    for axes, (name, file) in zip(charts, routes.items()):
-        plot_unfinished(axes, name, json.loads(file.read_text()))
+    for axes, (name, route) in zip(charts, routes.items()):
+        plot_unfinished(axes, name, route, size)
     for empty in all_axes[len(routes):]:
         empty.axis("off")
     symbols = _symbols(charts)
@@ -75,10 +80,12 @@ def draw_unfinished(path, routes):
     save(figure, path)
 
 
-def plot_unfinished(axes, name, route):
-    """Draws one of these routes."""
-    _chart(axes, route["chart"])
-    last = route["steps"][-1]
+def plot_unfinished(axes, name, route, size):
+    """Draws one of these routes on axes for ranches of at most this size (columns, rows)."""
+    chart, last = route["chart"], route["steps"][-1]
+    _chart(axes, chart, size)
+    axes.set_xlabel("cells to the east")
+    axes.set_ylabel("cells to the north")
     for disaster in route["steps"][-2]["disasters"]:  # they are over in the last state
         for ring in _rings(disaster):
             axes.add_patch(Polygon(ring, color="#b22222", alpha=0.12, zorder=1))
@@ -89,8 +96,9 @@ def plot_unfinished(axes, name, route):
                  linewidth=2.2, zorder=8, label="device that was not fetched")
     axes.scatter(*last["cell"], s=150, marker="*", color="#f0e442", edgecolor="black", zorder=9,
                  label="ship at the end")
-    axes.set_title(f"{name}: {last['delivered']} of {len(route['chart']['devices'])} in port "
-                   f"after {len(route['steps']) - 1} steps", fontsize=11)
+    axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port\n"
+                   f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps, "
+                   f"return {route['return']:.0f}", fontsize=11)
 
 
 def _symbols(charts):
@@ -101,20 +109,23 @@ def _symbols(charts):
     return symbols
 
 
-def _chart(axes, chart):
+def _chart(axes, chart, size=None):
+    """Draws a ranch on axes for ranches of at most this size; by default, its own."""
+    width, height = size or (chart["width"], chart["height"])
     axes.set_aspect("equal")
-    axes.set_xlim(-0.5, chart["width"] - 0.5)
-    axes.set_ylim(-0.5, chart["height"] - 0.5)
-    axes.set_facecolor("#eaf3f9")
-    size = 4900.0 / max(chart["width"], chart["height"])
+    axes.set_xlim(-0.5, width - 0.5)
+    axes.set_ylim(-0.5, height - 0.5)
+    axes.add_patch(Rectangle((-0.5, -0.5), chart["width"], chart["height"], facecolor=_SEA,
+                             edgecolor="#5b6b78", zorder=0))
+    area = 4900.0 / max(width, height)  # of a marker that fills a cell
     for cells, colour, marker, share, label in (
             (chart["islands"], "#c9b98a", "s", 1.0, "island"),
-            (chart["rocks"], "#8a8a8a", "^", 0.4, "rock"),
+            (chart["rocks"], "#aab4bc", "^", 0.3, "rock"),
             (chart["ports"], "#1a7f37", "s", 0.6, "port"),
             ([device["cell"] for device in chart["devices"]], "#c2185b", "D", 0.6, "device")):
         if cells:
             x, y = zip(*cells)
-            axes.scatter(x, y, color=colour, marker=marker, label=label, zorder=3, s=size * share)
+            axes.scatter(x, y, color=colour, marker=marker, label=label, zorder=3, s=area * share)
 
 
 def plot_moves(axes, moves):

@@ -2,6 +2,7 @@
 """Contents of the report of a run or of a benchmark."""
 import contextlib
 import csv
+import errno
 import json
 import os
 import pathlib
@@ -103,10 +104,10 @@ CAPTIONS = {
                        "better",
     "mean_square_error": "50-episode mean square error of the value estimates (Fig. 12c): median of "
                          "the runs, shaded their middle half, thin each run",
-    "repeated_trainings": "50-episode mean return over the runs of each learner (Fig. 14); shaded: "
-                          "lowest to highest run",
-    "mean_score": "Return per step during the training (Fig. 13); shaded: lowest to highest "
-                  "run",
+    "repeated_trainings": "50-episode mean return over the runs of each learner (Fig. 14): their mean, "
+                          "shaded between their lowest and highest value",
+    "mean_score": "Return per step during the training (Fig. 13): mean of the runs, shaded between "
+                  "their lowest and highest value",
     "evaluation": "Return in the evaluation episodes, with 95 % intervals",
     "losses": "Losses of the trained policies in money",
 }
@@ -166,25 +167,46 @@ def report_benchmark(benchmark, folder, episodes):
                      page.details("benchmark.json", json.dumps(settings, indent=2))))
 
 
-def make_one(source, folder, episodes):
-    """Page of a run folder or of a benchmark's folder."""
+def kind_of(source):
+    """Returns the function that reports on a folder: of a run or of a benchmark."""
     for name, report in (("run.json", report_run), ("results.json", report_benchmark)):
         if (source / name).is_file():
-            return report(source, folder, episodes)
+            return report
     raise ReportError(f"{source}: neither a run (run.json) nor a benchmark (results.json)")
 
 
 def make_text(sources, episodes):
     """Page of a run or benchmark, or of the comparison of runs."""
-    with tempfile.TemporaryDirectory(prefix="aquafarm_report_") as folder:
-        work = pathlib.Path(folder)
-        try:
+    try:
+        with tempfile.TemporaryDirectory(prefix="aquafarm_report_") as folder:
+            work = pathlib.Path(folder)
             if len(sources) == 1:
-                return make_one(sources[0], work, episodes)
+                return kind_of(sources[0])(sources[0], work, episodes)
             return compare.report(sources, work, episodes, read_metrics)
-        except (OSError, ValueError, KeyError) as error:
-            named = ", ".join(map(str, sources))
-            raise ReportError(f"{named}: cannot be reported on: {error!r}") from error
+    except (OSError, ValueError, KeyError) as error:
+        named = ", ".join(map(str, sources))
+        raise ReportError(f"{named}: cannot be reported on: {error!r}") from error
+
+
+@contextlib.contextmanager
+def written_beside(path):
+    """Yields a new file next to a path; it takes the place of the path if the block succeeds."""
+    try:
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, "it is a folder")
+        with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=path.parent, delete=False,
+                                         prefix=f".{path.name}.") as file:
+            try:
+                yield file
+                file.close()
+                os.chmod(file.name, 0o644)
+                os.replace(file.name, path)
+            except BaseException:
+                os.unlink(file.name)
+                raise
+    except OSError as error:
+        raise ReportError(f"{path}: cannot be written: {error.strerror}; choose another file with "
+                          "-o") from None
 
 
 def make(sources, output, episodes=EPISODES):
@@ -192,14 +214,8 @@ def make(sources, output, episodes=EPISODES):
     sources = [pathlib.Path(source).resolve() for source in sources]
     default = sources[0] / "report.html" if len(sources) == 1 else "comparison.html"
     output = pathlib.Path(output or default).resolve()
-    temporary = output.with_name(output.name + ".part")
-    try:
-        temporary.touch()  # fails before the work, which may take minutes
-        temporary.write_text(make_text(sources, episodes), encoding="utf-8")
-        os.replace(temporary, output)
-    except OSError as error:
-        raise ReportError(f"{output}: cannot be written: {error.strerror}") from None
-    finally:
-        with contextlib.suppress(OSError):
-            temporary.unlink(missing_ok=True)
+    if len(sources) == 1:
+        kind_of(sources[0])  # refuses other folders
+    with written_beside(output) as file:  # before the work, which may take minutes
+        file.write(make_text(sources, episodes))
     return output

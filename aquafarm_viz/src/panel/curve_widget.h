@@ -11,6 +11,7 @@
 
 namespace aquafarm_viz {
 
+/// Returns a text in UTF-8 as Qt has it.
 inline QString Text(const std::string& text) { return QString::fromStdString(text); }
 
 /// The part of an axis that is shown.

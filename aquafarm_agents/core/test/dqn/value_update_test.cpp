@@ -13,8 +13,8 @@
 namespace aquafarm::agents::test {
 namespace {
 
-constexpr std::size_t kUnits = 4;
-constexpr std::size_t kRecorded = 41;
+constexpr std::size_t kHiddenSize = 4;
+constexpr std::size_t kRecordedSteps = 41;
 constexpr int kAdamStep = 5;  // Adam steps before the update
 constexpr double kTau = 0.25;
 
@@ -34,8 +34,8 @@ std::shared_ptr<const Scenario> Farm(bool truncates, std::int32_t ships, bool te
   return Share(scenario);
 }
 
-/// A learner that has recorded kRecorded time steps and is not updated yet, with the data for an
-/// oracle.
+/// A learner that has recorded kRecordedSteps time steps and is not updated yet, with the data for
+/// an oracle.
 struct Update {
   DeepOptions options;
   EnvironmentSpec spec;
@@ -103,10 +103,10 @@ Update MakeUpdate(const std::string& algorithm, const std::string& options,
   update.options = DeepOptions::Parse(text, update.recurrent, resolved);
   update.spec = environment.spec();
   const StepResults* results = &environment.Reset(1);
-  for (std::size_t moment = 0; moment < kRecorded; ++moment) {
+  for (std::size_t moment = 0; moment < kRecordedSteps; ++moment) {
     update.log.push_back(*results);
     update.actions.emplace_back();
-    if (moment + 1 == kRecorded) {
+    if (moment + 1 == kRecordedSteps) {
       learner->Save(update.before);
       Disturb(update.before);
       learner->Load(update.before);
@@ -126,7 +126,7 @@ struct Batch {
 // Returns the transitions that the learner draws, from its random stream.
 Batch Draw(const Update& update, std::size_t steps, std::size_t group) {
   const auto& spec = update.spec;
-  const std::size_t recurrent_state = update.recurrent ? 2 * kUnits : 0;
+  const std::size_t recurrent_state = update.recurrent ? 2 * kHiddenSize : 0;
   Replay<float> replay({static_cast<std::size_t>(update.options.buffer_size),
                         static_cast<std::size_t>(spec.farms) * update.agents(), spec.agents,
                         static_cast<std::size_t>(spec.feature_count), recurrent_state});
@@ -264,8 +264,9 @@ void ExpectDqn(const std::string& options, bool truncates) {
     const TransitionIndex& moment = batch.moments[i];
     const Return sum = SumRewards(update, moment.age, moment.slot, steps);
     const Values seen = update.Seen(sum.to, moment.slot);
-    const Values values = MlpOracle(target, seen, kUnits);
-    const Values chooses = update.options.double_dqn ? MlpOracle(online, seen, kUnits) : values;
+    const Values values = MlpOracle(target, seen, kHiddenSize);
+    const Values chooses =
+        update.options.double_dqn ? MlpOracle(online, seen, kHiddenSize) : values;
     const double next = values[BestOf(update, chooses, sum.to, moment.slot)];
     terms.push_back({sum.reward + sum.discount * next,
                      batch.weights[i] / static_cast<double>(batch.moments.size())});
@@ -274,7 +275,7 @@ void ExpectDqn(const std::string& options, bool truncates) {
     Values predicted;
     for (const auto& [age, slot] : batch.moments) {
       predicted.push_back(
-          MlpOracle(parameters, update.Seen(age, slot), kUnits)[update.actions[age][slot]]);
+          MlpOracle(parameters, update.Seen(age, slot), kHiddenSize)[update.actions[age][slot]]);
     }
     return predicted;
   });
@@ -308,8 +309,9 @@ void ExpectVdn(const std::string& options, bool team) {
     for (std::size_t agent = first; agent < first + agents; ++agent) {
       const Return sum = SumRewards(update, age, agent, 1);
       const Values seen = update.Seen(sum.to, agent);
-      const Values values = MlpOracle(target, seen, kUnits);
-      const Values chooses = update.options.double_dqn ? MlpOracle(online, seen, kUnits) : values;
+      const Values values = MlpOracle(target, seen, kHiddenSize);
+      const Values chooses =
+          update.options.double_dqn ? MlpOracle(online, seen, kHiddenSize) : values;
       // A team reward is repeated for each agent.
       term.target += sum.reward / (team ? static_cast<double>(agents) : 1.0) +
                      sum.discount * values[BestOf(update, chooses, sum.to, agent)];
@@ -322,7 +324,7 @@ void ExpectVdn(const std::string& options, bool team) {
       predicted.push_back(0.0);
       for (std::size_t agent = first; agent < first + agents; ++agent) {
         predicted.back() +=
-            MlpOracle(parameters, update.Seen(age, agent), kUnits)[update.actions[age][agent]];
+            MlpOracle(parameters, update.Seen(age, agent), kHiddenSize)[update.actions[age][agent]];
       }
     }
     return predicted;
@@ -336,7 +338,7 @@ TEST(VdnUpdate, FitsTheSumOfTheAgentsValues) {
   }
 }
 
-Memory Empty() { return {Values(kUnits), Values(kUnits)}; }
+Memory Empty() { return {Values(kHiddenSize), Values(kHiddenSize)}; }
 
 // Returns the recurrent state of an agent before a time step, computed from the start of its
 // episode with the acting network.
@@ -346,7 +348,8 @@ Memory CarriedInto(const Update& update, const Values& parameters, std::size_t m
   while (!update.IsStarted(first, slot)) --first;
   Memory memory = Empty();
   for (std::size_t m = first; m < moment; ++m) {
-    LstmOracle(parameters, update.Seen(m, slot), kUnits, update.options.skip_connection, memory);
+    LstmOracle(parameters, update.Seen(m, slot), kHiddenSize, update.options.skip_connection,
+               memory);
   }
   return memory;
 }
@@ -364,7 +367,8 @@ TEST(LstmDqnUpdate, IsAlgorithm2) {
       const Return sum = SumRewards(update, age, slot, 1);
       // Q of the target network at s_{j+1} with the stored c_j and h_j of the agent (line 20).
       Memory carried = CarriedInto(update, online, age + 1, slot);
-      const Values values = LstmOracle(target, update.Seen(age + 1, slot), kUnits, false, carried);
+      const Values values =
+          LstmOracle(target, update.Seen(age + 1, slot), kHiddenSize, false, carried);
       terms.push_back({sum.reward + sum.discount * *std::max_element(values.begin(), values.end()),
                        1.0 / static_cast<double>(batch.moments.size())});
     }
@@ -377,7 +381,7 @@ TEST(LstmDqnUpdate, IsAlgorithm2) {
       for (std::size_t i = 0; i < terms.size(); ++i) {
         const auto& [age, slot] = batch.moments[i];
         Memory memory = stored[i];
-        predicted.push_back(LstmOracle(parameters, update.Seen(age, slot), kUnits, false,
+        predicted.push_back(LstmOracle(parameters, update.Seen(age, slot), kHiddenSize, false,
                                        memory)[update.actions[age][slot]]);
       }
       return predicted;
@@ -403,7 +407,7 @@ Run RunOf(const Update& update, const TransitionIndex& moment) {
   if (update.IsStarted(run.warm_from, run.slot)) run.first = run.warm_from;
   run.last = run.first;
   while (run.last - run.first < static_cast<std::size_t>(update.options.sequence_length) &&
-         run.last + 1 < kRecorded && update.Reason(run.last, run.slot) == EndReason::kNone) {
+         run.last + 1 < kRecordedSteps && update.Reason(run.last, run.slot) == EndReason::kNone) {
     ++run.last;
   }
   return run;
@@ -415,11 +419,11 @@ std::vector<Values> Along(const Update& update, const Run& run, const Values& ac
   const bool skip = update.options.skip_connection;
   Memory memory = CarriedInto(update, acting, run.warm_from, run.slot);
   for (std::size_t m = run.warm_from; m < run.first; ++m) {
-    LstmOracle(warming, update.Seen(m, run.slot), kUnits, skip, memory);
+    LstmOracle(warming, update.Seen(m, run.slot), kHiddenSize, skip, memory);
   }
   std::vector<Values> values;
   for (std::size_t m = run.first; m <= run.last; ++m) {
-    values.push_back(LstmOracle(parameters, update.Seen(m, run.slot), kUnits, skip, memory));
+    values.push_back(LstmOracle(parameters, update.Seen(m, run.slot), kHiddenSize, skip, memory));
   }
   return values;
 }

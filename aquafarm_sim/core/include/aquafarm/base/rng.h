@@ -65,7 +65,7 @@ class RandomStream {
   }
   /// Uniform in [0, 1).
   float Unit() { return ToUnit(Next()); }
-  /// Uniform in [min, max).
+  /// Uniform in [min, max); rounding may return max.
   float Uniform(float min, float max) { return min + (max - min) * Unit(); }
   /// Uniform in [0, count).
   std::uint32_t Below(std::uint32_t count) { return ToBelow(Next(), count); }

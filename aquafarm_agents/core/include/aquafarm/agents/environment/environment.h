@@ -4,12 +4,13 @@
 /// The only interface between learners and farms: N farms × S agents, in this process or behind ROS
 /// services. Both give bit-identical transitions.
 ///
-/// A farm whose episode is over (its reason is not kNone) ignores the action of the next Step and
-/// starts its next episode. That slot has is_first = 1, reward 0 and holds no transition.
+/// A farm whose episode is over (its end reason is not kNone) ignores the action of the next Step
+/// and starts its next episode. Its slots then have is_first = 1 and reward 0, and hold no
+/// transition.
 ///
-/// An agent may be done before its farm is: a delivered self-propelled device is no longer in play
-/// (as in PettingZoo's parallel API). Its last transition terminates. Later slots of this agent
-/// are padding until the next episode.
+/// An agent may be done before its farm: a delivered self-propelled device is no longer active (as
+/// in PettingZoo's parallel API). Its last transition is terminal. Later slots of this agent are
+/// padding until the next episode.
 
 #include <cstdint>
 #include <stdexcept>
@@ -63,7 +64,8 @@ inline std::size_t SlotCount(const EnvironmentSpec& spec) {
 /// Results of one Reset or Step. Owned by the environment and valid until its next call. Arrays are
 /// row-major; step_fields.h lists them.
 struct StepResults {
-  /// True if this transition is the last one of the agent in slot farm · S + agent.
+  /// Returns whether the agent in slot farm · S + agent has reached a terminal state, after which
+  /// no value is bootstrapped. False after truncation at the step limit.
   bool IsDone(std::size_t slot, std::size_t farm) const {
     return active[slot] == 0 || IsTerminated(static_cast<EndReason>(end_reasons[farm]));
   }
@@ -99,12 +101,12 @@ class EnvironmentLost : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Returns whether `observation_types` request each agent's own reward where the scenario gives
-/// every agent the team's sum. If so, `spec` then has no team reward, and the farms must return
+/// Returns whether `observation_types` request individual rewards where the scenario gives every
+/// agent the team's sum. If so, `spec` then has no team reward, and the farms must return
 /// kTermsField.
 bool WantsOwnRewards(std::uint8_t observation_types, EnvironmentSpec& spec);
 
-/// Replaces each agent's reward by the sum of its own reward terms. @param results with terms
+/// Replaces each agent's reward with the sum of its reward terms. @param results with terms
 void UseOwnRewards(StepResults& results);
 
 /// A batch of farms, in this process or behind ROS. It is all that learners see of a farm.
@@ -114,23 +116,23 @@ class Environment {
 
   virtual const EnvironmentSpec& spec() const = 0;
 
-  /// Starts the episode sequence of `seed`: farm i plays episode first_episode + i, then every
-  /// N-th.
+  /// Starts the episode sequence of `seed`: farm i plays the episodes first_episode + i,
+  /// first_episode + i + N, first_episode + i + 2N, …
   virtual const StepResults& Reset(std::uint64_t seed, std::uint64_t first_episode = 0) = 0;
 
   /// Takes one step in every farm.
   /// @param actions [N, S], each in [0, kActionCount); other values are a programming error
   virtual const StepResults& Step(const std::vector<std::uint8_t>& actions) = 0;
 
-  /// Serializes all farms, also in mid-episode.
+  /// Serializes all farms, also in the middle of an episode.
   virtual std::string Save() = 0;
   /// Restores saved farms, which continue bit-identically, and returns their current results with
   /// an empty `finished`.
-  /// @throws InputError if the bytes do not fit; the farms are then unchanged
+  /// @throws InputError if the bytes do not match this environment; the farms are then unchanged
   virtual const StepResults& Load(const std::string& bytes) = 0;
 
-  /// True once after the farms were lost and replaced by new ones (a ROS node restarted). The
-  /// results of the last call are then first observations of new episodes.
+  /// Returns true once after the farms were lost and replaced by new ones (a ROS node restarted).
+  /// The results of the last call are then first observations of new episodes.
   virtual bool ConsumeRestart() { return false; }
 };
 

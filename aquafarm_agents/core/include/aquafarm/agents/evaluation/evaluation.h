@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Evaluation of a policy on episodes that are never used in training. Training seeds lie below
-/// 2^63 and evaluation seeds above, so they never overlap.
+/// Evaluation of a policy on episodes that are never used in training. Training seeds are
+/// less than 2^63 and evaluation seeds are at least 2^63, so they never overlap.
 
 #include <atomic>
 #include <cstdint>
@@ -29,8 +29,8 @@ struct Evaluation {
   std::uint64_t seed{};                  ///< seed of the farms, with kEvaluationSeedBit
   std::vector<EpisodeSummary> episodes;  ///< episodes 0, 1, 2, … of the seed, in order
   double mean_return{};                  ///< per episode
-  double return_per_step{};              ///< sum of returns / sum of steps (§4.2)
-  double success_rate{};                 ///< fraction of episodes that delivered every device
+  double return_per_step{};  ///< sum of returns / sum of steps (paper §4.2, see docs/model.md)
+  double success_rate{};     ///< fraction of episodes that delivered every device
   double mean_steps{};
   double mean_delivered_health{};  ///< over episodes with a delivery; 0 if there are none
   double mean_crashes{};
@@ -39,16 +39,17 @@ struct Evaluation {
   double mean_distance{};  ///< of all ships per episode [km]
   double wall_s{};
   bool complete{};  ///< false if it was stopped early
-  /// Number of different starts among the episodes: layout, ships, devices and storm. Episodes with
-  /// equal starts repeat each other for a deterministic policy, except for later random draws.
+  /// Number of distinct starts of the episodes (layout, ships, devices and disasters). Under a
+  /// deterministic policy, episodes with equal starts differ only by later random draws.
   std::size_t distinct{};
-  /// Accounts of the episodes; unset if the scenario has no money, or if they are unknown.
+  /// Losses over the episodes; unset if the scenario has no `money`, or if accounts are unknown.
   std::optional<Losses> losses;
-  std::optional<double> mean_bound;  ///< of these episodes (team_bound.h), if requested
-  DeviceOutcomes devices;            ///< empty if they are unknown
+  std::optional<double>
+      mean_bound;  ///< mean upper bound of the return (team_bound.h); unset unless requested
+  DeviceOutcomes devices;  ///< empty if they are unknown
 };
 
-/// Returns the accounts of a farm whose episode has just ended; nullopt if it has no money.
+/// Returns the accounts of a farm whose episode has just ended; nullopt without `money`.
 using AccountsOf = std::function<std::optional<Accounts>(std::int32_t farm)>;
 
 /// Plays episodes 0 … episodes − 1 of EvaluationSeed(seed). For a deterministic policy the result
@@ -57,8 +58,8 @@ using AccountsOf = std::function<std::optional<Accounts>(std::int32_t farm)>;
 /// @param stop may be set by a signal handler; null if the evaluation cannot be stopped
 /// @param on_progress called periodically with the number of finished episodes
 /// @param policy_seed of the policy's random numbers; by default the seed of the episodes
-/// @param accounts_of called once for each episode; empty if they are unknown, as behind ROS
-///        services. Without accounts there are no losses.
+/// @param accounts_of returns the accounts of a farm, once for each episode. An empty function
+///        (accounts are not available through ROS services) leaves `losses` unset.
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
                     std::int32_t episodes, const std::atomic<bool>* stop = nullptr,
                     const std::function<void(std::size_t over)>& on_progress = {},
@@ -67,7 +68,7 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
 
 /// Inputs of an evaluation. WriteEvaluation stores them so that it can be repeated.
 struct EvaluationContext {
-  std::string policy;  ///< path, or "random"
+  std::string policy;  ///< path of the policy file, or "random"
   std::string algorithm;
   std::uint64_t training_steps{};
   std::string scenario_name;
@@ -84,8 +85,8 @@ void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
 /// "success 100.0 %, return 243.1 [95 %: 241.0, 245.2] per episode, 4.02 per step, 60.4 steps
 /// (1000 episodes, 998 distinct)"
 std::string Describe(const Evaluation& evaluation);
-/// "loss 1234.50 ± 8.10 CNY of 5000.00 insured, VaR 5 % 2000.00 [95 %: 1900.00, 2100.00], …" as one
-/// line; empty without losses.
+/// Returns one line; empty without losses: "loss 1234.50 ± 8.10 CNY of 5000.00 insured, operating
+/// cost 310.00, VaR 5 % 2000.00 [95 %: 1900.00, 2100.00], CVaR 5 % …".
 std::string DescribeLosses(const Evaluation& evaluation);
 
 }  // namespace aquafarm::agents

@@ -3,8 +3,9 @@
 
 /// Plans for one ship by dynamic programming over (time, cell, devices aboard and delivered). With
 /// the true future of the disasters the plan has the exact max return of a seeded episode: the
-/// clairvoyant optimum, the reference of §4.2. With the issued forecast, or the present heading of
-/// a disaster without one, and a new plan at each step, it acts like a good operator.
+/// clairvoyant optimum, the reference of paper §4.2 (see docs/model.md). If it plans again at each
+/// step, from the issued forecast or from the present heading of a disaster without a forecast, it
+/// acts as an operator can who does not know the future.
 ///
 /// Health is computed exactly. The health of a deployed device depends only on time; aboard, its
 /// loss accumulates along the route. Each pickup is therefore planned as paid or unpaid. Paid: the
@@ -12,9 +13,9 @@
 /// delivered. Unpaid: it may be delivered for the drop-off reward only. The better of the two
 /// equals the value clamped at zero.
 ///
-///   forward in time, max return so far per state ──> pruned if the state cannot beat the best
-///   complete plan: it needs a min number of moves, and each step earns at most the best reward
-///   that any cell has in that step
+/// The search runs forward in time and keeps the max return so far of each state. It prunes a state
+/// that cannot beat the best complete plan: completing the work needs a min number of moves, and
+/// each step earns at most the best reward that any cell has in that step.
 
 #include <cstdint>
 #include <memory>

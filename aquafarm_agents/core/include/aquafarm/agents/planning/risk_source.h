@@ -33,7 +33,8 @@ struct RiskLayers {
   }
 };
 
-/// Returns the kinds of a farm's devices whose damage depends on the kind of the disaster.
+/// Returns the kinds of the farm's undelivered devices for which some damage factor is not 1; empty
+/// if exposure causes no damage.
 std::vector<DeviceKind> KindsThatMatter(const Farm& farm);
 
 /// Risks by step.
@@ -57,7 +58,7 @@ class RiskSource {
 /// steps, so that several searches compute them once.
 class DisasterRisk final : public RiskSource {
  public:
-  /// @param farm must outlive the object and must not step meanwhile
+  /// @param farm must outlive the object and must not step while the object is in use
   DisasterRisk(const Farm& farm, Foresight foresight);
   const RiskLayers& At(std::int32_t step) override;
   std::int32_t last_step() const override { return last_step_; }
@@ -74,10 +75,10 @@ class DisasterRisk final : public RiskSource {
   std::vector<RiskLayers> kept_;  // of the steps after the farm's present one
   std::size_t max_kept_{};
   std::vector<Disaster> after_kept_;  // state of the disasters after the last kept step
-  RiskLayers layers_;                 // of step moved_to_, where it is not kept
+  RiskLayers layers_;                 // of step moved_to_; used if that step is not in kept_
 };
 
-/// Given layers, such as the mean of an ensemble.
+/// Risk layers that the caller provides, for example the mean of an ensemble.
 class RiskField final : public RiskSource {
  public:
   /// @param first_step step of layers[0] @param layers at least one, all of one shape

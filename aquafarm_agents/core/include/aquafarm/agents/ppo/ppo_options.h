@@ -18,7 +18,7 @@ enum class PolicyMode : std::uint8_t {
 inline constexpr int kPolicyModeCount = 2;
 std::string_view ToString(PolicyMode value);
 
-/// Whom the policy imitates at first.
+/// Teacher that the policy imitates at the start of training.
 enum class TeacherPolicy : std::uint8_t {
   kRule,     ///< a simple rule on entity tokens (src/ppo/route_rule.h)
   kPlanner,  ///< the algorithm `planner`, which sees the complete farm
@@ -26,7 +26,7 @@ enum class TeacherPolicy : std::uint8_t {
 inline constexpr int kTeacherPolicyCount = 2;
 std::string_view ToString(TeacherPolicy value);
 
-/// Name of the PPO of several agents with a value that depends on all of their observations.
+/// Name of multi-agent PPO with a centralized critic.
 inline constexpr const char* kMappo = "mappo";
 
 /// Options of PPO and MAPPO. Two presets give the defaults: *tuned* for a fixed layout, *large* for
@@ -49,8 +49,8 @@ struct PpoOptions {
   bool normalize_advantages{true};  ///< to mean 0 and deviation 1 in each minibatch
   bool mask_illegal{true};          ///< probability 0 for actions that would be ILLEGAL
   bool mask_blocked{
-      true};  ///< probability 0 for moves onto a charted rock, an island or off the map
-  /// The coefficient of the entropy bonus is the level; icm adds curiosity.
+      true};  ///< probability 0 for moves onto a charted rock or an island, or off the map
+  /// `level` is the coefficient of the entropy bonus; `icm` adds an intrinsic reward.
   ExplorationOptions exploration{
       ExplorationKind::kEntropy, {ScheduleKind::kLinear, 0.02, 0.0, 1.0}, {}};
   /// Weight of the cross-entropy with a teacher, which the policy imitates at first (kickstarting,
@@ -59,28 +59,30 @@ struct PpoOptions {
   Schedule teacher{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
   TeacherPolicy teacher_policy{TeacherPolicy::kRule};
   std::int32_t teacher_interval{1};  ///< the teacher acts at every teacher_interval-th step
-  /// Each episode is seen turned or reflected by one of the eight symmetries of the grid, drawn at
-  /// its start; needs entity tokens.
+  /// Data augmentation: the observations of each episode are transformed by one of the eight
+  /// symmetries of the grid (rotations and reflections), drawn at its start; needs entity tokens.
   bool augment{false};
   PolicyMode policy{PolicyMode::kGreedy};  ///< how the trained policy acts
-  /// The trained policy averages its network over the eight symmetries, so that it plays a turned
-  /// ranch as it plays the ranch; needs entity tokens.
+  /// The trained policy averages its network over the eight symmetries, which makes it equivariant
+  /// to rotations and reflections of the ranch; needs entity tokens.
   bool symmetric{false};
   /// Reduces the logit of an action in the trained greedy policy, per earlier use in the same
   /// situation (cell, load, remaining devices) of the episode; 0: no effect.
   double repetition_penalty{0.0};
-  /// If a situation occurs for this many times, the trained greedy policy follows the route to the
-  /// nearest target while that has no risk (src/ppo/loop_guard.h); needs entity tokens; 0: never.
+  /// If a situation occurs this many times, the trained greedy policy follows the route to the
+  /// nearest target while that has no more risk per step than the safest cell near the ship
+  /// (src/ppo/loop_guard.h); needs entity tokens; 0: never.
   std::int32_t max_visits{0};
-  std::int32_t threads{1};  ///< of the matrix library
-  /// Groups of farms, a power of two. Each has its own share of every minibatch; their gradients
-  /// are added in a fixed order, so results depend on the number of shards, not of processes.
+  std::int32_t threads{1};  ///< CPU threads of libtorch and of its BLAS
+  /// Number of groups of farms, a power of two. Each group has its own part of every minibatch.
+  /// Gradients are added in a fixed order, so results depend on the number of shards but not on
+  /// the number of processes.
   std::int32_t shards{1};
 
-  /// MAPPO: the value depends on the observations of all agents of a farm; set by the algorithm.
+  /// Centralized critic, which observes all agents of a farm; true for MAPPO.
   bool central{false};
-  /// Share w of the team in what an agent learns from: (1 − w) · its own reward + w · the sum of
-  /// all agents' rewards.
+  /// Weight w of the team reward: an agent learns from (1 − w) · its individual reward + w · the
+  /// sum of all agents' rewards.
   Schedule team_share{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
 
   const char* algorithm() const { return central ? kMappo : "ppo"; }

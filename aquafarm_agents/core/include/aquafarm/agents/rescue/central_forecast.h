@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The storm that an ensemble varies, and the size of the ensemble.
+/// The storm that an ensemble perturbs, and the size of the ensemble.
 
 #include <cstdint>
 #include <limits>
@@ -15,8 +15,8 @@ namespace aquafarm::agents {
 
 /// A storm as an authority forecasts it, or as it was recorded later (a hindcast).
 struct CentralForecast {
-  StormPath path;              ///< step 0 is the start of the plan, steps are those of the ensemble
-  std::vector<double> lead_h;  ///< by point: hours after the issue; 0 or negative if recorded
+  StormPath path;              ///< in steps of the ensemble; step 0 is the start of the plan
+  std::vector<double> lead_h;  ///< lead time of each point [h]; 0 or negative if it was observed
   /// Lead time of the last report with radii; minus infinity if all radii are estimated.
   double size_report_h{-std::numeric_limits<double>::infinity()};
   GradeRisks risks;  ///< of grades 1 to 4

@@ -44,8 +44,7 @@ class TestRun(unittest.TestCase):
                 return code
 
             def popen(command, **_):
-                is_idle = command[:len(tests.IDLE)] == tests.IDLE
-                code = run_child(command[len(tests.IDLE):] if is_idle else command)
+                code = run_child(command[len(tests.IDLE):])
                 child = mock.MagicMock(poll=lambda: None, wait=lambda: code)
                 child.__enter__.return_value = child
                 return child
@@ -88,7 +87,7 @@ class TestRun(unittest.TestCase):
             script = ("sleep 60 & sleep 0.5; cat /proc/self/autogroup >group; chrt -p $$ >class; "
                       "echo $! >part; mv part sleep; wait")
             step = tests.Step("sleep", ["bash", "-c", f"cd {folder}; {script}"],
-                              pathlib.Path(folder, "log"), is_idle=True)
+                              pathlib.Path(folder, "log"))
             pid = pathlib.Path(folder, "sleep")
             started = time.monotonic()
             with self.assertRaises(SystemExit), tests.Stages().next_to(step):

@@ -31,8 +31,9 @@ LAST_LINES = 20
 # CI ends the test command after 90 minutes. Checks of the wheel that begin later than this after the
 # start are skipped, and one that has begun may take a quarter of an hour more.
 WHEEL_END_S = 55 * 60
+# A step next to others gets what processor time they leave.
 IDLE = ["chrt", "--idle", "0"]
-END_S = 20  # time for a step next to others to end after SIGTERM
+END_S = 20  # time for such a step to end after SIGTERM
 
 
 @dataclasses.dataclass
@@ -44,7 +45,6 @@ class Step:
     xml: pathlib.Path | None = None  # the results that it writes; None: only its exit code counts
     is_shown: bool = False  # otherwise its output goes to the log
     variables: dict = dataclasses.field(default_factory=dict)  # of the environment
-    is_idle: bool = False  # gets what processor time the others leave, if it runs next to others
 
 
 class Stages:
@@ -74,19 +74,18 @@ class Stages:
 
     @contextlib.contextmanager
     def next_to(self, *steps):
-        """Runs steps, in sessions of their own, next to what the block does; waits for their ends when
-        it ends, and ends them if it raises or a signal ends this process."""
+        """Runs steps next to what the block does, which has precedence; waits for their ends when it
+        ends, and ends them if it raises or a signal ends this process."""
         with contextlib.ExitStack() as stack:
             for number in (signal.SIGTERM, signal.SIGHUP):
                 stack.callback(signal.signal, number, signal.signal(number, exit_by_signal))
             children = []
             for step in steps:
-                command = [*(IDLE if step.is_idle else []), *map(str, step.command)]
-                child = stack.enter_context(subprocess.Popen(command, start_new_session=True,
-                                                             **options_of(step, stack)))
+                child = stack.enter_context(subprocess.Popen(
+                    [*IDLE, *map(str, step.command)], start_new_session=True,
+                    **options_of(step, stack)))
                 stack.callback(end_session, child)
-                if step.is_idle:
-                    lower_weight(child.pid)
+                lower_weight(child.pid)
                 children.append(child)
             yield
             for step, child in zip(steps, children):
@@ -228,8 +227,7 @@ def wheel_step(stages):
     xml = RESULTS / "python.xml"
     return Step("wheel with tools from PyPI",
                 [ROOT / "tools/check_python", WS / "python", "--short", "--limit",
-                 max(1, WHEEL_END_S - stages.seconds()), "--xml", xml], RESULTS / "python.log", xml,
-                is_idle=True)
+                 max(1, WHEEL_END_S - stages.seconds()), "--xml", xml], RESULTS / "python.log", xml)
 
 
 def test_all(stages, fast):
@@ -249,10 +247,9 @@ def run(fast):
     if fast:
         say("--fast leaves out tests that take more than 20 s, campaigns, checks with clang, and other "
             "kinds of workspace")
-    # Tests have time limits, so no other build runs next to them but the idle one of the wheel.
-    with stages.next_to(*([] if fast else [workspaces_step()])):
+    others = [] if fast else [workspaces_step(), wheel_step(stages)]
+    with stages.next_to(*others):
         build_tests(stages)
-    with stages.next_to(*([] if fast else [wheel_step(stages)])):
         test_all(stages, fast)
     stages.begin("adding up the results")
     code = run_child([PYTHON, ROOT / "tools/sum_results.py", RESULTS,

@@ -3,9 +3,9 @@
 """Adds up JUnit-style results (gtest, ctest, rostest, nosetests) under the given folders.
 
 Lists each failed case with the last lines of its report, and ends with one line 'N passed, N failed,
-N skipped'. Exits with 1 if a
-case failed, a file is not a result file, or no test was run. catkin_test_results is not used
-because it ignores unreadable files and does not support ctest results.
+N skipped'. Exits with 1 if a case failed, a file is not a result file, or no test was run.
+catkin_test_results is not used because it ignores unreadable files and does not support ctest
+results.
 """
 import pathlib
 import sys

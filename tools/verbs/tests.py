@@ -120,7 +120,7 @@ def options_of(step, stack):
 def lower_weight(session):
     """Gives the processes of a session the lowest weight among sessions. Linux first shares the
     processor time among sessions ("autogroup", sched(7)), and within each by class, so the idle class
-    alone leaves a step a quarter of a busy core. Linux accepts ten changes a second of users without privileges."""
+    alone leaves a step a quarter of a busy core. Without privileges, ten changes a second succeed."""
     for _ in range(10):
         try:
             pathlib.Path(f"/proc/{session}/autogroup").write_text("19", encoding="ascii")

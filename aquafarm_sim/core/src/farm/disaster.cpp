@@ -102,12 +102,11 @@ void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
   }
 }
 
-// Reflects position and heading at the borders of [low, high]. A disaster that was set outside
-// moves in on its heading; if it moves away, it turns and stays for this step.
+// Reflects a position outside [low, high], and the heading, at the border. A disaster that was set
+// outside moves in on its heading; if it moves away, it turns and stays for this step.
 void Bounce(float& position, float before, float low, float high, std::int32_t mirror,
             Disaster& disaster) {
   const bool below = position < low;
-  if (!below && position <= high) return;
   if (before < low || before > high) {
     if (below ? position >= before : position <= before) return;
     position = before;
@@ -136,8 +135,11 @@ void MeetBorder(Disaster& disaster, float x_before, float y_before, std::int32_t
     disaster.y = Wrapped(disaster.y, low, high_y);
     return;
   }
-  Bounce(disaster.x, x_before, low, high_x, 360, disaster);
-  Bounce(disaster.y, y_before, low, high_y, 180, disaster);
+  const auto is_outside = [low](float position, float high) {
+    return position < low || position > high;
+  };
+  if (is_outside(disaster.x, high_x)) Bounce(disaster.x, x_before, low, high_x, 360, disaster);
+  if (is_outside(disaster.y, high_y)) Bounce(disaster.y, y_before, low, high_y, 180, disaster);
 }
 
 void Turn(Disaster& disaster, const StreamKey& turn_key, std::int32_t step) {

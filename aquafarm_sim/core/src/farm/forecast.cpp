@@ -14,6 +14,7 @@ const std::vector<Waypoint>& TrackOf(const Farm& farm, std::int32_t disaster) {
 
 // Returns the last forecast of a list that was issued by a step; nullptr if there is none.
 const IssuedForecast* LastIssued(const std::vector<IssuedForecast>& list, float step) {
+  if (list.empty()) return nullptr;  // the common case
   const auto next =
       std::upper_bound(list.begin(), list.end(), step,
                        [](float at, const IssuedForecast& forecast) { return at < forecast.step; });

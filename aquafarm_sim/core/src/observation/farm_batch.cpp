@@ -106,6 +106,13 @@ void FarmBatch::StartNext(std::int32_t i, const BatchOutput& output) {
 }
 
 void FarmBatch::Step(const std::uint8_t* actions, const BatchOutput& output) {
+  if (threads_ == 1) {
+    for (std::int32_t i = 0; i < farms(); ++i) {
+      if (i + 1 < farms()) farm(i + 1).Prefetch();
+      StepOne(i, 0, actions, output);
+    }
+    return;
+  }
   const auto step = [&](std::int32_t i, std::int32_t thread) {
     StepOne(i, thread, actions, output);
   };

@@ -29,10 +29,11 @@ bool IsSeen(const std::vector<Sensor>& sensors, Cell cell) {
   return IsSeen(sensors, static_cast<float>(cell.x), static_cast<float>(cell.y), 0.0F);
 }
 
-// In full view the sensors are not used.
+// In full view there are none: ships see everything.
 void CollectSensors(const Farm& farm, Cell self, std::vector<Sensor>& sensors) {
   const ViewSpec& view = farm.scenario().view;
   sensors.clear();
+  if (view.mode == ViewMode::kFull) return;
   sensors.push_back({self, view.sensor_radius});
   for (const Ship& ship : farm.ships()) {
     if (view.shared_sight && ship.active) sensors.push_back({ship.cell, view.sensor_radius});

@@ -6,6 +6,7 @@
 ///   Reward → Finish. Step never allocates. Reset allocates only after SetDisaster or Load
 ///   has set a track, or if another owner still holds the drawn storm's track.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -78,6 +79,9 @@ class Farm {
   /// Starts episode `episode` of the sequence `seed`.
   /// @throws InputError when the episode's layout cannot be drawn; call Reset with another episode
   void Reset(std::uint64_t seed, std::uint64_t episode);
+
+  /// Loads what a step uses into the cache; helps if Step follows after some 50 ns.
+  void Prefetch() const;
 
   /// Executes one step. @param actions one per agent, [AgentCount()], each an Action incl. kHold
   void Step(const std::uint8_t* actions);
@@ -183,7 +187,7 @@ class Farm {
   void PickUp(Ship& ship, std::int32_t id);
   void DropOff(Ship& ship, std::int32_t id);
   void Damage();
-  void Consume();
+  void Consume(const EnergySpec& energy);
   void Reward();
   void Finish();
   void CountShipSteps();
@@ -200,24 +204,27 @@ class Farm {
   void IndexShips();
   std::int32_t DeviceToPickUp(const Ship& ship) const;
 
+  // What a step uses comes first, so that it takes few cache lines.
   std::shared_ptr<const Scenario> scenario_;
-  std::shared_ptr<Layout> own_layout_;  // null when the layout is shared
   std::shared_ptr<const Layout> layout_;
-  std::unique_ptr<LayoutGenerator> generator_;
   std::vector<Ship> ships_;
   std::vector<std::int32_t> ship_index_;  // each ship's linear cell; kNone: out of play
   std::vector<Device> devices_;
   std::vector<Disaster> disasters_;
   std::vector<Track> tracks_;
-  std::vector<Forecasts> forecasts_;
+  std::array<double, 2> move_km_{};  // length of a straight and of a diagonal move
+  std::int32_t remaining_{};         // devices not yet delivered
+  bool draws_storms_{};
   bool tracks_changed_{};  // by SetDisaster or Load during this episode
+  EpisodeRecord record_;
+
+  std::shared_ptr<Layout> own_layout_;  // null when the layout is shared
+  std::unique_ptr<LayoutGenerator> generator_;
+  std::vector<Forecasts> forecasts_;
   std::vector<std::shared_ptr<std::vector<Waypoint>>> drawn_;  // by disaster; null: no storms
   std::vector<const ArchivedStorm*> storms_;                   // by disaster
-  bool draws_storms_{};
   StormPlacer placer_;
   std::vector<StormErrors> storm_errors_;  // of the storm that is placed
-  EpisodeRecord record_;
-  std::int32_t remaining_{};  // devices not yet delivered
 };
 
 /// Returns the fraction of its health that a device aboard loses in a crash into a rock or island.

@@ -66,7 +66,8 @@ struct View {
   std::vector<std::int32_t> by_danger;
   const Scenario* scenario{};
   const Layout* layout{};
-  std::vector<Sensor> sensors;  ///< its own, those of networked agents and of monitoring devices
+  /// Its own, those of networked agents and of monitoring devices; none in full view.
+  std::vector<Sensor> sensors;
 };
 
 /// Fills `view` with the current observation of `ship`.

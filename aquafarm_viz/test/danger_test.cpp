@@ -163,6 +163,15 @@ TEST(DangerMarkers, PutNoLabelOnARockWhereAnotherPlaceIsFree) {
   EXPECT_GT(std::abs(scene.Draw().at({"danger_label", 0}).pose.position.y - first), 500.0);
 }
 
+TEST(DangerMarkers, PutNoLabelOnAnIslandWhereWaterIsFree) {
+  Scene scene;
+  scene.spec.rocks.clear();
+  scene.spec.islands.clear();
+  const double first = scene.Draw().at({"danger_label", 0}).pose.position.y;
+  scene.spec.islands.push_back(test::MakeCell(4, static_cast<int>(std::lround(first / 1000.0))));
+  EXPECT_GT(std::abs(scene.Draw().at({"danger_label", 0}).pose.position.y - first), 500.0);
+}
+
 // A storm in the south-east whose pointer lies next to the device that it reaches first.
 struct SceneNextToAPointer : Scene {
   SceneNextToAPointer() {
@@ -295,7 +304,7 @@ TEST(DangerMarkers, SayWhenAStormOutsideIsClosest) {
   scene.SetTrackTo(-3);
   scene.state.disasters[0].speed = 0.5F;
   EXPECT_EQ(scene.Draw().at({"pointer_label", 0}).text,
-            "typhoon, centre 20 km W\nE, 0.50 cells a step, closest 15 km W in 30 min");
+            "typhoon, centre 20 km W\nE at 10 km/h, closest 15 km W in 30 min");
 }
 
 TEST(DangerMarkers, FollowTheTrackOfTheScenario) {

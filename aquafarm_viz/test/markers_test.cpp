@@ -80,21 +80,46 @@ TEST(SpecMarkers, NameLongitudesBelowAndLatitudesOnTheLeft) {
   spec.origin_latitude_deg = 30.1;
   spec.origin_longitude_deg = 122.6;
   const auto texts = AxisTexts(spec);
-  const auto east = texts.at("122-40E");
+  const auto east = texts.at("122 40'E");
   const double m_per_degree = 111320.0 * std::cos(30.1 * M_PI / 180.0);
   EXPECT_NEAR(east.first, (122.0 + 40.0 / 60.0 - 122.6) * m_per_degree, 100.0);
   EXPECT_LT(east.second, -500.0);
-  const auto north = texts.at("30-10N");
+  const auto north = texts.at("30 10'N");
   EXPECT_LT(north.first, -500.0);
   EXPECT_NEAR(north.second, (30.0 + 10.0 / 60.0 - 30.1) * 110850.0, 100.0);
   spec.origin_latitude_deg = -30.1;
-  EXPECT_EQ(AxisTexts(spec).count("30-00S"), 1U);
+  EXPECT_EQ(AxisTexts(spec).count("30 00'S"), 1U);
 }
 
 TEST(SpecMarkers, NumberCellsWithoutAPlace) {
   const auto texts = AxisTexts(test::MakeSpec());
   EXPECT_EQ(texts.count("24"), 1U);
   EXPECT_EQ(texts.count("25"), 0U);
+}
+
+TEST(StateMarkers, NameShipsOnlyIfThereAreSeveral) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  state.ships.resize(1);
+  EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"ship_name", 0}).action, Marker::DELETE);
+  state.ships.push_back(state.ships[0]);
+  state.ships[1].id = 1;
+  state.ships[1].x += 3;
+  EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"ship_name", 0}).text, "0");
+  EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"ship_name", 1}).text, "1");
+}
+
+TEST(StateMarkers, NameADisasterOnTheSideThatItsArrowLeavesFree) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  for (const auto& [heading_deg, is_above] :
+       {std::pair(0, false), {90, false}, {135, true}, {180, true}, {225, true}, {315, false}}) {
+    state.disasters[0].heading_deg = heading_deg;
+    state.disasters[0].speed = 0.5F;
+    const auto markers = ByKey(StateMarkers(spec, state));
+    const auto& name = markers.at({"disaster_name", 0}).pose.position;
+    EXPECT_EQ(name.y > markers.at({"disaster", 0}).pose.position.y, is_above) << heading_deg;
+  }
 }
 
 TEST(SpecMarkers, AreInMetresOfFrameMap) {
@@ -409,7 +434,7 @@ TEST(ValueLegend, HasTheRangeTheColoursAndTheSymbolsWithinTheViewOfTheFarm) {
     EXPECT_LT(marker.colors.front().g, 0.15F) << "viridis begins with dark violet";
     EXPECT_GT(marker.colors.back().g, 0.8F) << "and ends with yellow";
   }
-  EXPECT_EQ(words, "value -3.9||157.7|best move: arrow||pickup||drop-off|");
+  EXPECT_EQ(words, "return -3.9||157.7|best move: arrow||pickup||drop-off|");
   const auto keys = Keys(draw());
   values.highest = values.lowest;
   EXPECT_EQ(Keys(draw()), keys) << "a policy without values deletes the range";
@@ -434,7 +459,7 @@ TEST(SpecMarkers, HaveOneLineOfTheKeyForEachSymbolOfDanger) {
   for (const auto& marker : SpecMarkers(spec, false).markers) {
     if (marker.ns == "sign_legend_text") words += marker.text + "|";
   }
-  EXPECT_EQ(words, "device in danger|to the centre|its heading|");
+  EXPECT_EQ(words, "device in danger|to the centre|its heading|hatched: at risk|");
   for (const auto& marker : SpecMarkers(spec, false, ParseLayers("none")).markers) {
     EXPECT_NE(marker.ns, "sign_legend_text") << "without risks there are no such symbols";
   }

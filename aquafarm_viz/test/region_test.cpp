@@ -341,6 +341,7 @@ TEST(Nautical, WritesDistancesBearingsAndTimes) {
   EXPECT_EQ(HoursText(136800.0), "38 h");
   EXPECT_EQ(TimeText(1627095600, "%d %b %H:%M UTC"), "24 Jul 03:00 UTC");
   spec.has_origin = false;
+  spec.step_duration_s = 0.0;
   EXPECT_EQ(MotionText(spec, 315, 0.5), "NW, 0.50 cells a step");
   EXPECT_EQ(MotionText(spec, 315, 0.0), "stands still");
   spec.has_origin = true;

@@ -37,7 +37,7 @@ TEST(Signs, HaveOneLineOfTheKeyEach) {
   for (std::size_t i = 0; i < 2; ++i) courses.push_back(CourseOf(spec, state, i, {}));
   const Outlook outlook = ComputeOutlook(spec, state, courses);
   const Layout layout = MakeLayout(25, 25, kSignsSize);
-  const auto signs = SignsOf(spec, state, overlays, outlook, layout);
+  const auto signs = SignsOf(spec, state, overlays, outlook, {}, layout);
   std::set<std::string> words;
   const Fonts fonts(layout.unit);
   for (const Sign sign : signs) {
@@ -45,12 +45,44 @@ TEST(Signs, HaveOneLineOfTheKeyEach) {
     EXPECT_LE(fonts.small.Width(SignWords(sign)), (layout.panel.width - 16) / 2 - 20)
         << SignWords(sign) << " fits";
   }
-  EXPECT_EQ(words, (std::set<std::string>{"first hit", "in danger", "in port", "ship path",
-                                          "to centre", "heading", "legal move", "sensors"}));
+  EXPECT_EQ(words,
+            (std::set<std::string>{"at risk", "first hit", "in danger", "in port", "ship path",
+                                   "to centre", "heading", "legal move", "sensors"}));
+  const RiskKey key{{34, -5.0, aquafarm_msgs::DisasterState::TYPHOON}};
+  EXPECT_EQ(SignsOf(spec, state, overlays, outlook, key, layout).size() + 1, signs.size())
+      << "the key of risks shows the pattern";
   overlays.layers = ParseLayers("none");
   state.disasters.clear();
   state.devices.clear();
-  EXPECT_TRUE(SignsOf(spec, state, overlays, {}, layout).empty());
+  EXPECT_TRUE(SignsOf(spec, state, overlays, {}, {}, layout).empty());
+}
+
+TEST(RiskSample, DiffersByKindAndRiskAndStaysInItsBox) {
+  const Layout layout = MakeLayout(25, 25, kSignsSize);
+  const cv::Rect box(10, 8, 15, 12);
+  std::vector<cv::Mat> samples;
+  for (const double risk : {-5.0, -20.0}) {
+    for (std::size_t kind = 0; kind < DisasterKindCount(); ++kind) {
+      cv::Mat image(30, 40, CV_8UC3, cv::Scalar::all(7));
+      DrawRiskSample(image, box, static_cast<std::uint8_t>(kind), risk, layout);
+      samples.push_back(image(box).clone());
+      image(box).setTo(cv::Scalar::all(7));
+      EXPECT_EQ(cv::norm(image - cv::Scalar::all(7)), 0.0) << kind;
+    }
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_GT(cv::norm(samples[i] - samples[j]), 50.0) << i << " and " << j;
+    }
+  }
+  cv::Mat small(4, 4, CV_8UC3, cv::Scalar::all(7));
+  DrawRiskSample(small, box, 0, -5.0, layout);  // outside the picture
+  EXPECT_EQ(cv::norm(small - cv::Scalar::all(7)), 0.0);
+}
+
+TEST(Layout, HasAPanelOfAQuarterOfAWidePicture) {
+  EXPECT_GE(MakeLayout(20, 14, {960, 640}).panel.width, 250);
+  EXPECT_LT(MakeLayout(20, 14, {640, 640}).panel.width, 250) << "less is left next to a small map";
 }
 
 TEST(Signs, OfAPortStandNextToAShipInIt) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <vector>
 
@@ -182,6 +183,26 @@ void PaintRow(std::uint8_t* pixel, const std::uint8_t* land, int row, const Ring
 }
 
 }  // namespace
+
+void DrawRiskSample(cv::Mat& image, cv::Rect box, std::uint8_t kind, double risk,
+                    const Layout& layout) {
+  box &= cv::Rect({0, 0}, image.size());
+  if (box.empty()) return;
+  cv::rectangle(image, box, Bgr(layout.style->sea_south), cv::FILLED);
+  Patterns patterns(DisasterKindCount());
+  patterns[KindIndex(kind)].emplace(kind, std::max(4, layout.Px(6)));
+  const ShadeTable table = MakeShadeTable(*layout.style);
+  const std::vector<std::uint8_t> land(std::size_t(box.width), 0);
+  RingRow line(std::size_t(box.width), kind);
+  line.Clear();
+  std::fill(line.shades.begin(), line.shades.end(), static_cast<float>(Shade(risk)));
+  for (int row = 0; row < box.height; ++row) {
+    const bool is_edge = row == 0 || row == box.height - 1;
+    std::fill(line.edges.begin(), line.edges.end(), is_edge ? 1.0F : 0.0F);
+    line.edges.front() = line.edges.back() = 1.0F;
+    PaintRow(image.ptr(box.y + row) + 3 * box.x, land.data(), row, line, patterns, table);
+  }
+}
 
 void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land,
                     const Layout& layout) {

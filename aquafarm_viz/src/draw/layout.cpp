@@ -13,6 +13,7 @@ constexpr double kDesignSide = 640.0;
 constexpr double kTop = 46.0;
 constexpr double kBottom = 44.0;
 constexpr double kPanelWidth = 184.0;
+constexpr double kPanelShare = 0.26;      // of the width, if that is more
 constexpr double kMaxPanelWidth = 276.0;  // if the map leaves space
 constexpr double kAxisLeft = 52.0;
 constexpr double kAxisBottom = 18.0;
@@ -45,7 +46,8 @@ Layout MakeLayout(int width, int height, ImageSize size, const Style& style) {
   if (short_side >= kSmallest) {
     layout.top = {0, 0, size.width, layout.Px(kTop)};
     layout.bottom = {0, size.height - layout.Px(kBottom), size.width, layout.Px(kBottom)};
-    const int panel = layout.Px(kPanelWidth);
+    const int panel = std::clamp(cvRound(kPanelShare * size.width), layout.Px(kPanelWidth),
+                                 layout.Px(kMaxPanelWidth));
     layout.panel = {size.width - panel, layout.top.height, panel,
                     layout.bottom.y - layout.top.height};
     room = {layout.Px(kAxisLeft), layout.top.height + layout.Px(kGap),
@@ -77,6 +79,11 @@ MapPlace PlaceMap(int width, int height, ImageSize size) {
 
 void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Point top_left,
                const Layout& layout) {
+  DrawLabel(image, font, text, top_left, layout, layout.style->label);
+}
+
+void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Point top_left,
+               const Layout& layout, Rgb color) {
   const cv::Point base = top_left + cv::Point(0, font.cap_height());
   const int width = layout.Px(1.2);
   for (int dy = -width; dy <= width; ++dy) {
@@ -85,7 +92,7 @@ void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Po
       font.Draw(image, text, base + cv::Point(dx, dy), Bgr(layout.style->halo));
     }
   }
-  font.Draw(image, text, base, Bgr(layout.style->label));
+  font.Draw(image, text, base, Bgr(color));
 }
 
 Fonts::Fonts(double unit)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "aquafarm/tracks/wind_name.h"
 #include "draw/symbols.h"
@@ -19,7 +20,8 @@ constexpr double kSymbolRow = 57.0;  // of the middle of the lowest row of symbo
 constexpr double kRow = 17.0;
 constexpr double kKeyRow = 15.0;    // of a ring with its name
 constexpr double kKeyScale = 24.0;  // of the scale of risks with its words
-constexpr double kWide = 230.0;     // a panel this wide has all symbols in one row
+constexpr double kMildRisk = -5.0;
+constexpr double kWide = 230.0;  // a panel this wide has all symbols in one row
 
 bool IsWide(const Layout& layout) { return layout.panel.width >= layout.Px(kWide); }
 
@@ -142,7 +144,8 @@ RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) 
     if (winds.empty()) return {};  // its risks have no name
     for (std::size_t ring = winds.size(); ring-- > 0;) {
       if (!HasRing(courses[i], ring)) continue;
-      const NamedRing one{winds[ring], std::round(courses[i].ahead.front().risks[ring])};
+      const NamedRing one{winds[ring], std::round(courses[i].ahead.front().risks[ring]),
+                          state.disasters[i].kind};
       const auto is_same = [&one](const NamedRing& other) {
         return other.wind_kt == one.wind_kt && other.risk == one.risk;
       };
@@ -163,12 +166,15 @@ std::string FittingRingName(std::int32_t wind_kt, int width_px, const Font& font
 }
 
 std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Overlays& overlays,
-                          const Outlook& outlook, const Layout& layout) {
+                          const Outlook& outlook, const RiskKey& key, const Layout& layout) {
   std::vector<Sign> signs;
   const auto add = [&signs](bool is_shown, Sign sign) {
     if (is_shown) signs.push_back(sign);
   };
   const Layers& layers = overlays.layers;
+  add(layers.risk && key.empty() &&
+          std::any_of(state.disasters.begin(), state.disasters.end(), IsDrawn),
+      Sign::kAtRisk);
   const auto in_danger = layers.risk ? CountInDanger(outlook) : 0;
   add(in_danger > 0, Sign::kFirstReached);
   add(in_danger > 1, Sign::kInDanger);
@@ -202,6 +208,8 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
 
 const char* SignWords(Sign sign) {
   switch (sign) {
+    case Sign::kAtRisk:
+      return "at risk";
     case Sign::kFirstReached:
       return "first hit";
     case Sign::kInDanger:
@@ -224,6 +232,20 @@ const char* SignWords(Sign sign) {
 
 namespace {
 
+// Draws the patterns of the kinds of the drawn disasters side by side.
+void DrawRiskSamples(cv::Mat& image, cv::Point2d at, const FarmState& state, const Layout& layout) {
+  std::set<std::uint8_t> kinds;
+  for (const auto& disaster : state.disasters) {
+    if (IsDrawn(disaster)) kinds.insert(disaster.kind);
+  }
+  const int width = layout.Px(15) / std::max(1, static_cast<int>(kinds.size()));
+  cv::Rect box(cvRound(at.x) - layout.Px(7), cvRound(at.y) - layout.Px(6), width, layout.Px(12));
+  for (const std::uint8_t kind : kinds) {
+    DrawRiskSample(image, box, kind, kMildRisk, layout);
+    box.x += width;
+  }
+}
+
 void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
               const Layout& layout) {
   const double unit = layout.unit;
@@ -231,6 +253,9 @@ void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
   const cv::Point2d half(7.0 * unit, 0.0);
   static const std::vector<cv::Point2f> kPointer{{0.0F, 1.0F}, {0.75F, -0.7F}, {-0.75F, -0.7F}};
   switch (sign) {
+    case Sign::kAtRisk:
+      DrawRiskSamples(image, at, state, layout);
+      break;
     case Sign::kFirstReached:
       StrokeCircle(image, at, 3.0 * unit, Bgr(style.Risk(0.0)), layout.Px(1.4));
       [[fallthrough]];
@@ -298,9 +323,8 @@ void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& si
   };
   for (const NamedRing& ring : key) {
     const int base = y + (layout.Px(kKeyRow) + fonts.small.cap_height()) / 2;
-    const cv::Rect bar(left, y + layout.Px(kKeyRow / 2) - layout.Px(3), layout.Px(14),
-                       layout.Px(6));
-    cv::rectangle(image, bar, Bgr(layout.style->Risk(Severity(ring.risk))), cv::FILLED);
+    const cv::Rect box(left, y + layout.Px(1.5), layout.Px(15), layout.Px(12));
+    DrawRiskSample(image, box, ring.kind, ring.risk, layout);
     const std::string risk = "risk " + Number(ring.risk, 0);
     const int words = left + layout.Px(22);
     const int space = right - fonts.small.Width(risk) - layout.Px(4) - words;

@@ -26,6 +26,7 @@ struct Overlays;
 struct NamedRing {
   std::int32_t wind_kt{};
   double risk{};
+  std::uint8_t kind{};  ///< of the storm, a kind of DisasterState
 };
 
 /// The rings that the key of risks names, the weakest first; empty: the scale of all risks.
@@ -41,6 +42,7 @@ std::string FittingRingName(std::int32_t wind_kt, int width_px, const Font& font
 
 /// A symbol of the map that the lists of the panel do not explain.
 enum class Sign {
+  kAtRisk,        ///< pattern of the rings, unless the key of risks shows it
   kInDanger,      ///< ring around a device
   kFirstReached,  ///< two rings around a device
   kDelivered,     ///< small device at a port
@@ -54,7 +56,7 @@ enum class Sign {
 /// Returns the signs that a picture shows, each once.
 std::vector<Sign> SignsOf(const aquafarm_msgs::FarmSpec& spec,
                           const aquafarm_msgs::FarmState& state, const Overlays& overlays,
-                          const Outlook& outlook, const Layout& layout);
+                          const Outlook& outlook, const RiskKey& key, const Layout& layout);
 
 /// Returns the words of a sign in the key.
 const char* SignWords(Sign sign);

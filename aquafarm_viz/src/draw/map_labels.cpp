@@ -307,11 +307,14 @@ void LabelShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, Free
   for (const auto& ship : state.ships) {
     if (!ship.visible || !ship.active || ship.own_device >= 0) continue;
     if (!InGrid(spec, ship.x, ship.y)) continue;
-    const std::string text = std::to_string(ship.id);
+    const std::string text = "ship " + std::to_string(ship.id);
     const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
     const cv::Point2d at = layout.view.ToPixel(ship.x, ship.y);
-    const auto place = space.Take(size, at, 2.0 * layout.ship_radius_px() + 16.0 * layout.unit);
-    if (place) DrawLabel(map, fonts.bold, text, place->tl(), layout);
+    const double farthest = 2.0 * layout.ship_radius_px() + size.width / 2.0 + 10.0 * layout.unit;
+    const auto place = space.Take(size, at, farthest);
+    if (!place) continue;
+    DrawLabel(map, fonts.bold, text, place->tl(), layout,
+              Mix(ShipColor(ship.id), layout.style->label, 0.5));
   }
 }
 

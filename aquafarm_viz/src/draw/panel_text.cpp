@@ -220,6 +220,13 @@ std::string TimeOfDay(const FarmSpec& spec, std::int64_t at_s) {
   return std::to_string(at_s / 3600) + ":" + (minutes.size() < 2 ? "0" : "") + minutes;
 }
 
+// Shortens "hurricane force in 9 h" to "hurricane in 9 h".
+std::string WithoutForce(std::string text) {
+  const std::string word = " force";
+  const std::size_t at = text.find(word);
+  return at == std::string::npos ? text : text.erase(at, word.size());
+}
+
 // One row for each device: its symbol, kind, and danger or status.
 void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                     const Outlook& outlook, const Layout& layout) {
@@ -238,11 +245,16 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
       if (one.id != device.id || DangerText(spec, one).empty()) continue;
       color = layout.style->alarm;
       status = DangerText(spec, one);
-      // The symbol shows the kind too.
+      const std::string full = name;  // the symbol shows the kind too
       if (!panel.Fits(name, status)) name = label;
       if (!panel.Fits(name, status)) status = WorstText(spec, one);
       if (!panel.Fits(name, status)) status = RiskText(spec, one);
       if (!panel.Fits(name, status)) status = RiskText(spec, one, ", ");
+      const std::string brief = WithoutForce(status);
+      if (name != full && panel.Fits(full, brief)) {
+        name = full;
+        status = brief;
+      }
     }
     panel.Item(name, status, color);
   }
@@ -281,7 +293,8 @@ void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, con
 
 void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
                    const std::vector<Course>& courses, const Layout& layout, int rows) {
-  static constexpr std::array<const char*, 5> kGrades{"", "blue", "yellow", "orange", "red"};
+  static constexpr std::array<const char*, 5> kGrades{"", "blue alert", "yellow alert",
+                                                      "orange alert", "red alert"};
   int shown = 0;
   panel.Heading("DISASTERS", "");
   for (std::size_t i = 0; i < state.disasters.size(); ++i) {
@@ -306,9 +319,14 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
         disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago";
     std::string wind = over ? "" : WindText(courses[i].ahead.front());
     const std::string both = grade + (known.empty() ? "" : ", " + known);
-    if (panel.Fits(kind, both) && panel.Fits(motion, "wind " + wind)) {  // in two rows
+    if (wind.empty() && panel.Fits(motion, known)) {
+      panel.Item(kind, grade, color);
+      panel.Detail(motion, known, layout.style->words);
+      continue;
+    }
+    if (panel.Fits(kind, both) && panel.Fits(motion, "wind " + wind)) {
       panel.Item(kind, both, color);
-      panel.Detail(motion, wind.empty() ? "" : "wind " + wind, layout.style->words);
+      panel.Detail(motion, "wind " + wind, layout.style->words);
       continue;
     }
     panel.Item(kind, grade, color);
@@ -392,9 +410,10 @@ bool ListPolicy(Panel& panel, const FarmState& state, const Overlays& overlays,
   const bool has_step = values != nullptr && values->step;
   panel.Heading("POLICY " + PolicyName(overlays), has_step ? "step " + Count(*values->step) : "");
   if (has_scale) {
-    panel.Ends("return expected from a cell", "");
+    panel.Ends("return expected from each cell", "");
     panel.ValueBar();
-    panel.Ends(Number(double(values->lowest), 1), Number(double(values->highest), 1));
+    panel.Ends(Number(double(values->lowest), 1) + " points",
+               Number(double(values->highest), 1) + " points");
   }
   if (has_moves) {
     DrawMove(panel.image(), panel.SymbolAt(), 3, 13.0 * layout.unit, layout);
@@ -448,7 +467,7 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                const Layout& layout, const Fonts& fonts) {
   if (layout.panel.empty()) return false;
   const RiskKey key = MakeRiskKey(state, forecasts.courses);
-  const std::vector<Sign> signs = SignsOf(spec, state, overlays, forecasts.outlook, layout);
+  const std::vector<Sign> signs = SignsOf(spec, state, overlays, forecasts.outlook, key, layout);
   DrawSigns(image, signs, state, layout, fonts);
   DrawRiskKey(image, key, signs, layout, fonts);
   Panel panel(image, LegendPx(key, signs, layout), layout, fonts);

@@ -84,6 +84,11 @@ cv::Mat1b IslandCoverage(const aquafarm_msgs::FarmSpec& spec, const Layout& layo
 void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const cv::Mat1b& land,
                     const Layout& layout);
 
+/// Draws a part of an area at risk into a box of a legend: the pattern of the kind and the colour
+/// of the risk.
+void DrawRiskSample(cv::Mat& image, cv::Rect box, std::uint8_t kind, double risk,
+                    const Layout& layout);
+
 /// Where the sign of a disaster is drawn [pixels of the map].
 struct SignPlace {
   cv::Point2d at;  ///< centre, or the pointer at the border
@@ -99,8 +104,11 @@ void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmState& state, cons
 
 /// Draws a text with an outline, so that it can be read on any background.
 /// @param top_left  of its capital letters
+/// @param color  without it, that of labels
 void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Point top_left,
                const Layout& layout);
+void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Point top_left,
+               const Layout& layout, Rgb color);
 
 /// Draws the trails or routes of the ships: older parts fade into the sea.
 void DrawPaths(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& paths,

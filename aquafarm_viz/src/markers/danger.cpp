@@ -47,7 +47,7 @@ struct Plate {
 };
 
 // Places labels in the farm, so that they cover neither devices, ships and ports nor each other,
-// and rocks only where nothing else is free.
+// and land only where nothing else is free.
 class Labels {
  public:
   Labels(const Maker& maker, const FarmSpec& spec, const FarmState& state)
@@ -59,8 +59,8 @@ class Labels {
       const cv::Point shift = PortShift(spec, state, port);
       Block(port.cell.x + shift.x, port.cell.y + shift.y, half);
     }
-    for (const auto& rock : spec.rocks)
-      rocks_.push_back({rock.cell.x * 1.0, rock.cell.y * 1.0, 0.42, 0.42});
+    for (const auto& rock : spec.rocks) BlockLand(rock.cell, 0.42);
+    for (const auto& cell : spec.islands) BlockLand(cell, 0.5);
   }
 
   void Block(double x, double y, double half) { used_.push_back({x, y, half, half}); }
@@ -109,16 +109,16 @@ class Labels {
     const double half_height = (0.1 + 0.5 * double(lines)) * word_;
     const double row = std::max(1.5, 1.5 * word_) + half_height - 0.6 * word_;
     Plate plate{x, y, half_width, half_height};
-    // A rock may be covered rather than that the label is far away.
+    // Land may be covered rather than that the label is far away.
     const double near = half_width + 4.0 * row;
     constexpr std::array<std::pair<bool, bool>, 4> kTries{
         {{true, true}, {true, false}, {false, true}, {false, false}}};
-    for (const auto& [is_near, avoids_rocks] : kTries) {
+    for (const auto& [is_near, avoids_land] : kTries) {
       for (const cv::Point2d& offset : OffsetsOf(half_width, row, must_show)) {
         if ((cv::norm(offset) <= near) != is_near) continue;
         plate.x = std::clamp(x + offset.x, half_width - 0.5, spec_.width - 0.5 - half_width);
         plate.y = std::clamp(y + offset.y, half_height - 0.5, spec_.height - 0.5 - half_height);
-        if (Covers(plate, used_) || (avoids_rocks && Covers(plate, rocks_))) continue;
+        if (Covers(plate, used_) || (avoids_land && Covers(plate, land_))) continue;
         used_.push_back(plate);
         labels_.push_back(plate);
         return plate;
@@ -131,6 +131,10 @@ class Labels {
   }
 
  private:
+  void BlockLand(const aquafarm_msgs::Cell& cell, double half) {
+    land_.push_back({double(cell.x), double(cell.y), half, half});
+  }
+
   // Where a label may stand relative to its point, the nearest first: anywhere in the farm if it
   // must be shown.
   std::vector<cv::Point2d> OffsetsOf(double half_width, double row, bool is_anywhere) const {
@@ -163,7 +167,7 @@ class Labels {
   double word_;  // height of a text [cells]
   std::vector<Plate> used_;
   std::vector<Plate> labels_;
-  std::vector<Plate> rocks_;
+  std::vector<Plate> land_;  // islands and rocks
 };
 
 // Adds a text on a dark plate, so that it can be read on any ground.

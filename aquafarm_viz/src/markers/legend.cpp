@@ -188,12 +188,13 @@ void AddSignLegend(MarkerArray& array, const FarmSpec& spec) {
   row.Text("to the centre");
   row.Arrow();
   row.Text("its heading");
+  row.Text("hatched: at risk");
 }
 
 void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& values) {
   Row row(array, spec, 2, "value_legend");
   if (values.highest > values.lowest) {
-    row.Text("value " + Number(double(values.lowest), 1));
+    row.Text("return " + Number(double(values.lowest), 1));
     row.ValueBar(3.0 * row.size_m());
     row.Text(Number(double(values.highest), 1));
     row.Skip(0.6 * row.size_m());

@@ -219,7 +219,8 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
   }
 }
 
-void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, const Trail* trail) {
+void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, bool is_named,
+             const Trail* trail) {
   static const std::vector<cv::Point2f> kBow{{0.0F, 1.25F}, {-0.5F, 0.6F}, {0.5F, 0.6F}};
   static const std::vector<cv::Point2f> kDeck{{-0.22F, 0.42F}, {-0.26F, -0.1F}, {-0.22F, -0.68F},
                                               {0.22F, -0.68F}, {0.26F, -0.1F},  {0.22F, 0.42F}};
@@ -234,6 +235,7 @@ void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, cons
                             0.62 * maker.thing_m(), ShipColor(ship.id));
   deck.pose.orientation = turned;
   array.markers.push_back(deck);
+  if (!is_named) return array.markers.push_back(maker.Delete("ship_name", ship.id));
   const double aside = 0.75 * maker.thing_m() / maker.cell_m();
   array.markers.push_back(maker.Text("ship_name", ship.id, ship.x + aside, ship.y - aside,
                                      std::to_string(ship.id), maker.word_m(), kPaper));
@@ -243,7 +245,7 @@ void AddShips(MarkerArray& array, const Maker& maker, const FarmSpec& spec, cons
               const Trail* trail) {
   for (const auto& ship : state.ships) {
     if (ship.visible && ship.active && InGrid(spec, ship.x, ship.y)) {
-      AddShip(array, maker, ship, trail);
+      AddShip(array, maker, ship, /*is_named=*/state.ships.size() > 1, trail);
       continue;
     }
     array.markers.push_back(maker.Delete("ship", ship.id));
@@ -260,8 +262,10 @@ void AddDisasterSigns(MarkerArray& array, const Maker& maker, const DisasterStat
   eye.scale.z = 0.5 * maker.layer_m();
   eye.color = Color(GradeColor(disaster.grade));
   array.markers.push_back(eye);
-  const double below = 0.9 * maker.thing_m() / maker.cell_m();
-  array.markers.push_back(maker.Text("disaster_name", disaster.id, disaster.x, disaster.y - below,
+  // On the side that the arrow of its motion leaves free.
+  const bool is_above = std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1;
+  const double aside = (is_above ? 0.9 : -0.9) * maker.thing_m() / maker.cell_m();
+  array.markers.push_back(maker.Text("disaster_name", disaster.id, disaster.x, disaster.y + aside,
                                      DisasterName(disaster.kind), maker.word_m(), kPaper));
   if (!(disaster.speed > 0.0F)) {
     array.markers.push_back(maker.Delete("heading", disaster.id));

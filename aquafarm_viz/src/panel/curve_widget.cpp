@@ -44,8 +44,8 @@ double DrawName(QPainter& painter, const QPointF& at, const QColor& color, const
 
 CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve) {
   if (curve.empty()) return {0.0, 1.0};
-  // The first episodes are long, so they have more points than later ones.
-  const double from = curve.front().episode + 0.1 * (curve.back().episode - curve.front().episode);
+  // Without the steep rise at the start, which would flatten all that follows.
+  const double from = curve.front().episode + (curve.back().episode - curve.front().episode) / 3.0;
   double low = curve.back().mean_return;
   double high = low;
   for (const CurvePoint& point : curve) {

@@ -7,6 +7,7 @@
 #include <QIcon>
 #include <QPainter>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <climits>
 #include <utility>
 
@@ -16,7 +17,9 @@
 namespace aquafarm_viz {
 namespace {
 
-QTableWidget* MakeTable(const RanchModel::Row& columns, int rows_seen) {
+constexpr int kRow_px = 20;  // height of a table's row
+
+QTableWidget* MakeTable(const RanchModel::Row& columns) {
   auto* table = new QTableWidget(0, static_cast<int>(columns.size()));
   QStringList names;
   for (const std::string& column : columns) names << Text(column);
@@ -24,15 +27,20 @@ QTableWidget* MakeTable(const RanchModel::Row& columns, int rows_seen) {
   table->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
   table->horizontalHeader()->setMinimumSectionSize(30);
   table->verticalHeader()->hide();
-  table->verticalHeader()->setDefaultSectionSize(20);
+  table->verticalHeader()->setMinimumSectionSize(kRow_px);
+  table->verticalHeader()->setDefaultSectionSize(kRow_px);
   table->setEditTriggers(QAbstractItemView::NoEditTriggers);
   table->setSelectionMode(QAbstractItemView::NoSelection);
-  table->setMinimumHeight(28 + 20 * rows_seen);
   return table;
 }
 
-void Fill(QTableWidget* table, const std::vector<RanchModel::Row>& rows) {
-  table->setRowCount(static_cast<int>(rows.size()));
+// Shows rows. The table is as tall as they are; beyond `rows_seen` it may get a scroll bar.
+void Fill(QTableWidget* table, const std::vector<RanchModel::Row>& rows, int rows_seen) {
+  const int count = static_cast<int>(rows.size());
+  table->setRowCount(count);
+  const int head_px = table->horizontalHeader()->sizeHint().height() + 2 * table->frameWidth();
+  table->setMinimumHeight(head_px + kRow_px * std::clamp(count, 1, rows_seen));
+  table->setMaximumHeight(head_px + kRow_px * std::max(count, 1));
   for (int y = 0; y < table->rowCount(); ++y) {
     const RanchModel::Row& row = rows[static_cast<std::size_t>(y)];
     for (int x = 0; x < table->columnCount(); ++x) {
@@ -73,17 +81,18 @@ RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget*
   bold.setBold(true);
   headline_->setFont(bold);
   reward_ = AddLine(all);
-  all->addWidget(ships_ = MakeTable(RanchModel::ShipColumns(), 2), 1);
-  all->addWidget(devices_ = MakeTable(RanchModel::DeviceColumns(), 4), 2);
+  all->addWidget(ships_ = MakeTable(RanchModel::ShipColumns()), 1);
+  all->addWidget(devices_ = MakeTable(RanchModel::DeviceColumns()), 2);
   devices_->horizontalHeader()->setSectionResizeMode(1, QHeaderView::ResizeToContents);  // symbols
   plan_ = AddLine(all);
   plan_->setObjectName("plan");
-  all->addWidget(plan_ships_ = MakeTable(PlanShipColumns(), 2), 1);
+  all->addWidget(plan_ships_ = MakeTable(PlanShipColumns()), 1);
   plan_ships_->setObjectName("plan_ships");
-  all->addWidget(plan_devices_ = MakeTable(PlanDeviceColumns(), 4), 2);
+  all->addWidget(plan_devices_ = MakeTable(PlanDeviceColumns()), 2);
   plan_devices_->setObjectName("plan_devices");
   training_ = AddLine(all);
   all->addWidget(curve_ = new CurveWidget(), 2);
+  all->addStretch();
   AddTime(all);
   AddPlaces(all);
   AddHelm(all);
@@ -214,8 +223,8 @@ void RanchWidget::Refresh() {
   headline_->setText(Text(model_.Headline()));
   reward_->setText(Text(model_.RewardLine()));
   training_->setText(Text(model_.TrainingLine()));
-  Fill(ships_, model_.Ships());
-  Fill(devices_, model_.Devices());
+  Fill(ships_, model_.Ships(), 2);
+  Fill(devices_, model_.Devices(), 4);
   AddSymbols();
   curve_->Show(model_.curve());
   curve_->setVisible(!model_.curve().empty());
@@ -247,8 +256,8 @@ void RanchWidget::RefreshPlan() {
   }
   if (plan == nullptr) return;
   RefreshPlanAge();
-  Fill(plan_ships_, PlanShips(*plan, model_.PlanNow()));
-  Fill(plan_devices_, PlanDevices(*plan));
+  Fill(plan_ships_, PlanShips(*plan, model_.PlanNow()), 2);
+  Fill(plan_devices_, PlanDevices(*plan), 4);
 }
 
 void RanchWidget::ShowMessage(const std::string& line) { message_->setText(Text(line)); }

@@ -71,7 +71,7 @@ std::string WorldTimeText(const aquafarm_msgs::FarmSpec& spec,
 std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, double cells_a_step) {
   if (!(cells_a_step > 0.0)) return "stands still";
   const std::string point = CompassPoint(heading_deg);
-  if (!spec.has_origin || !(spec.step_duration_s > 0.0)) {
+  if (!(spec.step_duration_s > 0.0)) {
     return point + ", " + Number(cells_a_step, 2) + " cells a step";
   }
   const double km_h = cells_a_step * spec.cell_size_m / 1000.0 / (spec.step_duration_s / kHour_s);

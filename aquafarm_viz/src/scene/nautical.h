@@ -34,7 +34,7 @@ std::string TimeText(std::time_t utc, const char* format);
 std::string LocalTimeText(const aquafarm_msgs::FarmSpec& spec, std::time_t utc, const char* format);
 
 /// Returns the compass bearing and the speed of a moving centre, such as "NW at 18 km/h"; in cells
-/// per step on a farm without a geographic position; "stands still" at speed 0.
+/// per step on a farm whose steps have no duration; "stands still" at speed 0.
 std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, double cells_a_step);
 
 /// Returns a disaster's max sustained wind, such as "38 m/s"; empty if it is not given.

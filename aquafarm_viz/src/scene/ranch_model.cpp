@@ -75,9 +75,9 @@ std::string RanchModel::RewardLine() const {
 std::string RanchModel::TrainingLine() const {
   if (training_ == nullptr) return "";
   const TrainingStatus& now = *training_;
-  std::string text = now.algorithm + ", " + PhaseName(now.phase) + "   episode " +
-                     Count(now.episode) + (now.episodes > 0 ? " / " + Count(now.episodes) : "") +
-                     "   mean return " + Number(now.mean_return, 1) + "   success " +
+  std::string text = now.algorithm + ", " + PhaseName(now.phase) + "   " + Count(now.episode) +
+                     (now.episodes > 0 ? " / " + Count(now.episodes) : "") +
+                     " episodes   mean return " + Number(now.mean_return, 1) + "   success " +
                      Percent(now.success_rate);
   if (now.steps_per_second > 0.0F) text += "   " + Rate(now.steps_per_second) + " steps/s";
   if (const auto left = Duration(now.time_left_s); !left.empty()) text += "   left " + left;

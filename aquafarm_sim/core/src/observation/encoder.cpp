@@ -17,8 +17,8 @@ enum Plane : std::size_t { kRisk, kForecast, kObstacle, kPort, kDevice, kSelf, k
 
 // Returns the digit of a device in a status code: deployed (0), aboard the ship (1) or gone (2).
 std::int32_t Standing(DeviceStatus status, bool aboard_self) {
-  if (status == DeviceStatus::kDeployed) return 0;
-  return aboard_self ? 1 : 2;
+  const std::int32_t is_away = status != DeviceStatus::kDeployed ? 1 : 0;
+  return is_away * (aboard_self ? 1 : 2);  // without a branch: farms differ in it
 }
 
 }  // namespace

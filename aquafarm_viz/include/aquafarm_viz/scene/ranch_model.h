@@ -51,7 +51,7 @@ class RanchModel {
   /// Returns "reward −5.0:   disaster −5.0".
   std::string RewardLine() const;
   /// Returns, for example:
-  /// "q_learning, training   episode 120 / 2,000   mean return 81.2   success 62 %   left 0:42"
+  /// "q_learning, training   120 / 2,000 episodes   mean return 81.2   success 62 %   left 0:42"
   std::string TrainingLine() const;
 
   /// Column titles of the tables. Each row has the same number of entries.

@@ -6,6 +6,8 @@ import pathlib
 import subprocess
 import sys
 
+from aquafarm_bringup.files import open_atomically
+
 from . import geojson, page
 from .document import PlanError, load
 
@@ -71,8 +73,10 @@ def make(options, rest):
         if stamp(source) == before:  # the input was refused, with a message
             return code or BAD_INPUT
     plan = load(source)
-    write(output, page.render(plan))
-    write(output.with_suffix(".geojson"), geojson.text(plan))
+    for path, text in ((output, page.render(plan)),
+                       (output.with_suffix(".geojson"), geojson.text(plan))):
+        with open_atomically(path) as file:
+            file.write(text)
     print(f"page       {output.resolve().as_uri()}")
     print(f"routes     {output.with_suffix('.geojson')} (GeoJSON, for QGIS)", flush=True)
     if options.open and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
@@ -90,13 +94,6 @@ def stamp(path):
     except FileNotFoundError:
         return None
     return status.st_ino, status.st_mtime_ns, status.st_size
-
-
-def write(path, text):
-    """Writes a file whole or not at all."""
-    part = path.with_name(path.name + ".part")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, path)
 
 
 def program():

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Contents of the report of a run or of a benchmark."""
-import contextlib
 import csv
 import errno
 import json
-import os
 import pathlib
 import tempfile
 
 import numpy as np
 
+from aquafarm_bringup.files import open_atomically
 from aquafarm_report import compare, curves, videos, intervals, outcomes, page, references
 from aquafarm_report.videos import ReportError
 
@@ -188,27 +187,6 @@ def make_text(sources, episodes):
         raise ReportError(f"{named}: cannot be reported on: {error!r}") from error
 
 
-@contextlib.contextmanager
-def written_beside(path):
-    """Yields a new file next to a path; it takes the place of the path if the block succeeds."""
-    try:
-        if path.is_dir():
-            raise IsADirectoryError(errno.EISDIR, "it is a folder")
-        with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=path.parent, delete=False,
-                                         prefix=f".{path.name}.") as file:
-            try:
-                yield file
-                file.close()
-                os.chmod(file.name, 0o644)
-                os.replace(file.name, path)
-            except BaseException:
-                os.unlink(file.name)
-                raise
-    except OSError as error:
-        raise ReportError(f"{path}: cannot be written: {error.strerror}; choose another file with "
-                          "-o") from None
-
-
 def make(sources, output, episodes=EPISODES):
     """Writes the report of a run or benchmark, or the comparison of runs; returns its path."""
     sources = [pathlib.Path(source).resolve() for source in sources]
@@ -216,6 +194,12 @@ def make(sources, output, episodes=EPISODES):
     output = pathlib.Path(output or default).resolve()
     if len(sources) == 1:
         kind_of(sources[0])  # refuses other folders
-    with written_beside(output) as file:  # before the work, which may take minutes
-        file.write(make_text(sources, episodes))
+    try:
+        if output.is_dir():
+            raise IsADirectoryError(errno.EISDIR, "it is a folder")
+        with open_atomically(output) as file:  # before the work, which may take minutes
+            file.write(make_text(sources, episodes))
+    except OSError as error:
+        raise ReportError(f"{output}: cannot be written: {error.strerror}; choose another file "
+                          "with -o") from None
     return output

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """V_π next to the sea (Fig. 10): heat maps on the same cells, with their similarity."""
 import json
-import os
 import pathlib
 
 import matplotlib
@@ -11,6 +10,8 @@ import numpy as np  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 from scipy import ndimage, stats  # noqa: E402
 from skimage.metrics import structural_similarity  # noqa: E402
+
+from aquafarm_bringup.files import open_atomically  # noqa: E402
 
 MOST_WINDOW = 7  # cells on a side, as in scikit-image
 FEWEST_CELLS = 10
@@ -164,10 +165,9 @@ def draw(text, values, layers, results, path):
                 else f"mean of {text['episodes']} episodes")
     figure.suptitle(f"Where does a start of the ship pay, and does the sea explain it?\n"
                     f"{text['policy']} on {text['scenario']}, {episodes}")
-    temporary = f"{path}.part"
-    figure.savefig(temporary, dpi=110, format="png")
+    with open_atomically(path, "wb") as file:
+        figure.savefig(file, dpi=110, format="png")
     pyplot.close(figure)
-    os.replace(temporary, path)
 
 
 def draw_key(axis, text):
@@ -191,9 +191,8 @@ def make(values_file, output):
     report["note"] = NOTE
     report["seas"] = [{"name": name, "units": units, **result}
                       for (name, units, _), result in zip(layers, results)]
-    temporary = f"{output}.json.part"
-    pathlib.Path(temporary).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
-    os.replace(temporary, f"{output}.json")
+    with open_atomically(f"{output}.json") as file:
+        file.write(json.dumps(report, indent=1) + "\n")
     return [f"{name}: rank correlation (Spearman) {signed(result['spearman_rho'])}, similarity of the "
             f"maps (SSIM) {signed(result['ssim'])}, of the inverted map {signed(result['ssim_turned'])}, "
             f"over {result['cells']} cells"

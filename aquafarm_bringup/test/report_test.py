@@ -27,7 +27,7 @@ import rostest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from aquafarm_report import (curves, intervals, outcomes, references, report,  # noqa: E402
                              videos)
-from aquafarm_report.page import page as make_page, tiles  # noqa: E402
+from aquafarm_report.blocks import page as make_page, tiles  # noqa: E402
 from ranch import Ranch, load_script  # noqa: E402
 
 SCENARIO = """

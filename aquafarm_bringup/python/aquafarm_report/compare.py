@@ -3,7 +3,7 @@
 import collections
 import json
 
-from aquafarm_report import curves, videos, outcomes, page, references
+from aquafarm_report import blocks, curves, outcomes, references, videos
 from aquafarm_report.videos import ReportError
 
 MEASURES = (("return", "return", "{:.1f}"), ("steps", "steps", "{:.1f}"),
@@ -61,7 +61,8 @@ def measure_table(players):
             references.column(one, name), one.distinct), form) for one in players])
     rows.insert(1, ["success"] + [references.success_text(one) for one in players])
     rows.append(["episodes, distinct"] + [f"{len(one.rows)}, {one.distinct}" for one in players])
-    return page.table(["mean of an episode, 95 % interval"] + [one.label for one in players], rows)
+    return blocks.table(["mean of an episode, 95 % interval", *[one.label for one in players]],
+                        rows)
 
 
 def differences(runs):
@@ -80,7 +81,7 @@ def differences(runs):
             if len({str(one.get(key, "–")) for one in settings}) > 1]
     if not rows:
         return "<p>All settings are the same.</p>"
-    return page.table(["setting"] + [run.player.label for run in runs], rows)
+    return blocks.table(["setting"] + [run.player.label for run in runs], rows)
 
 
 def choose_episodes(runs):
@@ -104,11 +105,11 @@ def show_episode(runs, reason, episode):
         row = next(one for one in run.player.rows if int(one["episode"]) == episode)
         bag = videos.bag_of(run.folder, run.work, episode)
         caption = f"{run.player.label}: {videos.result_text(row)}"
-        shown.append(page.video(videos.draw_video(bag, int(row["steps"])), caption))
+        shown.append(blocks.video(videos.draw_video(bag, int(row["steps"])), caption))
         results.append(outcomes.read_outcomes(bag))
     title = f"Episode {episode} of seed {videos.SEED}: {reason}"
-    return page.section(title, f'<div class="videos">{"".join(shown)}</div>',
-                        outcomes.episodes_table([run.player.label for run in runs], results))
+    return blocks.section(title, f'<div class="videos">{"".join(shown)}</div>',
+                          outcomes.episodes_table([run.player.label for run in runs], results))
 
 
 def report(folders, work, episodes, read_metrics):
@@ -126,26 +127,29 @@ def report(folders, work, episodes, read_metrics):
         players = references.play_references(group[0].folder / "scenario.yaml", place, episodes)
         own = [run.player for run in group]
         title = f"Return on {group[0].scenario}"
-        sections.append(page.section(title, references.show_tiles(players[:1] + own +
-                                                                  players[1:])))
+        sections.append(blocks.section(title, references.show_tiles(players[:1] + own +
+                                                                    players[1:])))
     sections.append(curves.show([run.player.label for run in runs],
                                 [run.columns for run in runs],
                                 [curves.gap_note(run.player.label, run.columns, run.player)
                                  for run in runs],
                                 players if len(by_scenario) == 1 else ()))
-    sections.append(page.section("Greedy play, 95 % intervals", measure_table([run.player for run in runs])))
+    sections.append(blocks.section("Greedy play, 95 % intervals",
+                                   measure_table([run.player for run in runs])))
     devices = [(run.player.label, outcomes.summary_table(run.summary)) for run in runs]
-    sections.append(page.section("What became of each device, all episodes", *(
-        f"<h3>{page.escape(label)}</h3>{table}" for label, table in devices if table)))
-    sections.append(page.section("Settings that differ", differences(runs)))
+    sections.append(blocks.section("What became of each device, all episodes", *(
+        f"<h3>{blocks.escape(label)}</h3>{table}" for label, table in devices if table)))
+    sections.append(blocks.section("Settings that differ", differences(runs)))
     if len(by_scenario) == 1 and videos.is_family(runs[0].folder):
-        sections.append(page.section("Episodes", "<p>There are no videos: the scenario is a family, "
-                                                 "and each episode has a ranch of its own.</p>"))
+        sections.append(blocks.section(
+            "Episodes", "<p>There are no videos: the scenario is a family, and each episode has a "
+            "ranch of its own.</p>"))
     elif len(by_scenario) == 1:
         for reason, episode in choose_episodes(runs):
             sections.append(show_episode(runs[:MOST_FILMS], reason, episode))
     else:
-        sections.append(page.section("Episodes", "<p>The runs have different scenarios, so they "
-                                                 "have no episodes in common.</p>"))
+        sections.append(blocks.section(
+            "Episodes", "<p>The runs have different scenarios, so they have no episodes in "
+            "common.</p>"))
     names = " and ".join([", ".join(run.folder.name for run in runs[:-1]), runs[-1].folder.name])
-    return page.page(f"Comparison of {names}", *sections)
+    return blocks.page(f"Comparison of {names}", *sections)

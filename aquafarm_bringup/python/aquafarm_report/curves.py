@@ -7,7 +7,7 @@ import pathlib
 import numpy as np
 from aquafarm_benchmark.measures import WINDOW, known_moving_mean
 
-from aquafarm_report import page, references
+from aquafarm_report import blocks, references
 from aquafarm_report.videos import ReportError
 
 LIBRARY = pathlib.Path("/usr/share/javascript/dygraphs")  # Debian's libjs-dygraphs
@@ -106,5 +106,5 @@ def show(labels, columns, notes=(), players=()):
     library = _library("dygraph.min.js").replace("//# sourceMappingURL=dygraph.min.js.map", "")
     style = _library("dygraph.min.css").partition("/*#")[0]
     scripts = [library, f'"use strict";const CURVES={data};\n{script}']
-    return page.section("Training curves", page.curves(WINDOW, charts, style, scripts,
-                                                       [note for note in notes if note]))
+    return blocks.section("Training curves", blocks.curves(WINDOW, charts, style, scripts,
+                                                           [note for note in notes if note]))

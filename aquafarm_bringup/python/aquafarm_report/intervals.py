@@ -2,7 +2,7 @@
 """Returns of the contestants of a benchmark (interquartile means) with their 95 % intervals."""
 import math
 
-from aquafarm_report import page
+from aquafarm_report import blocks
 
 _ROW = 26  # height of a row [px]
 _LEFT, _WIDTH = 170, 640  # of the plot [px]
@@ -40,7 +40,7 @@ def best_learner(rows):
 
 def table(rows):
     """One row for each contestant: return, share of the optimum, success, episodes."""
-    return page.table(
+    return blocks.table(
         ["learner", "return per episode, 95 % interval", "share of the optimum", "success",
          "episodes, distinct"],
         [(row["label"], text(row), share(row), f"{row['success_rate']:.1%}",
@@ -81,7 +81,7 @@ def chart(rows):
     for i, row in enumerate(rows):
         y = _ROW * i + _ROW / 2
         parts.append(f'<text x="{_LEFT - 10}" y="{y + 5}" text-anchor="end">'
-                     f'{page.escape(row["label"])}</text>')
+                     f'{blocks.escape(row["label"])}</text>')
         if row["return_iqm"] < low:
             parts.append(f'<text x="{_LEFT + 4}" y="{y + 5}">← {row["return_iqm"]:,.1f}</text>')
             continue
@@ -90,7 +90,7 @@ def chart(rows):
             parts.append(f'<line x1="{x(found[0]):.1f}" x2="{x(found[1]):.1f}" y1="{y}" y2="{y}" '
                          'stroke="currentColor" stroke-width="3" opacity=".5"/>')
         parts.append(f'<circle cx="{x(row["return_iqm"]):.1f}" cy="{y}" r="5" fill="currentColor">'
-                     f"<title>{page.escape(row['label'])}: {text(row)}</title></circle>")
+                     f"<title>{blocks.escape(row['label'])}: {text(row)}</title></circle>")
     return (f'<svg viewBox="0 0 {_LEFT + _WIDTH + 30} {height + 40}" '
             f'width="{_LEFT + _WIDTH + 30}" role="img" '
             'font-size="14" fill="currentColor" aria-label="return per episode with 95 % '

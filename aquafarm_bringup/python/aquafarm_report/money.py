@@ -6,7 +6,7 @@ import pathlib
 from aquafarm_benchmark import figures, losses, results
 from aquafarm_benchmark.protocol import REFERENCES, Contestant
 
-from aquafarm_report import videos, page
+from aquafarm_report import blocks, videos
 
 _COLOUR = "#1b4f78"  # of the run's own policy
 
@@ -50,7 +50,7 @@ def draw(contestants, rows):
 def show(own, scenario, folder, episodes, currency):
     """Section of a report."""
     contestants, rows = compare(own, scenario, folder, episodes, currency)
-    note = (f"<p>Per episode, in {page.escape(currency)}. Insured = saved + damaged + lost; loss = "
-            "damaged + lost. Triangles: CVaR, the mean loss of the worst 5 %.</p>")
-    return page.section("Losses", note, page.markdown_table(results.money_table(rows)),
-                        draw(contestants, rows))
+    note = (f"<p>Per episode, in {blocks.escape(currency)}. Insured = saved + damaged + lost; "
+            "loss = damaged + lost. Triangles: CVaR, the mean loss of the worst 5 %.</p>")
+    return blocks.section("Losses", note, blocks.markdown_table(results.money_table(rows)),
+                          draw(contestants, rows))

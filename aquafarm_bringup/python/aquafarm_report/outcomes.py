@@ -6,7 +6,7 @@ import rosbag
 from aquafarm_benchmark.measures import wilson_interval
 from aquafarm_msgs.msg import DeviceState
 
-from aquafarm_report import page
+from aquafarm_report import blocks
 
 KINDS = {DeviceState.TEMPORARY_BREEDING: "temporary", DeviceState.MONITORING: "monitoring",
          DeviceState.BREEDING_RELEASE: "release", DeviceState.DEEP_WATER_BREEDING: "deep water"}
@@ -63,7 +63,7 @@ def episodes_table(captions, results):
         rows.append([labels.pop() if is_same else f"F{i}"] + [
             "–" if one is None else one.text() if is_same else
             f"{one.label.partition(' ')[2]}: {one.text()}" for one in here])
-    return page.table(["device", *captions], rows)
+    return blocks.table(["device", *captions], rows)
 
 
 NAMES = {"temporary_breeding": "temporary", "monitoring": "monitoring",
@@ -93,6 +93,6 @@ def summary_table(summary):
                      *(_share(one[name], count, summary.get("distinct_episodes"))
                        for name in ("delivered", "aboard", "left")),
                      "–" if health is None else f"{health:.0%}"])
-    return page.table(["kind of device (number)" if by_kind else "device", "home",
-                       "aboard at the end", "left at sea", "health of those at home"],
-                      rows) if rows else ""
+    return blocks.table(["kind of device (number)" if by_kind else "device", "home",
+                         "aboard at the end", "left at sea", "health of those at home"],
+                        rows) if rows else ""

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from aquafarm_benchmark.measures import wilson_interval
 
-from aquafarm_report import videos, page
+from aquafarm_report import blocks, videos
 
 REFERENCES = (("random", "RANDOM"), ("planner", "planner"), ("clairvoyant", "clairvoyant"))
 EPISODES = 100  # of each reference, the first of those of the runs
@@ -119,4 +119,4 @@ def show_tiles(players):
     note = ("<p>Return per episode, success and their 95 % intervals in evaluation episodes of "
             f"seed {videos.SEED}. RANDOM moves without a goal; the planner knows what ships know; "
             "clairvoyant knows the storm's whole track.</p>")
-    return page.players(shown) + note
+    return blocks.players(shown) + note

@@ -9,7 +9,7 @@ import tempfile
 import numpy as np
 
 from aquafarm_bringup.files import open_atomically
-from aquafarm_report import compare, curves, videos, intervals, outcomes, page, references
+from aquafarm_report import blocks, compare, curves, intervals, outcomes, references, videos
 from aquafarm_report.videos import ReportError
 
 EPISODES = 1000  # as in aquafarm_evaluate
@@ -32,7 +32,7 @@ def count_text(summary, episodes):
 def video_episodes(run, folder, rows):
     """Sections of the best, median and worst episode: map, videos and the fate of each device."""
     if videos.is_family(run):
-        return [page.section("Best, median and worst episode", page.table(
+        return [blocks.section("Best, median and worst episode", blocks.table(
             ["episode", "result"], [(f"{name}: episode {row['episode']} of seed {videos.SEED}",
                                      videos.result_text(row)) for name, row in videos.choose(rows)]),
             "<p>There are no videos: the scenario is a family, and each episode has a ranch of its "
@@ -43,13 +43,13 @@ def video_episodes(run, folder, rows):
         chart = chart or videos.draw_map(bag)
         caption = (f"{name}: episode {row['episode']} of seed {videos.SEED}, "
                    f"{videos.result_text(row)}")
-        shown.append(page.video(videos.draw_video(bag, int(row["steps"])), caption))
+        shown.append(blocks.video(videos.draw_video(bag, int(row["steps"])), caption))
         captions.append(f"{name}, episode {row['episode']}")
         results.append(outcomes.read_outcomes(bag))
-    return [page.section("Best, median and worst episode",
-                         f'<div class="videos">{"".join(shown)}</div>',
-                         outcomes.episodes_table(captions, results)),
-            page.section("The ranch", page.picture(chart, "at the start of an episode"))]
+    return [blocks.section("Best, median and worst episode",
+                           f'<div class="videos">{"".join(shown)}</div>',
+                           outcomes.episodes_table(captions, results)),
+            blocks.section("The ranch", blocks.picture(chart, "at the start of an episode"))]
 
 
 def show_episodes(run, folder, episodes):
@@ -66,9 +66,9 @@ def show_episodes(run, folder, episodes):
                              summary["money"]["currency"])]
     devices = outcomes.summary_table(summary)
     if devices:
-        losses.insert(0, page.section("What became of each device, all episodes", devices))
+        losses.insert(0, blocks.section("What became of each device, all episodes", devices))
     return summary, rows, [
-        page.section(f"Greedy play, {count_text(summary, len(rows))}", table), *losses,
+        blocks.section(f"Greedy play, {count_text(summary, len(rows))}", table), *losses,
         *video_episodes(run, folder, rows)]
 
 
@@ -77,7 +77,7 @@ def report_run(run, folder, episodes):
     settings = json.loads((run / "run.json").read_text(encoding="utf-8"))
     columns = read_metrics(run / "metrics.csv") if (run / "metrics.csv").is_file() else {}
     summary, rows, sections = show_episodes(run, folder, episodes)
-    tiles = page.tiles([
+    tiles = blocks.tiles([
         (f"{len(columns.get('return', [])):,}", "episodes trained"),
         (settings["seed"], "seed of the training"), (videos.SEED, "seed of the episodes and videos"),
         (settings["version"], "version")])
@@ -86,14 +86,14 @@ def report_run(run, folder, episodes):
                                              is_run=True))
     notes = [curves.gap_note(players[1].label, columns, players[1])] if columns else []
     training = curves.show([settings["algorithm"]], [columns], notes, players)
-    return page.page(
+    return blocks.page(
         f"{settings['algorithm']} on {settings['scenario']}",
-        page.section("Next to the references", references.show_tiles(players)), tiles, training,
+        blocks.section("Next to the references", references.show_tiles(players)), tiles, training,
         *sections,
-        page.section("Configuration",
-                     page.details("run.json", json.dumps(settings, indent=2)),
-                     page.details("scenario.yaml",
-                                  (run / "scenario.yaml").read_text(encoding="utf-8"))))
+        blocks.section("Configuration",
+                       blocks.details("run.json", json.dumps(settings, indent=2)),
+                       blocks.details("scenario.yaml",
+                                      (run / "scenario.yaml").read_text(encoding="utf-8"))))
 
 
 CAPTIONS = {
@@ -134,7 +134,7 @@ def report_benchmark(benchmark, folder, episodes):
     settings = json.loads((benchmark / "benchmark.json").read_text(encoding="utf-8"))
     results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
     best = intervals.best_learner(results["table"])
-    tiles = page.tiles([
+    tiles = blocks.tiles([
         (best["label"], "best learner"), (intervals.text(best), "its return, 95 % interval"),
         (intervals.share(best), "its share of the optimum"),
         (settings.get("scenario", "–"), "scenario"), (len(results["table"]), "contestants"),
@@ -142,28 +142,28 @@ def report_benchmark(benchmark, folder, episodes):
         (settings.get("episodes", "–"), "episodes of a training"),
         (settings.get("evaluation_seed", "–"), "seed of the evaluation"),
         (settings.get("version", "–"), "version")])
-    figures = [page.picture(path, caption_of(path.stem), path.stem.startswith("route_"))
+    figures = [blocks.picture(path, caption_of(path.stem), path.stem.startswith("route_"))
                for path in sorted((benchmark / "figures").glob("*.png"))]
     losses = []
     if (benchmark / "losses.md").is_file():
-        losses = [page.section("Losses", page.markdown_table(
+        losses = [blocks.section("Losses", blocks.markdown_table(
             (benchmark / "losses.md").read_text(encoding="utf-8")))]
     run = best_run(benchmark)
     shown = []
     if run is not None:
         name = run.parent.name
-        shown = [page.section(f"The best learner: {name}, seed 1")]
+        shown = [blocks.section(f"The best learner: {name}, seed 1")]
         shown += show_episodes(run, folder, episodes)[-1]
     seeds = sorted({run["seed"] for of_one in results["runs"].values() for run in of_one})
-    return page.page(
+    return blocks.page(
         f"Benchmark on {settings.get('scenario', 'a ranch')}", tiles,
-        page.section("Return and share of the optimum", intervals.table(results["table"]),
-                     intervals.chart(results["table"])),
-        page.section("Table 1, the paper's and ours", page.markdown_table(
+        blocks.section("Return and share of the optimum", intervals.table(results["table"]),
+                       intervals.chart(results["table"])),
+        blocks.section("Table 1, the paper's and ours", blocks.markdown_table(
             (benchmark / "table.md").read_text(encoding="utf-8"))),
-        *losses, page.section("Figures", *figures), *shown,
-        page.section("Configuration", f"<p>Seeds of the trainings: {page.escape(seeds)}</p>",
-                     page.details("benchmark.json", json.dumps(settings, indent=2))))
+        *losses, blocks.section("Figures", *figures), *shown,
+        blocks.section("Configuration", f"<p>Seeds of the trainings: {blocks.escape(seeds)}</p>",
+                       blocks.details("benchmark.json", json.dumps(settings, indent=2))))
 
 
 def kind_of(source):

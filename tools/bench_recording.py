@@ -9,13 +9,14 @@ import argparse
 import os
 import pathlib
 import re
-import socket
 import statistics
 import subprocess
 import tempfile
 import time
 
 import roslib.packages
+
+from campaigns.ros import free_port
 
 LIMIT_S = 300.0  # max duration of a training
 END_S = 60.0  # max time for a node to end, including its remaining output
@@ -27,13 +28,6 @@ def program(package, name):
     if not found:
         raise SystemExit(f"bench_recording: {package} has no {name}; run ./aquafarm build")
     return found[0]
-
-
-def free_port():
-    """An unused port."""
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return listener.getsockname()[1]
 
 
 def cpu_s(process, limit_s):

@@ -15,12 +15,13 @@ import pathlib
 import random
 import resource
 import signal
-import socket
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
+
+from campaigns.ros import free_port
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LIB = ROOT / ".ws/devel/lib"
@@ -93,12 +94,6 @@ def time_page(folder, options):
 def processor_s(pid):
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def free_port():
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
 
 
 def measure_node(folder, options, pid):

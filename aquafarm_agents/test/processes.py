@@ -14,8 +14,6 @@ import tempfile
 import time
 import unittest
 
-import roslib.packages
-
 LIMIT_S = 60.0
 DATA = pathlib.Path(__file__).resolve().parent / "data"
 PORTS = range(20000, 32768)  # ip_local_port_range begins at 32768 (ip(7))
@@ -23,6 +21,8 @@ PORTS = range(20000, 32768)  # ip_local_port_range begins at 32768 (ip(7))
 
 def program(package, name):
     """Path of an executable of a package."""
+    import roslib.packages  # only here: tools/campaigns import this module also without ROS
+
     found = roslib.packages.find_node(package, name)
     assert found, f"{package} has no {name}"
     return found[0]

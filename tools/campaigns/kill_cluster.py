@@ -8,11 +8,10 @@ workers    a benchmark on two workers of Dask; a worker or the scheduler is kill
 """
 import os
 import signal
-import socket
 import subprocess
 import time
 
-from campaigns import common, kill
+from campaigns import common, kill, ros
 
 RANK_LOST = 6        # exit code
 BAD_INPUT = 2        # exit code
@@ -163,9 +162,7 @@ class Workers(kill.Benchmark):
     def try_once(self, number):
         if self.expected is None:
             self.reference("workers_whole")
-        with socket.socket() as one:
-            one.bind(("127.0.0.1", 0))
-            self.port = one.getsockname()[1]
+        self.port = ros.free_port()
         folder = self.place / f"workers_{number}"
         self.processes = [self.start(0), self.start(1), self.start(2)]
         try:

@@ -6,22 +6,18 @@ import re
 import socket
 import struct
 import subprocess
+import sys
 import time
 import urllib.parse
 import xmlrpc.client
 
 from campaigns import common
 
+sys.path.append(str(common.ROOT / "aquafarm_agents" / "test"))
+from processes import free_port  # noqa: E402
+
 START_LIMIT_S = 120
 FARMS = 16  # of a sim node; a call of a trainer steps all of them
-
-
-def free_port():
-    """Returns a port that is currently unused."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
 
 # How sanitizers begin a report, if the programs were built with one.
 SANITIZER = re.compile(r"(?:WARNING|ERROR): \w+Sanitizer.*|.*: runtime error: .*")

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 
+from .slow_tests import SLOW
 from .workspace import (PYTHON, ROOT, WS, bootstrap, build_core, enter_ros, run_bootstrap, run_child,
                         run_children, say, use_ccache)
 
@@ -21,9 +22,6 @@ EXTRAS = {"the tests of HTML pages are skipped": ("chromium", "chromium-driver",
           ("clang-14",),
           "the check of clang-tidy is skipped": ("clang-tidy-14",)}
 SLURM = {"the tests of batch files are skipped": ("munge", "slurmctld", "slurmd", "slurm-client")}
-# Core tests that take more than 20 s; --fast leaves them out.
-SLOW = ("dqn_test", "multi_agent_test", "plan_program", "planner_test", "process_group_test",
-        "ranks_test", "resume_test", "run_test")
 BROKEN = """<testsuite tests="1" failures="1"><testcase classname="stage" name="{}"><failure/>\
 </testcase></testsuite>
 """

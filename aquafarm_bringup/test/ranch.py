@@ -12,7 +12,8 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "aquafarm_agents" / "test"))
-from processes import free_port  # noqa: E402, F401: tests import it from here
+# Tests of this package import these from here.
+from processes import DATA, Program, SecondHost, free_port, program  # noqa: E402, F401
 
 
 def load_script(name):

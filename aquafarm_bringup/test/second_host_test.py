@@ -15,8 +15,8 @@ import xmlrpc.client
 
 import rostest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "aquafarm_agents" / "test"))
-from processes import DATA, Program, SecondHost, free_port, program  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from ranch import DATA, Program, SecondHost, free_port, program  # noqa: E402
 
 SSHD = "/usr/sbin/sshd"
 LAUNCH = """<launch>

@@ -17,13 +17,12 @@ from aquafarm_msgs.msg import FarmState, Outcome
 from aquafarm_msgs.srv import Claim, GetState, Pause
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from ranch import Ranch, free_port  # noqa: E402
+from ranch import DATA, Ranch, free_port  # noqa: E402
 
 START_LIMIT_S = 60
 LIMIT_S = 60
 HOLD = 10
 CLAIM_TIMEOUT_S = 10
-DATA = pathlib.Path(__file__).resolve().parents[2] / "aquafarm_agents" / "test" / "data"
 # A ship that cannot deliver all devices in an episode of random actions, and a self-propelled
 # device.
 FERRY = """# SPDX-License-Identifier: BSD-3-Clause

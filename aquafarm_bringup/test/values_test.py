@@ -23,8 +23,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"
 from aquafarm_report import values_topics  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 
-from aquafarm_report.values import (ValuesError, compare, draw_key, draw_places,  # noqa: E402
-                                    draw_relation, make, read, strength)
+from aquafarm_report.values import (ValuesError, compare, draw_key, draw_map,  # noqa: E402
+                                    draw_places, draw_relation, make, read, strength)
 
 
 def slope(height=12, width=14):
@@ -117,13 +117,23 @@ class ValuesTest(unittest.TestCase):
         _, axis = pyplot.subplots()
         self.addCleanup(pyplot.close, "all")
         draw_relation(axis, values, layer, compare(values, layer[2]))
-        self.assertIn("The return rises strongly with warmth\nrank correlation +1.00",
+        self.assertIn("The return rises strongly with temperature\nrank correlation +1.00",
                       axis.get_title())
-        self.assertEqual("warmth [°C]", axis.get_xlabel())
+        self.assertEqual("temperature [°C]", axis.get_xlabel())
         draw_key(axis, {"policy": "planner"})
         for words in (axis.get_title(), *(text.get_text() for text in axis.texts)):
             for jargon in ("SSIM", "Spearman", "rho", "turned over", "degC"):
                 self.assertNotIn(jargon, words)
+
+    def test_the_lowest_returns_do_not_flatten_the_colours_of_the_others(self):
+        values = slope()
+        values[0, 0] = -10_000.0
+        _, axis = pyplot.subplots()
+        self.addCleanup(pyplot.close, "all")
+        draw_map(axis, values, 1.0, "viridis", "return", (0.05, 1.0))
+        low, high = axis.images[0].get_clim()
+        self.assertGreater(low, -10_000.0)
+        self.assertEqual(np.nanmax(values), high)
 
     def test_ports_and_devices_are_marked_at_the_middle_of_their_cells(self):
         _, axis = pyplot.subplots()

@@ -16,6 +16,7 @@ from aquafarm_bringup.files import open_atomically  # noqa: E402
 MOST_WINDOW = 7  # cells on a side, as in scikit-image
 FEWEST_CELLS = 10
 _COLUMN = 3.3  # width of a map in the figure [inch]
+_SCALED = (0.05, 1.0)  # shares of the cells between which the colours of the return differ
 
 NOTE = ("Spearman's rho is of the ranks over the cells where both are known; neighbouring cells "
         "are alike, so no significance is given. SSIM is the mean structural similarity (Wang et "
@@ -88,18 +89,26 @@ def strength(rho):
     return f"{'rises' if rho > 0 else 'falls'} {size}"
 
 
+def sea_words(name):
+    """A layer of the sea as people call it."""
+    return {"warmth": "temperature"}.get(name, name.replace("_", " "))
+
+
 def unit_text(units):
     """A unit as people write it."""
     return {"degC": "°C", "degF": "°F"}.get(units, units)
 
 
-def draw_map(axis, field, km, colours, label):
-    """One map, north up, land and rocks hatched."""
+def draw_map(axis, field, km, colours, label, shares=(0.0, 1.0)):
+    """One map, north up, land and rocks hatched. Values outside `shares` have the end's colour."""
     height, width = field.shape
     axis.set_facecolor("0.82")
     axis.patch.set(hatch="////", edgecolor="0.65", linewidth=0.0)
-    image = axis.imshow(field, origin="lower", cmap=colours, extent=(0, width * km, 0, height * km))
-    axis.figure.colorbar(image, ax=axis, label=label, fraction=0.05 * height / width, pad=0.02)
+    low, high = np.nanquantile(field, shares) if np.isfinite(field).any() else (0.0, 1.0)
+    image = axis.imshow(field, origin="lower", cmap=colours, vmin=low, vmax=high,
+                        extent=(0, width * km, 0, height * km))
+    axis.figure.colorbar(image, ax=axis, label=label, fraction=0.05 * height / width, pad=0.02,
+                         extend="min" if shares[0] > 0.0 else "neither")
     axis.set_xlabel("east [km]")
 
 
@@ -124,7 +133,7 @@ def draw_relation(axis, values, layer, result):
         axis.plot([np.median(x[part]) for part in parts], [np.median(y[part]) for part in parts],
                   color="#d55e00", linewidth=2, marker="o", markersize=4,
                   label="median of 1/10 of the cells")
-    words = name.replace("_", " ")
+    words = sea_words(name)
     axis.set_xlabel(f"{words} [{unit_text(units)}]")
     change = strength(result["spearman_rho"])
     axis.set_title((f"The return {change} with {words}\n" if change else "") +
@@ -144,26 +153,27 @@ def draw(text, values, layers, results, path):
                                    figsize=(_COLUMN * (1 + len(layers)),
                                             0.84 * _COLUMN * tall + (3.8 if layers else 1.2)),
                                    height_ratios=[0.84 * _COLUMN * tall, 2.6][:rows])
-    draw_map(axes[0][0], values, km, "viridis", "return [points]")
-    axes[0][0].set_title("Return of a start in each cell")
+    draw_map(axes[0][0], values, km, "viridis", "return [points]",
+             _SCALED)
+    axes[0][0].set_title("Return if the ship starts here")
     draw_places(axes[0][0], text, km)
     axes[0][0].set_ylabel("north [km]")
     for column, (layer, result) in enumerate(zip(layers, results), start=1):
         name, units, field = layer
         draw_map(axes[0][column], np.where(np.isfinite(values), field, np.nan), km, "cividis",
-                 f"{name.replace('_', ' ')} [{unit_text(units)}]")
-        axes[0][column].set_title(f"The sea: {name.replace('_', ' ')}")
+                 f"{sea_words(name)} [{unit_text(units)}]")
+        axes[0][column].set_title(f"{sea_words(name).capitalize()} of the sea")
         draw_places(axes[0][column], text, km)
         draw_relation(axes[1][column], values, layer, result)
     if layers:
-        axes[1][1].set_ylabel("return of a start in the cell")
+        axes[1][1].set_ylabel("return if the ship starts there")
         draw_key(axes[1][0], text)
         marks = zip(axes[0][0].get_legend_handles_labels(), axes[1][1].get_legend_handles_labels())
         axes[1][0].legend(*([*one, *other] for one, other in marks), loc="upper left", frameon=False,
                           bbox_to_anchor=(-0.05, 0.24)).set_in_layout(False)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
-    figure.suptitle(f"Where does a start of the ship pay, and does the sea explain it?\n"
+    figure.suptitle(f"Where should the ship start, and does the sea explain it?\n"
                     f"{text['policy']} on {text['scenario']}, {episodes}")
     with open_atomically(path, "wb") as file:
         figure.savefig(file, dpi=110, format="png")
@@ -175,9 +185,9 @@ def draw_key(axis, text):
     axis.axis("off")
     axis.text(0.0, 1.12, "\n".join((
         "Return: of the episode if the", f"ship starts there and {text['policy']}",
-        "steers. Hatched: land, rocks or", "unknown.", "",
+        "steers; the lowest twentieth has", "one colour. Hatched: land,", "rocks or unknown.", "",
         "Rank correlation: +1 if the", "return always rises with the", "sea's value, −1 if it always",
-        "falls, 0 without a relation. It", "does not say that one causes", "the other.")),
+        "falls. It does not say that", "one causes the other.")),
               va="top", fontsize=11).set_in_layout(False)
 
 

@@ -200,8 +200,10 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     const bool done = device.status == DeviceState::DELIVERED;
     if (done) {
       const int index = delivered[{device.x, device.y}]++;
-      x += thing * (0.35 * (index % 4) - 0.5);
-      y += DeliveredSide(spec, device.y) * thing * (0.75 + 0.35 * (index / 4));
+      const int column = index % 4;
+      const int row = index / 4;
+      x += thing * (0.35 * column - 0.5);
+      y += DeliveredSide(spec, device.y) * thing * (0.75 + 0.35 * row);
       size = 0.18;
       color = Mix(DeviceColor(device.kind), kUnknown, 0.35);
     } else if (device.status == DeviceState::ABOARD) {

@@ -49,6 +49,10 @@ class OpenAtomicallyTest(unittest.TestCase):
             file.write("new")
         self.assertEqual(["page.html"], self.names())
 
+    def test_a_missing_folder_is_an_error(self):
+        with self.assertRaises(FileNotFoundError), open_atomically(self.folder / "no" / "page"):
+            self.fail("there is nothing to write to")
+
     def test_permissions_follow_the_umask(self):
         self.addCleanup(os.umask, os.umask(0))
         for mask, mode in ((0o022, 0o644), (0o007, 0o660), (0o077, 0o600)):

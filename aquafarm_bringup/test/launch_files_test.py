@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every launch file parses, documents its arguments and stays on the loopback address. Every field
-of a message has a comment."""
+"""Every launch file parses, documents its arguments and stays on the loopback address. Every node
+describes itself. Every field of a message has a comment."""
 import http.server
 import os
 import pathlib
@@ -17,6 +17,9 @@ import roslaunch.config
 import roslib.packages
 import rospkg
 import rostest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from ranch import program  # noqa: E402
 
 PACKAGE = "aquafarm_bringup"
 LAUNCH = pathlib.Path(rospkg.RosPack().get_path(PACKAGE)) / "launch"
@@ -41,6 +44,27 @@ def load(path, arguments):
     """Returns roslaunch's configuration of a launch file with the given name:=value arguments."""
     return roslaunch.config.load_config_default([(str(path), list(arguments))], None, verbose=False,
                                                 assign_machines=False)
+
+
+NODES = {"aquafarm_sim": ("sim_node", "bulletin_node"),
+         "aquafarm_agents": ("train_node", "policy_node", "plan_node"),
+         "aquafarm_viz": ("replay_node", "viz_node")}
+
+
+class NodesTest(unittest.TestCase):
+
+    def test_every_node_has_a_help_that_needs_no_master(self):
+        environment = dict(os.environ, ROS_MASTER_URI="http://127.0.0.1:1")
+        for package, names in NODES.items():
+            for name in names:
+                for option in ("--help", "-h"):
+                    done = subprocess.run([program(package, name), "_a:=1", option], text=True,
+                                          capture_output=True, env=environment, timeout=LIMIT_S,
+                                          check=False)
+                    self.assertEqual((0, ""), (done.returncode, done.stderr), name)
+                    self.assertTrue(done.stdout.startswith(f"usage: rosrun {package} {name} "))
+                for launch in re.findall(r"^(\w+)\.launch", done.stdout, re.MULTILINE):
+                    self.assertIn(launch, [path.stem for path in FILES], name)
 
 
 class LaunchFilesTest(unittest.TestCase):

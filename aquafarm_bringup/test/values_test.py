@@ -92,7 +92,7 @@ class ValuesTest(unittest.TestCase):
         path = written(self.folder.name, values, {"warmth": slope(), "salt": -slope()})
         output = os.path.join(self.folder.name, "out")
         lines = make(path, output)
-        self.assertIn("warmth: rank correlation (Spearman) +1.00", lines[0])
+        self.assertIn("temperature: rank correlation (Spearman) +1.00", lines[0])
         self.assertIn("salt: rank correlation (Spearman) −1.00", lines[1])
         report = json.loads(pathlib.Path(output + ".json").read_text(encoding="utf-8"))
         self.assertEqual(167, report["seas"][0]["cells"])

@@ -18,6 +18,7 @@
 #include "aquafarm_sim/convert/conversions.h"
 #include "aquafarm_sim/names.h"
 #include "aquafarm_sim/node/bulletin_folder.h"
+#include "aquafarm_sim/node_help.h"
 #include "aquafarm_sim/params.h"
 
 namespace aquafarm_sim {
@@ -190,6 +191,10 @@ int Run() {
 }  // namespace aquafarm_sim
 
 int main(int argc, char** argv) {
+  constexpr aquafarm_sim::NodeHelp kHelp{
+      "aquafarm_sim", "bulletin_node",
+      "Sends new and changed storm tracks of a folder into the running episode.", nullptr};
+  if (aquafarm_sim::PrintHelpIfRequested(argc, argv, kHelp)) return 0;
   ros::init(argc, argv, "bulletins");
   return aquafarm_sim::Run();
 }

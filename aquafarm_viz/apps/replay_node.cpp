@@ -6,8 +6,12 @@
 #include <string>
 
 #include "aquafarm/base/version.h"
+#include "aquafarm_sim/node_help.h"
 
 int main(int argc, char** argv) {
+  constexpr aquafarm_sim::NodeHelp kHelp{"aquafarm_viz", "replay_node", "Plays a recorded bag.",
+                                         "replay.launch"};
+  if (aquafarm_sim::PrintHelpIfRequested(argc, argv, kHelp)) return 0;
   ros::init(argc, argv, "replay");
   // roscpp shuts down with its last node handle, and a Ctrl-C before its next start would be lost.
   const ros::NodeHandle handle;

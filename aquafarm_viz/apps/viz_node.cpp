@@ -5,7 +5,12 @@
 
 #include <exception>
 
+#include "aquafarm_sim/node_help.h"
+
 int main(int argc, char** argv) {
+  constexpr aquafarm_sim::NodeHelp kHelp{"aquafarm_viz", "viz_node",
+                                         "Draws a ranch for rviz and as pictures.", "sim.launch"};
+  if (aquafarm_sim::PrintHelpIfRequested(argc, argv, kHelp)) return 0;
   ros::init(argc, argv, "viz");
   // roscpp shuts down with its last node handle, and a Ctrl-C before its next start would be lost.
   const ros::NodeHandle handle;

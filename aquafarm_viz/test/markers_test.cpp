@@ -434,7 +434,7 @@ TEST(ValueLegend, HasTheRangeTheColoursAndTheSymbolsWithinTheViewOfTheFarm) {
     EXPECT_LT(marker.colors.front().g, 0.15F) << "viridis begins with dark violet";
     EXPECT_GT(marker.colors.back().g, 0.8F) << "and ends with yellow";
   }
-  EXPECT_EQ(words, "return -3.9||157.7|best move: arrow||pickup||drop-off|");
+  EXPECT_EQ(words, "discounted return -3.9||157.7||best move||pickup||drop-off|");
   const auto keys = Keys(draw());
   values.highest = values.lowest;
   EXPECT_EQ(Keys(draw()), keys) << "a policy without values deletes the range";
@@ -459,7 +459,7 @@ TEST(SpecMarkers, HaveOneLineOfTheKeyForEachSymbolOfDanger) {
   for (const auto& marker : SpecMarkers(spec, false).markers) {
     if (marker.ns == "sign_legend_text") words += marker.text + "|";
   }
-  EXPECT_EQ(words, "device in danger|to the centre|its heading|hatched: at risk|");
+  EXPECT_EQ(words, "device in danger|to the centre|its heading|pattern: at risk|");
   for (const auto& marker : SpecMarkers(spec, false, ParseLayers("none")).markers) {
     EXPECT_NE(marker.ns, "sign_legend_text") << "without risks there are no such symbols";
   }

@@ -117,6 +117,24 @@ TEST(Outlook, NamesTheWorstRingToComeAfterTheNext) {
   EXPECT_EQ(WorstText(scene.spec, device), "hurricane force in 3.0 h");
 }
 
+TEST(Outlook, ShortensTheNameAndTheDangerOfADeviceUntilTheyFit) {
+  Outlooks scene;
+  DeviceOutlook device{3, 0.0, 0U, 0, {}};
+  device.arrivals = {{10.0, -5.0, 0U, 34}, {60.0, -20.0, 0U, 64}};
+  const auto words = [&](std::size_t letters) {
+    const auto [name, danger] = NameAndDanger(scene.spec, "release", device,
+                                              [letters](const auto& left, const auto& right) {
+                                                return left.size() + right.size() <= letters;
+                                              });
+    return name + "|" + danger;
+  };
+  EXPECT_EQ(words(60), "F3 release|gale in 30 min, hurricane force in 3.0 h");
+  EXPECT_EQ(words(43), "F3|gale in 30 min, hurricane force in 3.0 h");
+  EXPECT_EQ(words(30), "F3 release|hurricane in 3.0 h") << "the kind rather than the second word";
+  EXPECT_EQ(words(27), "F3|hurricane force in 3.0 h");
+  EXPECT_EQ(words(0), "F3|" + RiskText(scene.spec, device, ", ")) << "the shortest if nothing fits";
+}
+
 TEST(Outlook, StrengthHasMetresPerSecondAndKnots) {
   TrackPoint point;
   EXPECT_EQ(StrengthText(point), "");
@@ -245,7 +263,8 @@ TEST(Outlook, SaysUntilWhenItIsKnown) {
   Outlooks scene;
   scene.state.disasters[0].x = 212.0F;  // it arrives after the 60 steps of a present course
   EXPECT_FALSE(IsInDanger(scene.outlook()));
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "disasters known until +3.0 h");
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
+            "no danger to devices known until +3.0 h");
   scene.state.disasters[0].steps_left = 60;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "");
 }

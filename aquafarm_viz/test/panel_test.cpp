@@ -90,7 +90,7 @@ TEST(RanchModel, KeepsTheWholeCurveInBoundedRoom) {
   }
   EXPECT_EQ(model.TrainingLine(),
             "q_learning, training   20,000 / 2,000 episodes   mean return 20000.0   success 62 %   "
-            "250.0 k steps/s   left 0:42");
+            "250.0\u00a0k\u00a0steps/s   left\u00a00:42");
 }
 
 TEST(RanchModel, ANewTrainingBeginsANewCurve) {

@@ -83,6 +83,13 @@ TEST(RiskSample, DiffersByKindAndRiskAndStaysInItsBox) {
 TEST(Layout, HasAPanelOfAQuarterOfAWidePicture) {
   EXPECT_GE(MakeLayout(20, 14, {960, 640}).panel.width, 250);
   EXPECT_LT(MakeLayout(20, 14, {640, 640}).panel.width, 250) << "less is left next to a small map";
+  for (const auto& [width, height] : {std::pair(2000, 300), {300, 2000}, {301, 301}}) {
+    const Layout layout = MakeLayout(20, 14, {width, height});
+    EXPECT_EQ(layout.map & cv::Rect(0, 0, layout.panel.x, height), layout.map)
+        << width << " x " << height << ": the map is next to the panel";
+    EXPECT_GT(std::max(double(layout.map.width) / width, double(layout.map.height) / height), 0.35)
+        << width << " x " << height;
+  }
 }
 
 TEST(Signs, OfAPortStandNextToAShipInIt) {

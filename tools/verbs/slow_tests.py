@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests that took more than 20 s on two cores on 2026-11-27; --fast leaves them out."""
+"""Tests that take more than 20 s on two cores; --fast leaves them out."""
 SLOW = (
     # Through ROS, from the longest, which tools/run_ros_tests starts first.
     "benchmark", "doc_commands", "train_node", "train_launch", "agent_nodes", "policy_node", "report",

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What aquafarm_plan and aquafarm_report share."""
+"""Modules that aquafarm_plan and aquafarm_report share."""

@@ -3,6 +3,7 @@
 import contextlib
 import os
 import pathlib
+import tempfile
 
 
 @contextlib.contextmanager
@@ -12,12 +13,14 @@ def open_atomically(path, mode="w"):
     Otherwise the new file is removed. Text is UTF-8.
     """
     path = pathlib.Path(path)
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    file = open(part, mode, encoding=None if "b" in mode else "utf-8")
+    handle, part = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     try:
-        with file:
+        with open(handle, mode, encoding=None if "b" in mode else "utf-8") as file:
             yield file
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(part, 0o666 & ~mask)  # as of a file that open() creates
         os.replace(part, path)
     except BaseException:
-        part.unlink()
+        pathlib.Path(part).unlink(missing_ok=True)
         raise

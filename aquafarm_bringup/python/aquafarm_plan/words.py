@@ -214,7 +214,7 @@ def _lose(plan):
               "worst twentieth. ")
     remark += f"If no ship leaves: {amount(idle['mean'], currency)} on average."
     if not currency:
-        remark += " In the devices' units of value; the ranch names no currency."
+        remark += " In units of value, not in money (options --devices and --currency)."
     return "What do I lose?", answer, remark
 
 

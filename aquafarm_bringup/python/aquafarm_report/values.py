@@ -90,7 +90,7 @@ def strength(rho):
 
 
 def sea_words(name):
-    """A layer of the sea as people call it."""
+    """Display name of a layer of the sea."""
     return {"warmth": "temperature"}.get(name, name.replace("_", " "))
 
 
@@ -100,11 +100,13 @@ def unit_text(units):
 
 
 def draw_map(axis, field, km, colours, label, shares=(0.0, 1.0)):
-    """One map, north up, land and rocks hatched. Values outside `shares` have the end's colour."""
+    """One map, north up, land and rocks hatched. Values below the first of `shares` have its
+    colour."""
     height, width = field.shape
     axis.set_facecolor("0.82")
     axis.patch.set(hatch="////", edgecolor="0.65", linewidth=0.0)
-    low, high = np.nanquantile(field, shares) if np.isfinite(field).any() else (0.0, 1.0)
+    known = field[np.isfinite(field)]
+    low, high = np.quantile(known, shares) if len(known) else (0.0, 1.0)
     image = axis.imshow(field, origin="lower", cmap=colours, vmin=low, vmax=high,
                         extent=(0, width * km, 0, height * km))
     axis.figure.colorbar(image, ax=axis, label=label, fraction=0.05 * height / width, pad=0.02,
@@ -162,7 +164,8 @@ def draw(text, values, layers, results, path):
         name, units, field = layer
         draw_map(axes[0][column], np.where(np.isfinite(values), field, np.nan), km, "cividis",
                  f"{sea_words(name)} [{unit_text(units)}]")
-        axes[0][column].set_title(f"{sea_words(name).capitalize()} of the sea")
+        words = sea_words(name)
+        axes[0][column].set_title(f"{words[:1].upper()}{words[1:]} of the sea")
         draw_places(axes[0][column], text, km)
         draw_relation(axes[1][column], values, layer, result)
     if layers:
@@ -203,7 +206,7 @@ def make(values_file, output):
                       for (name, units, _), result in zip(layers, results)]
     with open_atomically(f"{output}.json") as file:
         file.write(json.dumps(report, indent=1) + "\n")
-    return [f"{name}: rank correlation (Spearman) {signed(result['spearman_rho'])}, similarity of the "
+    return [f"{sea_words(name)}: rank correlation (Spearman) {signed(result['spearman_rho'])}, similarity of the "
             f"maps (SSIM) {signed(result['ssim'])}, of the inverted map {signed(result['ssim_turned'])}, "
             f"over {result['cells']} cells"
             for (name, _, _), result in zip(layers, results)]

@@ -17,11 +17,11 @@ double ToLine(double at, double period) {
   return std::min(rest, period - rest);
 }
 
-float Falling(int x, int y, int period) {
+float Rising(int x, int y, int period) {
   return static_cast<float>(ToLine(x + y, period) / std::sqrt(2.0));
 }
 
-float Rising(int x, int y, int period) {
+float Falling(int x, int y, int period) {
   return static_cast<float>(ToLine(x - y, period) / std::sqrt(2.0));
 }
 
@@ -40,7 +40,7 @@ float StaggeredDots(int x, int y, int period) {
 }
 
 float Crossed(int x, int y, int period) {
-  return std::min(Falling(x, y, period), Rising(x, y, period));
+  return std::min(Rising(x, y, period), Falling(x, y, period));
 }
 
 struct DisasterKind {
@@ -49,7 +49,7 @@ struct DisasterKind {
 };
 
 // In the order of the constants of DisasterState.
-constexpr std::array<DisasterKind, 6> kKinds{{{"typhoon", Falling},
+constexpr std::array<DisasterKind, 6> kKinds{{{"typhoon", Rising},
                                               {"storm surge", Level},
                                               {"wave", Waves},
                                               {"red tide", StaggeredDots},

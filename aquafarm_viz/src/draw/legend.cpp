@@ -20,8 +20,9 @@ constexpr double kSymbolRow = 57.0;  // of the middle of the lowest row of symbo
 constexpr double kRow = 17.0;
 constexpr double kKeyRow = 15.0;    // of a ring with its name
 constexpr double kKeyScale = 24.0;  // of the scale of risks with its words
-constexpr double kMildRisk = -5.0;
-constexpr double kWide = 230.0;  // a panel this wide has all symbols in one row
+constexpr double kWide = 230.0;     // a panel this wide has all symbols in one row
+
+constexpr double kMildRisk = -5.0;  // of the sample of an area at risk
 
 bool IsWide(const Layout& layout) { return layout.panel.width >= layout.Px(kWide); }
 
@@ -147,7 +148,7 @@ RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) 
       const NamedRing one{winds[ring], std::round(courses[i].ahead.front().risks[ring]),
                           state.disasters[i].kind};
       const auto is_same = [&one](const NamedRing& other) {
-        return other.wind_kt == one.wind_kt && other.risk == one.risk;
+        return other.wind_kt == one.wind_kt && other.risk == one.risk && other.kind == one.kind;
       };
       if (std::none_of(key.begin(), key.end(), is_same)) key.push_back(one);
     }

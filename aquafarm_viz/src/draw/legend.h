@@ -54,6 +54,7 @@ enum class Sign {
 };
 
 /// Returns the signs that a picture shows, each once.
+/// @param key  of the picture; if it is not empty, it shows the patterns of areas at risk
 std::vector<Sign> SignsOf(const aquafarm_msgs::FarmSpec& spec,
                           const aquafarm_msgs::FarmState& state, const Overlays& overlays,
                           const Outlook& outlook, const RiskKey& key, const Layout& layout);

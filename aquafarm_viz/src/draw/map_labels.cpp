@@ -314,7 +314,7 @@ void LabelShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, Free
     const auto place = space.Take(size, at, farthest);
     if (!place) continue;
     DrawLabel(map, fonts.bold, text, place->tl(), layout,
-              Mix(ShipColor(ship.id), layout.style->label, 0.5));
+              Mix(ShipColor(ship.id), layout.style->label, 0.7));
   }
 }
 

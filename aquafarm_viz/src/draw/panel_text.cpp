@@ -4,12 +4,14 @@
 #include <cmath>
 #include <ctime>
 #include <opencv2/imgproc.hpp>
+#include <tuple>
 
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "draw/legend.h"
 #include "draw/region.h"
 #include "draw/symbols.h"
+#include "scene/graticule.h"
 #include "scene/nautical.h"
 
 namespace aquafarm_viz {
@@ -115,7 +117,7 @@ void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layo
   };
   line.Put(fonts.bold, training.algorithm, layout.style->words, layout.Px(5));
   line.Put(fonts.small, PhaseName(training.phase), layout.style->faint, gap);
-  pair("episode",
+  pair("episodes",
        Count(training.episode) + (training.episodes > 0 ? " / " + Count(training.episodes) : ""));
   pair("mean return", Number(training.mean_return, 1));
   pair("success", std::isfinite(training.success_rate)
@@ -220,13 +222,6 @@ std::string TimeOfDay(const FarmSpec& spec, std::int64_t at_s) {
   return std::to_string(at_s / 3600) + ":" + (minutes.size() < 2 ? "0" : "") + minutes;
 }
 
-// Shortens "hurricane force in 9 h" to "hurricane in 9 h".
-std::string WithoutForce(std::string text) {
-  const std::string word = " force";
-  const std::size_t at = text.find(word);
-  return at == std::string::npos ? text : text.erase(at, word.size());
-}
-
 // One row for each device: its symbol, kind, and danger or status.
 void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                     const Outlook& outlook, const Layout& layout) {
@@ -239,22 +234,13 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
       status += " " + TimeOfDay(spec, *at);
     }
     Rgb color = done ? layout.style->good : layout.style->faint;
-    const std::string label = DeviceLabel(device.id);
-    std::string name = label + " " + DeviceName(device.kind);
+    std::string name = DeviceLabel(device.id) + " " + DeviceName(device.kind);
     for (const DeviceOutlook& one : outlook.devices) {
       if (one.id != device.id || DangerText(spec, one).empty()) continue;
       color = layout.style->alarm;
-      status = DangerText(spec, one);
-      const std::string full = name;  // the symbol shows the kind too
-      if (!panel.Fits(name, status)) name = label;
-      if (!panel.Fits(name, status)) status = WorstText(spec, one);
-      if (!panel.Fits(name, status)) status = RiskText(spec, one);
-      if (!panel.Fits(name, status)) status = RiskText(spec, one, ", ");
-      const std::string brief = WithoutForce(status);
-      if (name != full && panel.Fits(full, brief)) {
-        name = full;
-        status = brief;
-      }
+      std::tie(name, status) = NameAndDanger(
+          spec, DeviceName(device.kind), one,
+          [&panel](const auto& left, const auto& right) { return panel.Fits(left, right); });
     }
     panel.Item(name, status, color);
   }
@@ -337,7 +323,7 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
   if (shown == 0) panel.Detail("none known", "", layout.style->faint);
 }
 
-void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
+void ListShips(Panel& panel, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
   panel.Heading("SHIPS", "");
   int rows = panel.RowsLeft();
   std::size_t left_out = 0;
@@ -366,6 +352,11 @@ void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
     const std::string load = ship.own_device >= 0 ? ""
                                                   : std::to_string(ship.aboard.size()) + "/" +
                                                         std::to_string(ship.capacity) + " aboard";
+    if (HasGraticule(spec) && panel.Fits(name + ": " + action, load)) {
+      panel.Item(name + ": " + action, load, layout.style->faint);
+      panel.Detail(PositionText(spec, ship.x, ship.y), "", layout.style->faint);
+      continue;
+    }
     const std::string where = cell + (load.empty() ? "" : ", " + load);
     if (panel.Fits(name + ": " + action, where)) {
       panel.Item(name + ": " + action, where, layout.style->faint);
@@ -410,7 +401,7 @@ bool ListPolicy(Panel& panel, const FarmState& state, const Overlays& overlays,
   const bool has_step = values != nullptr && values->step;
   panel.Heading("POLICY " + PolicyName(overlays), has_step ? "step " + Count(*values->step) : "");
   if (has_scale) {
-    panel.Ends("return expected from each cell", "");
+    panel.Ends("discounted return from each cell", "");
     panel.ValueBar();
     panel.Ends(Number(double(values->lowest), 1) + " points",
                Number(double(values->highest), 1) + " points");
@@ -474,7 +465,7 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   const Trail* trail = overlays.trail != nullptr ? overlays.trail : overlays.route;
   ListDevices(panel, spec, state, trail, forecasts.outlook, layout);
   ListDisasters(panel, spec, state, forecasts.courses, layout, std::max(3, panel.RowsLeft() - 7));
-  ListShips(panel, state, layout);
+  ListShips(panel, spec, state, layout);
   const bool has_policy = ListPolicy(panel, state, overlays, values, layout);
   DrawRegion(image, panel.Room(), spec, state, forecasts.courses, layout, fonts);
   return has_policy;

@@ -188,13 +188,13 @@ void AddSignLegend(MarkerArray& array, const FarmSpec& spec) {
   row.Text("to the centre");
   row.Arrow();
   row.Text("its heading");
-  row.Text("hatched: at risk");
+  row.Text("pattern: at risk");
 }
 
 void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& values) {
   Row row(array, spec, 2, "value_legend");
   if (values.highest > values.lowest) {
-    row.Text("return " + Number(double(values.lowest), 1));
+    row.Text("discounted return " + Number(double(values.lowest), 1));
     row.ValueBar(3.0 * row.size_m());
     row.Text(Number(double(values.highest), 1));
     row.Skip(0.6 * row.size_m());
@@ -203,7 +203,8 @@ void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& valu
     row.Remove("value_legend");
     row.Remove("value_legend_text");
   }
-  row.Text("best move: arrow");
+  row.Arrow();
+  row.Text("best move");
   row.Bar(0.6 * row.size_m(), kPickupColor);
   row.Text("pickup");
   row.Bar(0.6 * row.size_m(), kDropOffColor);

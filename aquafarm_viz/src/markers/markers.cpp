@@ -265,7 +265,8 @@ void AddDisasterSigns(MarkerArray& array, const Maker& maker, const DisasterStat
   eye.color = Color(GradeColor(disaster.grade));
   array.markers.push_back(eye);
   // On the side that the arrow of its motion leaves free.
-  const bool is_above = std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1;
+  const bool is_above =
+      disaster.speed > 0.0F && std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1;
   const double aside = (is_above ? 0.9 : -0.9) * maker.thing_m() / maker.cell_m();
   array.markers.push_back(maker.Text("disaster_name", disaster.id, disaster.x, disaster.y + aside,
                                      DisasterName(disaster.kind), maker.word_m(), kPaper));

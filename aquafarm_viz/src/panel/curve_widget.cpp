@@ -128,7 +128,11 @@ void CurveWidget::paintEvent(QPaintEvent*) {
   const double end = DrawName(painter, {right + 16.0, 4.0 + row / 2.0}, kSuccess,
                               Text("success " + Number(100.0 * now.success, 0) + " %"));
   painter.setPen(kWords);
-  painter.drawText(QRectF(end, 4.0, width() - 8.0 - end, row), Qt::AlignRight, "by episode");
+  const bool is_cut = std::any_of(curve_.begin(), curve_.end(), [&](const CurvePoint& point) {
+    return point.mean_return < returns.low;
+  });
+  painter.drawText(QRectF(end, 4.0, width() - 8.0 - end, row), Qt::AlignRight,
+                   is_cut ? "by episode, the start is lower" : "by episode");
 }
 
 void CurveWidget::DrawCurves(QPainter& painter, const QRectF& room,

@@ -20,7 +20,7 @@ struct CurveRange {
   double high{};
 };
 
-/// Returns the range of the mean returns after the first tenth of the episodes, because returns at
+/// Returns the range of the mean returns after the first third of the episodes, because returns at
 /// the start of a training are far below the rest.
 CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve);
 

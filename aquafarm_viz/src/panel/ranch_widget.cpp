@@ -17,7 +17,8 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr int kRow_px = 20;  // height of a table's row
+// Height of a table's row [pixels].
+int RowHeight(const QTableWidget* table) { return std::max(20, table->fontMetrics().height() + 2); }
 
 QTableWidget* MakeTable(const RanchModel::Row& columns) {
   auto* table = new QTableWidget(0, static_cast<int>(columns.size()));
@@ -27,8 +28,8 @@ QTableWidget* MakeTable(const RanchModel::Row& columns) {
   table->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
   table->horizontalHeader()->setMinimumSectionSize(30);
   table->verticalHeader()->hide();
-  table->verticalHeader()->setMinimumSectionSize(kRow_px);
-  table->verticalHeader()->setDefaultSectionSize(kRow_px);
+  table->verticalHeader()->setMinimumSectionSize(RowHeight(table));
+  table->verticalHeader()->setDefaultSectionSize(RowHeight(table));
   table->setEditTriggers(QAbstractItemView::NoEditTriggers);
   table->setSelectionMode(QAbstractItemView::NoSelection);
   return table;
@@ -39,8 +40,8 @@ void Fill(QTableWidget* table, const std::vector<RanchModel::Row>& rows, int row
   const int count = static_cast<int>(rows.size());
   table->setRowCount(count);
   const int head_px = table->horizontalHeader()->sizeHint().height() + 2 * table->frameWidth();
-  table->setMinimumHeight(head_px + kRow_px * std::clamp(count, 1, rows_seen));
-  table->setMaximumHeight(head_px + kRow_px * std::max(count, 1));
+  table->setMinimumHeight(head_px + RowHeight(table) * std::clamp(count, 1, rows_seen));
+  table->setMaximumHeight(head_px + RowHeight(table) * std::max(count, 1));
   for (int y = 0; y < table->rowCount(); ++y) {
     const RanchModel::Row& row = rows[static_cast<std::size_t>(y)];
     for (int x = 0; x < table->columnCount(); ++x) {

@@ -259,9 +259,16 @@ std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double step
   return ", " + LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
 }
 
+// Shortens "hurricane force in 9 h" to "hurricane in 9 h".
+std::string WithoutForce(std::string text) {
+  const std::string word = " force";
+  const std::size_t at = text.find(word);
+  return at == std::string::npos ? text : text.erase(at, word.size());
+}
+
 std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
   if (!std::isfinite(outlook.known_until)) return "";
-  return "disasters known until +" + AheadText(spec, outlook.known_until);
+  return "no danger to devices known until +" + AheadText(spec, outlook.known_until);
 }
 
 }  // namespace
@@ -331,6 +338,23 @@ std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const ch
   const RingArrival& next = device.arrivals.front();
   return now + (now.empty() ? "" : ", ") + Number(next.risk, 0) + between +
          AheadText(spec, next.steps);
+}
+
+std::pair<std::string, std::string> NameAndDanger(
+    const FarmSpec& spec, const std::string& kind, const DeviceOutlook& device,
+    const std::function<bool(const std::string& name, const std::string& danger)>& fits) {
+  const std::string label = DeviceLabel(device.id);
+  const std::string full = label + " " + kind;
+  std::string danger = DangerText(spec, device);
+  if (fits(full, danger)) return {full, danger};
+  // The symbol next to the name shows the kind too.
+  for (const std::string& shorter :
+       {WorstText(spec, device), RiskText(spec, device), RiskText(spec, device, ", ")}) {
+    if (fits(label, danger)) break;
+    danger = shorter;
+  }
+  const std::string brief = WithoutForce(danger);
+  return fits(full, brief) ? std::pair(full, brief) : std::pair(label, danger);
 }
 
 std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,

@@ -7,8 +7,10 @@
 #include <aquafarm_msgs/FarmState.h>
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/storm_track.h"
@@ -67,8 +69,8 @@ std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 /// Returns the outlook in one sentence, such as "typhoon, risk -10, reaches F3 in 6.5 h" or
 /// "typhoon over F2: risk -5 now, risk -20 in 6.5 h"; where the winds of the rings are given
 /// "typhoon over F2: gale now, storm (50 kt) in 6.5 h". If a worse ring than this one follows, it
-/// is named too: ", hurricane (64 kt) in 9 h". Without such a danger "disasters known until +12 h"
-/// if a course ends before its disaster; else empty, also if the outlook is not known.
+/// is named too: ", hurricane (64 kt) in 9 h". Without such a danger "no danger to devices known
+/// until +12 h" if a course ends before its disaster; else empty, also if the outlook is not known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
 
@@ -94,6 +96,13 @@ std::string WorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& 
 /// @param between  text between risk and time
 std::string RiskText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
                      const char* between = " in ");
+
+/// Returns the name of a device, with its kind where there is space, and its danger, for a row of a
+/// list: the longest texts that `fits` accepts, else the shortest.
+/// @param kind  DeviceName
+std::pair<std::string, std::string> NameAndDanger(
+    const aquafarm_msgs::FarmSpec& spec, const std::string& kind, const DeviceOutlook& device,
+    const std::function<bool(const std::string& name, const std::string& danger)>& fits);
 
 /// Returns where the centre of a disaster outside the farm is: "typhoon, centre 89 km SE", or with
 /// its strength "typhoon 37 m/s (72 kt), centre 89 km SE".

@@ -17,6 +17,19 @@ std::string CellText(int x, int y) {
   return "(" + std::to_string(x) + ", " + std::to_string(y) + ")";
 }
 
+// Keeps the words of a text in one line.
+std::string Unbroken(const std::string& text) {
+  std::string result;
+  for (const char letter : text) {
+    if (letter == ' ') {
+      result += "\u00a0";
+    } else {
+      result += letter;
+    }
+  }
+  return result;
+}
+
 std::string Percent(double share) {
   return std::isfinite(share) ? Number(100.0 * share, 0) + " %" : "-";
 }
@@ -79,8 +92,10 @@ std::string RanchModel::TrainingLine() const {
                      (now.episodes > 0 ? " / " + Count(now.episodes) : "") +
                      " episodes   mean return " + Number(now.mean_return, 1) + "   success " +
                      Percent(now.success_rate);
-  if (now.steps_per_second > 0.0F) text += "   " + Rate(now.steps_per_second) + " steps/s";
-  if (const auto left = Duration(now.time_left_s); !left.empty()) text += "   left " + left;
+  if (now.steps_per_second > 0.0F)
+    text += "   " + Unbroken(Rate(now.steps_per_second) + " steps/s");
+  if (const auto left = Duration(now.time_left_s); !left.empty())
+    text += "   " + Unbroken("left " + left);
   return text;
 }
 

@@ -15,6 +15,7 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/farm.h"
 #include "aquafarm/scenario/scenario_yaml.h"
+#include "base/constants.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -113,7 +114,7 @@ void WriteDevices(const DeviceOutcomes& outcomes, nlohmann::json& json) {
   }
 }
 
-// Returns half the width of the 95 % interval of the mean return: 1.96 standard errors, where
+// Returns half the width of the 95 % interval of the mean return: kNormal95 standard errors, where
 // repetitions of a start do not count as evidence. NaN with fewer than two distinct starts.
 double ReturnMargin(const Evaluation& evaluation) {
   const auto count = static_cast<double>(evaluation.episodes.size());
@@ -123,7 +124,7 @@ double ReturnMargin(const Evaluation& evaluation) {
     const double away = double(episode.episode_return) - evaluation.mean_return;
     squares += away * away;
   }
-  return 1.96 * std::sqrt(squares / (count - 1.0) / static_cast<double>(evaluation.distinct));
+  return kNormal95 * std::sqrt(squares / (count - 1.0) / static_cast<double>(evaluation.distinct));
 }
 
 nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& context) {
@@ -186,7 +187,7 @@ void CompareStarts(const EnvironmentSpec& spec, std::vector<Accounts> accounts,
 
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
                     std::int32_t episodes, const std::atomic<bool>* stop,
-                    const std::function<void(std::size_t over)>& on_progress,
+                    const std::function<void(std::size_t done)>& on_progress,
                     std::optional<std::uint64_t> policy_seed, const AccountsOf& accounts_of) {
   AQUAFARM_CHECK_GE(episodes, 1);
   const auto start = std::chrono::steady_clock::now();
@@ -196,26 +197,26 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
   evaluation.seed = EvaluationSeed(seed);
   const std::uint64_t rng = policy_seed.value_or(evaluation.seed);
   std::vector<EpisodeSummary> results(count);
-  std::vector<std::uint8_t> is_over(count);
+  std::vector<std::uint8_t> is_done(count);
   std::vector<std::optional<Accounts>> accounts(count);
-  std::size_t over = 0;
+  std::size_t done = 0;
   policy.Begin(rng, environment.spec().farms);
   std::vector<std::uint8_t> actions;
   const StepResults* now = &environment.Reset(evaluation.seed);
-  while (over < count && (stop == nullptr || !*stop)) {
+  while (done < count && (stop == nullptr || !*stop)) {
     policy.Act(*now, actions);
     now = &environment.Step(actions);
     for (const EpisodeSummary& result : now->finished) {
-      if (result.episode >= count || is_over[result.episode] != 0) continue;
+      if (result.episode >= count || is_done[result.episode] != 0) continue;
       results[result.episode] = result;
-      is_over[result.episode] = 1;
+      is_done[result.episode] = 1;
       if (accounts_of) accounts[result.episode] = accounts_of(result.farm);
-      ++over;
+      ++done;
     }
     const auto present = std::chrono::steady_clock::now();
     if (on_progress && present - reported >= kProgressPeriod) {
       reported = present;
-      on_progress(over);
+      on_progress(done);
     }
     if (environment.ConsumeRestart()) {  // new farms; finished episodes are kept
       policy.Begin(rng, environment.spec().farms);
@@ -224,11 +225,11 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
   }
   std::vector<Accounts> known;
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_over[i] == 0) continue;
+    if (is_done[i] == 0) continue;
     evaluation.episodes.push_back(results[i]);
     if (accounts[i]) known.push_back(*accounts[i]);
   }
-  evaluation.complete = over == count;
+  evaluation.complete = done == count;
   CompareStarts(environment.spec(), std::move(known), evaluation);
   Summarise(evaluation);
   evaluation.wall_s =

@@ -6,8 +6,8 @@
 
 namespace aquafarm::agents {
 
-Planner::Planner(const Scenario& scenario, std::int32_t slots)
-    : solver_(std::make_unique<PlannerSolver>(scenario, slots)) {}
+Planner::Planner(const Scenario& scenario, std::int32_t max_devices)
+    : solver_(std::make_unique<PlannerSolver>(scenario, max_devices)) {}
 Planner::~Planner() = default;
 Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;

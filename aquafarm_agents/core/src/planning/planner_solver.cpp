@@ -15,10 +15,10 @@
 
 namespace aquafarm::agents {
 
-PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t slots)
+PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t max_devices)
     : scenario_(scenario),
       cells_(static_cast<std::size_t>(scenario.CellCount())),
-      devices_(static_cast<std::size_t>(slots > 0 ? slots : scenario.devices.Total())) {
+      devices_(static_cast<std::size_t>(max_devices > 0 ? max_devices : scenario.devices.Total())) {
   constexpr std::size_t kMaxDevices = 12;
   for (const auto& [name, value] :
        {std::pair{"step", scenario.rewards.step}, std::pair{"illegal", scenario.rewards.illegal}}) {
@@ -119,7 +119,7 @@ bool PlannerSolver::IsPrepared(const Farm& farm) const {
   return true;
 }
 
-// Unused slots of a task count as gone from the start.
+// Positions of a task without a device count as gone from the start.
 bool PlannerSolver::IsOfTask(std::size_t set) const {
   for (std::size_t d = task_->devices.size(); d < devices_; ++d) {
     if (PickupPlanOf(set, d) != kGone) return false;

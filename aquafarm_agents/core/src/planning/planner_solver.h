@@ -37,7 +37,7 @@ struct Option {
 
 class PlannerSolver {
  public:
-  PlannerSolver(const Scenario& scenario, std::int32_t slots);
+  PlannerSolver(const Scenario& scenario, std::int32_t max_devices);
   Plan Solve(const Farm& farm, RiskSource& risks, const Task& task);
   std::size_t state_count() const { return sets_.size() * cells_; }
 
@@ -110,7 +110,7 @@ class PlannerSolver {
 
   const Scenario& scenario_;
   std::size_t cells_;
-  std::size_t devices_;                    // slots of a task
+  std::size_t devices_;                    // max devices of a task
   std::vector<std::uint32_t> sets_;        // two bits per device: its Fate
   std::vector<std::int32_t> set_of_bits_;  // inverse of sets_; kNone: more aboard than the capacity
   std::size_t all_gone_{};

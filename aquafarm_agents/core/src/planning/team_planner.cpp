@@ -17,8 +17,8 @@ constexpr std::int32_t kIdleSteps = 30;
 // Weight of the total time relative to the time of the last ship.
 constexpr double kWorkWeight = 1e-3;
 
-// Max devices per ship: the average number plus two.
-std::int32_t Slots(const Scenario& scenario) {
+// The average number of devices of a ship plus two.
+std::int32_t MaxDevices(const Scenario& scenario) {
   const std::int32_t devices = scenario.devices.Total();
   const std::int32_t ships = std::max(1, scenario.ships.count);
   return std::max(1, std::min(devices, (devices + ships - 1) / ships + 2));
@@ -135,7 +135,7 @@ class LocalSearch {
 class TeamPlanner::Impl {
  public:
   Impl(const Scenario& scenario, Foresight foresight)
-      : scenario_(scenario), foresight_(foresight), planner_(scenario, Slots(scenario)) {}
+      : scenario_(scenario), foresight_(foresight), planner_(scenario, MaxDevices(scenario)) {}
 
   void Act(const Farm& farm, PlanState& plan, std::uint8_t* actions) {
     if (!FollowsPlan(farm, plan)) MakePlan(farm, plan);
@@ -147,13 +147,13 @@ class TeamPlanner::Impl {
 
   Shares Assign(const Farm& farm) const {
     const TravelCostModel work(farm);
-    const auto slots = static_cast<std::size_t>(Slots(scenario_));
+    const auto max_devices = static_cast<std::size_t>(MaxDevices(scenario_));
     Shares shares(static_cast<std::size_t>(scenario_.ships.count));
     // Ships may carry more devices than the planner assigns, loaded by another policy.
     std::vector<std::size_t> room(shares.size());
     for (std::size_t ship = 0; ship < shares.size(); ++ship) {
       const auto aboard = static_cast<std::size_t>(farm.ships()[ship].aboard);
-      room[ship] = slots - std::min(slots, aboard);
+      room[ship] = max_devices - std::min(max_devices, aboard);
     }
     std::vector<std::int32_t> waiting;
     for (std::size_t id = 0; id < farm.devices().size(); ++id) {
@@ -172,7 +172,7 @@ class TeamPlanner::Impl {
       if (device.carrier == kNone) continue;
       auto& share = shares[static_cast<std::size_t>(device.carrier)];
       // Further devices of a larger load are delivered with it, or planned afterwards.
-      if (share.size() < slots) share.push_back(static_cast<std::int32_t>(id));
+      if (share.size() < max_devices) share.push_back(static_cast<std::int32_t>(id));
     }
     for (std::size_t id = shares.size(); id < farm.ships().size(); ++id) {
       const Ship& ship = farm.ships()[id];

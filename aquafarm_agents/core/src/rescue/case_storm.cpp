@@ -9,8 +9,8 @@
 #include "aquafarm/storms/to_disaster.h"
 #include "aquafarm/tracks/fine_rings.h"
 #include "aquafarm/tracks/reader.h"
+#include "base/constants.h"
 #include "rescue/case_parts.h"
-#include "rescue/constants.h"
 
 namespace aquafarm::agents {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "aquafarm/base/check.h"
+#include "base/constants.h"
 #include "rescue/case_parts.h"
-#include "rescue/constants.h"
 
 namespace aquafarm::agents {
 namespace {

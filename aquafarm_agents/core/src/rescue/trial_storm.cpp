@@ -11,7 +11,7 @@
 #include "aquafarm/base/rng.h"
 #include "aquafarm/tracks/fine_rings.h"
 #include "aquafarm/tracks/wind_radii.h"
-#include "rescue/constants.h"
+#include "base/constants.h"
 
 namespace aquafarm::agents {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "rescue/constants.h"
+#include "base/constants.h"
 #include "rescue/trip_cache.h"
 
 namespace aquafarm::agents {

@@ -14,8 +14,8 @@
 #include "aquafarm/storms/to_disaster.h"
 #include "aquafarm/tracks/reader.h"
 #include "aquafarm/tracks/wind_radii.h"
+#include "base/constants.h"
 #include "rescue/case_parts.h"
-#include "rescue/constants.h"
 #include "rescue/rescue_samples.h"
 #include "rescue/storm_member.h"
 

@@ -8,8 +8,8 @@
 
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm/tracks/reader.h"
+#include "base/constants.h"
 #include "rescue/case_parts.h"
-#include "rescue/constants.h"
 #include "rescue/rescue_samples.h"
 
 namespace aquafarm::agents {

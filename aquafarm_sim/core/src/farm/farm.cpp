@@ -169,6 +169,7 @@ void Farm::IndexShips() {
 void Farm::Prefetch() const {
   constexpr std::size_t kLine = 64;
   const auto load = [](const void* from, std::size_t size) {
+    if (from == nullptr) return;  // such as a farm without disasters
     for (std::size_t at = 0; at < size; at += kLine) {
       __builtin_prefetch(static_cast<const char*>(from) + at, /*will be written*/ 1);
     }
@@ -176,7 +177,7 @@ void Farm::Prefetch() const {
   // The first of each: most farms have one ship and one disaster.
   load(ships_.data(), sizeof(Ship));
   load(devices_.data(), sizeof(Device));
-  load(disasters_.data(), sizeof(Disaster) - sizeof(Bulletin));
+  load(disasters_.data(), sizeof(Disaster) - sizeof(Bulletin));  // the bulletin is its last member
 }
 
 void Farm::Step(const std::uint8_t* actions) {

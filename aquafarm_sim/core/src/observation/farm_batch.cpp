@@ -106,7 +106,7 @@ void FarmBatch::StartNext(std::int32_t i, const BatchOutput& output) {
 }
 
 void FarmBatch::Step(const std::uint8_t* actions, const BatchOutput& output) {
-  if (threads_ == 1) {
+  if (threads_ == 1) {  // without a call through std::function for each farm
     for (std::int32_t i = 0; i < farms(); ++i) {
       if (i + 1 < farms()) farm(i + 1).Prefetch();
       StepOne(i, 0, actions, output);

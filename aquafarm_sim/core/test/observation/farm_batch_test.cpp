@@ -95,6 +95,23 @@ TEST(FarmBatch, EveryFarmIsThatFarmAlone) {
   }
 }
 
+TEST(FarmBatch, FarmsWithoutDisastersStepNextToEachOther) {
+  Scenario scenario = CrowdedScenario(2);
+  scenario.disasters.clear();
+  const auto shared = Shared(std::move(scenario));
+  FarmBatch batch(shared, 3);
+  Buffers buffers(batch);
+  batch.Reset(3, 0, buffers.View());
+  Farm last(shared);
+  last.Reset(3, 2);
+  for (std::uint64_t step = 0; step < 20; ++step) {
+    const auto actions = Actions(batch, step);
+    batch.Step(actions.data(), buffers.View());
+    last.Step(actions.data() + std::ptrdiff_t{2} * batch.agents());
+    ASSERT_EQ(buffers.hashes[2], last.Hash()) << step;
+  }
+}
+
 TEST(FarmBatch, TwoBatchesShareTheEpisodesOfOne) {
   const auto scenario = Shared(CrowdedScenario(2));
   FarmBatch all(scenario, 5);

@@ -2,9 +2,9 @@
 #pragma once
 
 /// One episode on one farm (Algorithm 1; rules in docs/model.md). A step, in this order:
-///   MoveDisasters → Act (ships in id order; the lower id has right of way) → Damage → Consume →
-///   Reward → Finish. Step never allocates. Reset allocates only after SetDisaster or Load
-///   has set a track, or if another owner still holds the drawn storm's track.
+///   MoveDisasters → Act (ships in id order; the lower id has right of way) → Damage → Consume (if
+///   the scenario has energy) → Reward → Finish. Step never allocates. Reset allocates only after
+///   SetDisaster or Load has set a track, or if another owner still holds the drawn storm's track.
 
 #include <array>
 #include <cstdint>
@@ -80,7 +80,8 @@ class Farm {
   /// @throws InputError when the episode's layout cannot be drawn; call Reset with another episode
   void Reset(std::uint64_t seed, std::uint64_t episode);
 
-  /// Loads what a step uses into the cache; helps if Step follows after some 50 ns.
+  /// Loads the first ship, device and disaster into the cache; helps if Step follows some 50 ns
+  /// later.
   void Prefetch() const;
 
   /// Executes one step. @param actions one per agent, [AgentCount()], each an Action incl. kHold

@@ -62,7 +62,7 @@ using AccountsOf = std::function<std::optional<Accounts>(std::int32_t farm)>;
 ///        (accounts are not available through ROS services) leaves `losses` unset.
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
                     std::int32_t episodes, const std::atomic<bool>* stop = nullptr,
-                    const std::function<void(std::size_t over)>& on_progress = {},
+                    const std::function<void(std::size_t done)>& on_progress = {},
                     std::optional<std::uint64_t> policy_seed = std::nullopt,
                     const AccountsOf& accounts_of = {});
 

@@ -48,7 +48,8 @@ class Reservations {
 /// The part of a farm's work that one ship does.
 struct Task {
   std::int32_t ship{0};
-  /// Devices that it fetches or carries, or the device that it is; at most Planner::slots().
+  /// Devices that it fetches or carries, or the device that it is; at most `max_devices` of
+  /// Planner.
   std::vector<std::int32_t> devices;
   /// Last step of a plan that only avoids risks because the ship has no work; else 0.
   std::int32_t until{0};

@@ -32,10 +32,10 @@ class PlannerSolver;
 class Planner {
  public:
   /// @param scenario must outlive the planner
-  /// @param slots max devices of a task; 0: all devices of the scenario
+  /// @param max_devices of a task; 0: all devices of the scenario
   /// @throws InputError if the reward of steps or of illegal actions is positive, or if there are
   ///   too many devices or states (kMaxPlanStates)
-  explicit Planner(const Scenario& scenario, std::int32_t slots = 0);
+  explicit Planner(const Scenario& scenario, std::int32_t max_devices = 0);
   ~Planner();
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;

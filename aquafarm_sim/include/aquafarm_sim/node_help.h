@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+
+namespace aquafarm_sim {
+
+/// The text of `--help` of a node.
+struct NodeHelp {
+  const char* package{};
+  const char* node{};     ///< name of the program
+  const char* summary{};  ///< a sentence
+  const char*
+      launch{};  ///< a file of aquafarm_bringup that starts it; null if no launch file starts it
+};
+
+/// Prints the help of a node if `-h` or `--help` is among its arguments. Call it before ros::init,
+/// so that it needs no master.
+/// @return whether it was printed; the program then ends with exit code 0
+inline bool PrintHelpIfRequested(int argc, char** argv, const NodeHelp& help) {
+  const auto is_help_option = [](std::string_view word) {
+    return word == "-h" || word == "--help";
+  };
+  if (std::none_of(argv + 1, argv + std::max(1, argc), is_help_option)) return false;
+  std::printf("usage: rosrun %s %s [_PARAMETER:=VALUE ...] [TOPIC:=OTHER ...]\n\n%s\n\n",
+              help.package, help.node, help.summary);
+  if (help.launch != nullptr) {
+    std::printf(
+        "%s of aquafarm_bringup starts it; 'roslaunch --ros-args aquafarm_bringup %s'\nlists "
+        "the arguments.\n",
+        help.launch, help.launch);
+  }
+  std::printf(
+      "docs/ros_api.md lists its parameters; an unknown one is refused with the names of all.\n");
+  return true;
+}
+
+}  // namespace aquafarm_sim

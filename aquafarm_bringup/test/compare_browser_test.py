@@ -119,7 +119,7 @@ class CompareBrowserTest(unittest.TestCase):
                 one.getBoundingClientRect().bottom < innerHeight).map(one => one.textContent)
                 .join(" | ");""")
             self.assertIn(words, seen, page.name)
-            self.assertRegex(seen, r"-?[\d.]+( \| | )\[-?[\d.]+, -?[\d.]+\]", page.name)
+            self.assertRegex(seen, r"-?[\d.]+( \| 95 %: | )\[-?[\d.]+, -?[\d.]+\]", page.name)
 
     def test_tiles_show_both_runs_between_the_references(self):
         self.show()
@@ -128,9 +128,9 @@ class CompareBrowserTest(unittest.TestCase):
         self.assertEqual(["RANDOM", "table: q_learning", "other: sarsa", "planner", "clairvoyant"],
                          [tile[0] for tile in tiles])
         for tile in tiles:
-            self.assertRegex(tile[2], r"^\[-?[\d.]+, -?[\d.]+\]$")
+            self.assertRegex(tile[2], r"^95 %: \[-?[\d.]+, -?[\d.]+\]$")
             self.assertRegex(tile[3], r"^success \d+% \[\d+%, \d+%\]$")
-            self.assertRegex(tile[5], rf"^n = {EPISODES}, \d+ distinct$")
+            self.assertRegex(tile[5], rf"^{EPISODES} episodes, \d+ distinct$")
         self.assertEqual("100.0% of the optimum", tiles[-1][4])
 
     def test_the_pointer_shows_the_value_of_every_run(self):

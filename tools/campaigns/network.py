@@ -25,6 +25,7 @@ from campaigns import ros
 
 STEPS = 96_000       # of a training; each call steps 16 farms
 LIMIT_S = 1200
+LOST = 4             # exit code of train_node
 DELAY_S = 0.2
 # How often a call is treated so, one in:
 DELAY, REPEAT, REPEAT_LATE, CUT_BEFORE, CUT_AFTER = 60, 20, 40, 60, 60
@@ -177,6 +178,12 @@ def train(campaign, folder, kind):
                               uri=master.uri if master else None)
         DISTURBANCES.get(kind, undisturbed)(ranch)
         code = process.wait(timeout=LIMIT_S)
+        while code == LOST and "roscpp is in a deadlock" in ranch.log("run"):  # it must only resume
+            campaign.attempt("deadlocks of roscpp")
+            process = ranch.train("aquafarm", "run", STEPS, "_resume:=true", "_sim_timeout_s:=60",
+                                  f"_call_limit_s:={call_limit_s:g}",
+                                  uri=master.uri if master else None)
+            code = process.wait(timeout=LIMIT_S)
         campaign.check(code == 0, f"{kind}: exit code {code}: {ranch.log('run')[-1500:]}")
         return ranch.results("run") if code == 0 else None
 

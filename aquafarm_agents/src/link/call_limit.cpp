@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_agents/link/call_limit.h"
 
+#include <cstdio>
+#include <cstdlib>
+#include <future>
+
+#include "aquafarm/agents/base/exit_code.h"
+
 namespace aquafarm_agents {
 namespace {
 
@@ -8,8 +14,22 @@ using aquafarm::MutexLock;
 
 // Coarse, so that the overhead of a fast call is negligible.
 constexpr std::chrono::milliseconds kLook{200};
+constexpr int kLastLooks = 75;  // 15 s, counted, because a stopped process looks at no clock
 
 }  // namespace
+
+void EndUnlessDone(const std::function<void()>& task, int looks) {
+  const std::future<void> done = std::async(std::launch::async, task);
+  for (int i = 0; i < looks; ++i) {
+    if (done.wait_for(kLook) == std::future_status::ready) return;
+  }
+  std::fprintf(
+      stderr,
+      "a service call cannot be aborted: roscpp is in a deadlock (ros_comm issue 2057); the "
+      "node ends. A training keeps its last checkpoint: continue it with resume:=true\n");
+  std::fflush(nullptr);
+  std::_Exit(static_cast<int>(aquafarm::agents::ExitCode::kLost));  // destructors would wait, too
+}
 
 CallLimit::CallLimit(double limit_s) : limit_(limit_s), watcher_([this] { Watch(); }) {}
 
@@ -39,7 +59,10 @@ void CallLimit::Watch() {
   while (!ends_) {
     if (lock.WaitUntil(ended_, Clock::now() + kLook)) continue;  // woken before the time
     if (armed_ == nullptr || Clock::now() - since_ < limit_) continue;
-    armed_->shutdown();  // drops the connection, which aborts the call
+    ros::ServiceClient* const client = armed_;
+    // Drops the connection, which aborts the call. In rare cases both wait for each other: the call
+    // for a lock of the connection, and the thread that closes the connection for the call.
+    EndUnlessDone([client] { client->shutdown(); }, kLastLooks);
     armed_ = nullptr;
   }
 }

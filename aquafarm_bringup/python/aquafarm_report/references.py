@@ -113,10 +113,10 @@ def show_tiles(players):
             shown.append((one.label, "–", [one.fault], False))
             continue
         mean, _, interval = return_text(one).partition(" ")
-        lines = [interval, f"success {success_text(one)}", share_text(one, optimum),
-                 f"n = {len(one.rows)}, {one.distinct} distinct"]
+        lines = [interval and f"95 %: {interval}", f"success {success_text(one)}",
+                 share_text(one, optimum), f"{len(one.rows)} episodes, {one.distinct} distinct"]
         shown.append((one.label, mean, [line for line in lines if line], one.is_run))
     note = ("<p>Return per episode, success and their 95 % intervals in evaluation episodes of "
             f"seed {videos.SEED}. RANDOM moves without a goal; the planner knows what ships know; "
-            "clairvoyant knows the storm's whole track.</p>")
+            "clairvoyant knows the storm's whole track, and its return is the optimum.</p>")
     return blocks.players(shown) + note

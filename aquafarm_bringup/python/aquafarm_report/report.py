@@ -77,10 +77,8 @@ def report_run(run, folder, episodes):
     settings = json.loads((run / "run.json").read_text(encoding="utf-8"))
     columns = read_metrics(run / "metrics.csv") if (run / "metrics.csv").is_file() else {}
     summary, rows, sections = show_episodes(run, folder, episodes)
-    tiles = blocks.tiles([
-        (f"{len(columns.get('return', [])):,}", "episodes trained"),
-        (settings["seed"], "seed of the training"), (videos.SEED, "seed of the episodes and videos"),
-        (settings["version"], "version")])
+    facts = (f"<p>Trained for {len(columns.get('return', [])):,} episodes with seed "
+             f"{settings['seed']}, version {blocks.escape(settings['version'])}.</p>")
     players = references.play_references(run / "scenario.yaml", folder, episodes)
     players.insert(1, references.read_player(settings["algorithm"], folder / "evaluation",
                                              is_run=True))
@@ -88,7 +86,7 @@ def report_run(run, folder, episodes):
     training = curves.show([settings["algorithm"]], [columns], notes, players)
     return blocks.page(
         f"{settings['algorithm']} on {settings['scenario']}",
-        blocks.section("Next to the references", references.show_tiles(players)), tiles, training,
+        blocks.section("Next to the references", references.show_tiles(players), facts), training,
         *sections,
         blocks.section("Configuration",
                        blocks.details("run.json", json.dumps(settings, indent=2)),

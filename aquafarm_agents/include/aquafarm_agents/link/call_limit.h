@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <thread>
 
 #include "aquafarm/base/mutex.h"
@@ -14,8 +15,13 @@ namespace aquafarm_agents {
 
 inline constexpr double kRetryPeriod_s = 0.1;  ///< between attempts to reach a sim node
 
+/// Runs a task in a thread of its own. Ends the process with ExitCode::kLost and a line on standard
+/// error if it is not done after so many looks of 0.2 s each.
+void EndUnlessDone(const std::function<void()>& task, int looks);
+
 /// Adds the timeout that roscpp lacks to service calls: a call that exceeds the limit is aborted
-/// and returns false. For a single caller whose calls do not overlap.
+/// and returns false; the process ends if roscpp does not abort it (EndUnlessDone). For a single
+/// caller whose calls do not overlap.
 class CallLimit {
  public:
   explicit CallLimit(double limit_s);

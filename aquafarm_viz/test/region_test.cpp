@@ -12,7 +12,6 @@
 #include "draw/course.h"
 #include "draw/symbols.h"
 #include "fixture.h"
-#include "scene/graticule.h"
 #include "scene/nautical.h"
 
 namespace aquafarm_viz {
@@ -326,20 +325,6 @@ TEST(Rings, HaveAPatternForEachKind) {
       EXPECT_GT(cv::norm(drawn[i], drawn.back()), 100.0) << i << " and " << int(kind);
     }
   }
-}
-
-TEST(Graticule, WritesThePositionOfACell) {
-  auto spec = test::MakeSpec();
-  spec.has_origin = true;
-  spec.origin_latitude_deg = 30.105;
-  spec.origin_longitude_deg = 122.605;
-  spec.cell_size_m = 1000.0;
-  EXPECT_EQ(PositionText(spec, 0.0, 0.0), "30\u00b006.3'N 122\u00b036.3'E");
-  // A minute of latitude is 1847.5 m here, one of longitude 1607 m.
-  EXPECT_EQ(PositionText(spec, 16.07, 18.475), "30\u00b016.3'N 122\u00b046.3'E");
-  spec.origin_latitude_deg = -30.9999;
-  spec.origin_longitude_deg = -0.01;
-  EXPECT_EQ(PositionText(spec, 0.0, 0.0), "31\u00b000.0'S 0\u00b000.6'W") << "never 60 minutes";
 }
 
 TEST(Nautical, WritesDistancesBearingsAndTimes) {

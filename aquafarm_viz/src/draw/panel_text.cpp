@@ -11,7 +11,6 @@
 #include "draw/legend.h"
 #include "draw/region.h"
 #include "draw/symbols.h"
-#include "scene/graticule.h"
 #include "scene/nautical.h"
 
 namespace aquafarm_viz {
@@ -323,7 +322,7 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
   if (shown == 0) panel.Detail("none known", "", layout.style->faint);
 }
 
-void ListShips(Panel& panel, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
+void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
   panel.Heading("SHIPS", "");
   int rows = panel.RowsLeft();
   std::size_t left_out = 0;
@@ -352,11 +351,6 @@ void ListShips(Panel& panel, const FarmSpec& spec, const FarmState& state, const
     const std::string load = ship.own_device >= 0 ? ""
                                                   : std::to_string(ship.aboard.size()) + "/" +
                                                         std::to_string(ship.capacity) + " aboard";
-    if (HasGraticule(spec) && panel.Fits(name + ": " + action, load)) {
-      panel.Item(name + ": " + action, load, layout.style->faint);
-      panel.Detail(PositionText(spec, ship.x, ship.y), "", layout.style->faint);
-      continue;
-    }
     const std::string where = cell + (load.empty() ? "" : ", " + load);
     if (panel.Fits(name + ": " + action, where)) {
       panel.Item(name + ": " + action, where, layout.style->faint);
@@ -465,7 +459,7 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   const Trail* trail = overlays.trail != nullptr ? overlays.trail : overlays.route;
   ListDevices(panel, spec, state, trail, forecasts.outlook, layout);
   ListDisasters(panel, spec, state, forecasts.courses, layout, std::max(3, panel.RowsLeft() - 7));
-  ListShips(panel, spec, state, layout);
+  ListShips(panel, state, layout);
   const bool has_policy = ListPolicy(panel, state, overlays, values, layout);
   DrawRegion(image, panel.Room(), spec, state, forecasts.courses, layout, fonts);
   return has_policy;

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "aquafarm_viz/base/text.h"
-
 namespace aquafarm_viz {
 namespace {
 
@@ -34,14 +32,6 @@ double LongitudeMetres(double latitude) {
   return 111412.88 * std::cos(latitude) - 93.5 * std::cos(3.0 * latitude);
 }
 
-// Returns degrees and minutes with one decimal: 30°06.5'N.
-std::string MinutesText(double degrees, char positive, char negative) {
-  const long tenths = std::lround(std::abs(degrees) * 600.0);
-  const std::string minutes = Number(double(tenths % 600) / 10.0, 1);
-  return std::to_string(tenths / 600) + "\u00b0" + (minutes.size() < 4 ? "0" : "") + minutes + "'" +
-         (degrees < 0.0 ? negative : positive);
-}
-
 }  // namespace
 
 bool HasGraticule(const FarmSpec& spec) {
@@ -56,14 +46,6 @@ std::vector<ArcTick> LongitudeTicks(const FarmSpec& spec, double min_cells) {
 std::vector<ArcTick> LatitudeTicks(const FarmSpec& spec, double min_cells) {
   const double cells = LatitudeMetres(spec.origin_latitude_deg * CV_PI / 180.0) / spec.cell_size_m;
   return Ticks(spec.origin_latitude_deg - 0.5 / cells, cells, spec.height, min_cells);
-}
-
-std::string PositionText(const FarmSpec& spec, double x, double y) {
-  const double origin = spec.origin_latitude_deg * CV_PI / 180.0;
-  const double latitude = spec.origin_latitude_deg + y * spec.cell_size_m / LatitudeMetres(origin);
-  const double longitude =
-      spec.origin_longitude_deg + x * spec.cell_size_m / LongitudeMetres(origin);
-  return MinutesText(latitude, 'N', 'S') + " " + MinutesText(longitude, 'E', 'W');
 }
 
 int CellTickStep(double min_cells) {

@@ -5,7 +5,6 @@
 
 #include <aquafarm_msgs/FarmSpec.h>
 
-#include <string>
 #include <vector>
 
 namespace aquafarm_viz {
@@ -26,10 +25,6 @@ std::vector<ArcTick> LongitudeTicks(const aquafarm_msgs::FarmSpec& spec, double 
 
 /// Returns the ticks of latitude, as LongitudeTicks.
 std::vector<ArcTick> LatitudeTicks(const aquafarm_msgs::FarmSpec& spec, double min_cells);
-
-/// Returns the position of a cell's centre, such as "30°10.5'N 122°41.9'E". The farm has a
-/// graticule; the error is that of LongitudeTicks.
-std::string PositionText(const aquafarm_msgs::FarmSpec& spec, double x, double y);
 
 /// Returns the tick spacing of an axis of cells: 1, 2 or 5 times a power of ten, at least
 /// `min_cells`.

@@ -130,7 +130,7 @@ class ValuesTest(unittest.TestCase):
         values[0, 0] = -10_000.0
         _, axis = pyplot.subplots()
         self.addCleanup(pyplot.close, "all")
-        draw_map(axis, values, 1.0, "viridis", "return", (0.05, 1.0))
+        draw_map(axis, values, 1.0, "viridis", "return", 0.05)
         low, high = axis.images[0].get_clim()
         self.assertGreater(low, -10_000.0)
         self.assertEqual(np.nanmax(values), high)

@@ -31,7 +31,6 @@ NETWORKS = {"dqn": ["paper", *REPLAY],
 MOST_KILLS = 30      # in one run, unless --kills is given; the last attempt is left to end
 LIMIT_S = 300
 SIM_STEPS = 64_000   # of a training through a sim node; each call steps 16 farms
-SIM_LOST = 4         # exit code of a trainer whose sim node is gone
 SIM_KILLS = 5
 RECORDER_KILLS = 4
 TINY = common.ROOT / "aquafarm_agents" / "test" / "data" / "tiny.yaml"
@@ -154,7 +153,7 @@ class SimNode:
         sim.kill()
         sim.wait()
         code = train.wait(timeout=LIMIT_S)
-        expected = (0,) if last else (0, SIM_LOST) if alone else (0, -signal.SIGKILL)
+        expected = (0,) if last else (0, ros.SIM_LOST) if alone else (0, -signal.SIGKILL)
         if not self.campaign.check(code in expected, f"sim_node: trainer: exit code {code}: "
                                    f"{ranch.log('run')[-600:]}"):
             return None

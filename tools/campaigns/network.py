@@ -25,7 +25,7 @@ from campaigns import ros
 
 STEPS = 96_000       # of a training; each call steps 16 farms
 LIMIT_S = 1200
-LOST = 4             # exit code of train_node
+DEADLOCK = "roscpp is in a deadlock"  # in what train_node prints then
 DELAY_S = 0.2
 # How often a call is treated so, one in:
 DELAY, REPEAT, REPEAT_LATE, CUT_BEFORE, CUT_AFTER = 60, 20, 40, 60, 60
@@ -173,17 +173,21 @@ def train(campaign, folder, kind):
         ranch.sim("aquafarm")
         master = Master(campaign, ranch.uri) if kind == "proxy" else None
         call_limit_s = 30 if kind == "master" else max(2, stop_s / 4)
-        process = ranch.train("aquafarm", "run", STEPS, f"_sim_timeout_s:={60 + 2 * stop_s:g}",
-                              f"_call_limit_s:={call_limit_s:g}",
-                              uri=master.uri if master else None)
+
+        def start(*more):
+            return ranch.train("aquafarm", "run", STEPS, f"_sim_timeout_s:={60 + 2 * stop_s:g}",
+                               f"_call_limit_s:={call_limit_s:g}", *more,
+                               uri=master.uri if master else None)
+
+        process = start()
         DISTURBANCES.get(kind, undisturbed)(ranch)
         code = process.wait(timeout=LIMIT_S)
-        while code == LOST and "roscpp is in a deadlock" in ranch.log("run"):  # it must only resume
+        deadlocks = 0
+        # Each adds a line to the log. The training must only resume.
+        while code == ros.SIM_LOST and ranch.log("run").count(DEADLOCK) > deadlocks:
+            deadlocks += 1
             campaign.attempt("deadlocks of roscpp")
-            process = ranch.train("aquafarm", "run", STEPS, "_resume:=true", "_sim_timeout_s:=60",
-                                  f"_call_limit_s:={call_limit_s:g}",
-                                  uri=master.uri if master else None)
-            code = process.wait(timeout=LIMIT_S)
+            code = start("_resume:=true").wait(timeout=LIMIT_S)
         campaign.check(code == 0, f"{kind}: exit code {code}: {ranch.log('run')[-1500:]}")
         return ranch.results("run") if code == 0 else None
 

@@ -16,6 +16,7 @@ from campaigns import common
 sys.path.append(str(common.ROOT / "aquafarm_agents" / "test"))
 from processes import free_port  # noqa: E402
 
+SIM_LOST = 4         # exit code of a trainer whose sim node is gone
 START_LIMIT_S = 120
 FARMS = 16  # of a sim node; a call of a trainer steps all of them
 

@@ -16,7 +16,7 @@ from aquafarm_bringup.files import open_atomically  # noqa: E402
 MOST_WINDOW = 7  # cells on a side, as in scikit-image
 FEWEST_CELLS = 10
 _COLUMN = 3.3  # width of a map in the figure [inch]
-_SCALED = (0.05, 1.0)  # shares of the cells between which the colours of the return differ
+_LOWEST = 0.05  # share of the cells whose return has one colour
 
 NOTE = ("Spearman's rho is of the ranks over the cells where both are known; neighbouring cells "
         "are alike, so no significance is given. SSIM is the mean structural similarity (Wang et "
@@ -99,18 +99,18 @@ def unit_text(units):
     return {"degC": "°C", "degF": "°F"}.get(units, units)
 
 
-def draw_map(axis, field, km, colours, label, shares=(0.0, 1.0)):
-    """One map, north up, land and rocks hatched. Values below the first of `shares` have its
+def draw_map(axis, field, km, colours, label, lowest=0.0):
+    """One map, north up, land and rocks hatched. The `lowest` share of the cells has one
     colour."""
     height, width = field.shape
     axis.set_facecolor("0.82")
     axis.patch.set(hatch="////", edgecolor="0.65", linewidth=0.0)
     known = field[np.isfinite(field)]
-    low, high = np.quantile(known, shares) if len(known) else (0.0, 1.0)
+    low, high = np.quantile(known, (lowest, 1.0)) if len(known) else (0.0, 1.0)
     image = axis.imshow(field, origin="lower", cmap=colours, vmin=low, vmax=high,
                         extent=(0, width * km, 0, height * km))
     axis.figure.colorbar(image, ax=axis, label=label, fraction=0.05 * height / width, pad=0.02,
-                         extend="min" if shares[0] > 0.0 else "neither")
+                         extend="min" if lowest > 0.0 else "neither")
     axis.set_xlabel("east [km]")
 
 
@@ -155,8 +155,7 @@ def draw(text, values, layers, results, path):
                                    figsize=(_COLUMN * (1 + len(layers)),
                                             0.84 * _COLUMN * tall + (3.8 if layers else 1.2)),
                                    height_ratios=[0.84 * _COLUMN * tall, 2.6][:rows])
-    draw_map(axes[0][0], values, km, "viridis", "return [points]",
-             _SCALED)
+    draw_map(axes[0][0], values, km, "viridis", "return [points]", _LOWEST)
     axes[0][0].set_title("Return if the ship starts here")
     draw_places(axes[0][0], text, km)
     axes[0][0].set_ylabel("north [km]")

@@ -80,15 +80,15 @@ TEST(SpecMarkers, NameLongitudesBelowAndLatitudesOnTheLeft) {
   spec.origin_latitude_deg = 30.1;
   spec.origin_longitude_deg = 122.6;
   const auto texts = AxisTexts(spec);
-  const auto east = texts.at("122 40'E");
+  const auto east = texts.at("122-40E");
   const double m_per_degree = 111320.0 * std::cos(30.1 * M_PI / 180.0);
   EXPECT_NEAR(east.first, (122.0 + 40.0 / 60.0 - 122.6) * m_per_degree, 100.0);
   EXPECT_LT(east.second, -500.0);
-  const auto north = texts.at("30 10'N");
+  const auto north = texts.at("30-10N");
   EXPECT_LT(north.first, -500.0);
   EXPECT_NEAR(north.second, (30.0 + 10.0 / 60.0 - 30.1) * 110850.0, 100.0);
   spec.origin_latitude_deg = -30.1;
-  EXPECT_EQ(AxisTexts(spec).count("30 00'S"), 1U);
+  EXPECT_EQ(AxisTexts(spec).count("30-00S"), 1U);
 }
 
 TEST(SpecMarkers, NumberCellsWithoutAPlace) {
@@ -459,10 +459,29 @@ TEST(SpecMarkers, HaveOneLineOfTheKeyForEachSymbolOfDanger) {
   for (const auto& marker : SpecMarkers(spec, false).markers) {
     if (marker.ns == "sign_legend_text") words += marker.text + "|";
   }
-  EXPECT_EQ(words, "device in danger|to the centre|its heading|pattern: at risk|");
+  EXPECT_EQ(words, "in danger|to the centre|heading|pattern: at risk|north is up|");
   for (const auto& marker : SpecMarkers(spec, false, ParseLayers("none")).markers) {
     EXPECT_NE(marker.ns, "sign_legend_text") << "without risks there are no such symbols";
   }
+}
+
+TEST(SpecMarkers, NameTheRisksByTheirWindsIfAllAreGiven) {
+  auto spec = test::MakeSpec();
+  spec.disasters = {test::MakeDisaster(0, 12.0F, 12.0F)};
+  spec.disasters[0].radii = {2.0F, 5.0F};
+  spec.disasters[0].risks = {-10.0F, -5.0F};
+  const auto words = [&spec] {
+    std::string text;
+    for (const auto& marker : SpecMarkers(spec, false).markers) {
+      if (marker.ns == "legend_text") text += marker.text + "|";
+    }
+    return text;
+  };
+  EXPECT_EQ(words(), "5 km|risk|-5|-10|-15|-20|");
+  spec.scenario_yaml = "disasters:\n  - ring_winds_kt: [50, 34]\n";
+  EXPECT_EQ(words(), "5 km|risk|gale -5|storm -10|");
+  spec.disasters.push_back(spec.disasters[0]);
+  EXPECT_EQ(words(), "5 km|risk|-5|-10|-15|-20|") << "the winds of one are not given";
 }
 
 TEST(StateMarkers, SayEpisodeStepAndReturn) {

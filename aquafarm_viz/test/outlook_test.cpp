@@ -91,17 +91,29 @@ TEST(Outlook, NamesTheWindsOfRingsThatTheScenarioGives) {
   Outlooks scene;
   scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "typhoon, gale (34 kt), reaches F3 in 30 min");
+            "typhoon, gale, reaches F3 in 30 min");
   EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "gale in 30 min");
   EXPECT_EQ(RiskText(scene.spec, scene.outlook().devices[0]), "-5 in 30 min");
   scene.state.step = 8;
   scene.state.disasters[0].x = 24.0F;
   scene.state.devices[0].x = 17;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "typhoon over F3: gale now, storm (50 kt) in 3 min");
+            "typhoon: gale over F3 now, storm in 3 min");
   EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()), "F3: gale now, storm in 3 min");
   scene.state.devices[0].x = 22;
   EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "storm now");
+}
+
+TEST(Outlook, HasTheNameOfAStormThatIsOnItsTrack) {
+  Outlooks scene;
+  scene.storms =
+      ReadStormTracks(std::string(kRecorded).replace(std::string(kRecorded).find("    track:"), 0,
+                                                     "    name: In-Fa\n"),
+                      1000.0);
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
+            "typhoon In-Fa, risk -5, reaches F3 in 30 min");
+  scene.state.disasters[0].x += 3.0F;  // a bulletin has moved it, or it is another storm
+  EXPECT_EQ(NameNow(scene.state.disasters[0], scene.course()), "typhoon");
 }
 
 TEST(Outlook, NamesTheWorstRingToComeAfterTheNext) {
@@ -112,7 +124,7 @@ TEST(Outlook, NamesTheWorstRingToComeAfterTheNext) {
   outlook.devices = {device};
   outlook.names = {"typhoon"};
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, gale (34 kt), reaches F3 in 30 min, hurricane force (64 kt) in 3.0 h");
+            "typhoon, gale, reaches F3 in 30 min, hurricane force in 3.0 h");
   EXPECT_EQ(DangerText(scene.spec, device), "gale in 30 min, hurricane force in 3.0 h");
   EXPECT_EQ(WorstText(scene.spec, device), "hurricane force in 3.0 h");
 }
@@ -204,7 +216,7 @@ TEST(Outlook, OfADeviceInARingIsNow) {
   const Outlook outlook = scene.outlook();
   EXPECT_EQ(outlook.devices[0].risk_now, -20.0);
   EXPECT_TRUE(outlook.devices[0].arrivals.empty());
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon over F3: risk -20 now");
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon: risk -20 over F3 now");
   EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "risk -20 now");
 }
 
@@ -230,8 +242,24 @@ TEST(Outlook, ListsADeviceInARingBeforeOneThatIsReachedLater) {
   EXPECT_EQ(outlook.devices[0].risk_now, -20.0);
   EXPECT_EQ(outlook.devices[1].id, 6) << "on the edge of the inner ring";
   EXPECT_EQ(outlook.devices[2].id, 3) << "reached in 2 steps";
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon over F2: risk -20 now");
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon: risk -20 over F2 and F6 now");
   EXPECT_EQ(ShortOutlookText(scene.spec, outlook), "F2: risk -20 now");
+}
+
+TEST(Outlook, PutsTheSoonerNextArrivalFirstAndCountsManyDevicesInOneRing) {
+  Outlooks scene;
+  scene.state.disasters[0].x = 18.0F;  // moves to the west; the device 3 is in the outer ring
+  const auto& three = scene.state.devices[0];
+  scene.state.devices.push_back(test::MakeDevice(0, 1, three.x - 1, three.y, 1.0F));
+  const Outlook two = scene.outlook();
+  ASSERT_EQ(two.devices.size(), 2U);
+  EXPECT_EQ(two.devices[0].risk_now, two.devices[1].risk_now);
+  EXPECT_EQ(two.devices[0].id, 3);
+  EXPECT_LT(two.devices[0].arrivals[0].steps, two.devices[1].arrivals[0].steps);
+  EXPECT_EQ(WorstRisk(two.devices[0]), -20.0);
+  scene.state.devices.push_back(test::MakeDevice(1, 1, three.x, three.y + 1, 1.0F));
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()).substr(0, 36),
+            "typhoon: risk -5 over 3 devices now,");
 }
 
 TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
@@ -239,7 +267,7 @@ TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
   scene.state.disasters[0].x = 18.0F;
   const Outlook outlook = scene.outlook();
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon over F3: risk -5 now, risk -20 in about 9 min");
+            "typhoon: risk -5 over F3 now, risk -20 in about 9 min");
   EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "risk -5 now, -20 in 9 min");
 }
 

@@ -47,7 +47,7 @@ TEST(Signs, HaveOneLineOfTheKeyEach) {
   }
   EXPECT_EQ(words,
             (std::set<std::string>{"at risk", "first hit", "in danger", "in port", "ship path",
-                                   "to centre", "heading", "legal move", "sensors"}));
+                                   "to centre", "heading", "legal move", "sensors", "fetched"}));
   const RiskKey key{{34, -5.0, aquafarm_msgs::DisasterState::TYPHOON}};
   EXPECT_EQ(SignsOf(spec, state, overlays, outlook, key, layout).size() + 1, signs.size())
       << "the key of risks shows the pattern";
@@ -230,7 +230,7 @@ TEST(Signs, OfDevicesStandNextToTheirDeviceAndNotNearerToARock) {
     spec.rocks.front().cell.y = cell.y + side.y;
     FreeSpace space = BlockSymbols(spec, state, {}, layout);
     cv::Mat map(layout.map.size(), CV_8UC3, cv::Scalar::all(90));
-    LabelDevices(map, spec, state, space, layout, fonts);
+    LabelDevices(map, spec, state, nullptr, {}, space, layout, fonts);
     cv::Mat1b written;
     cv::inRange(map, Bgr(layout.style->label), Bgr(layout.style->label), written);
     const cv::Moments moments = cv::moments(written, true);

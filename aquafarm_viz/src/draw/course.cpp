@@ -116,8 +116,8 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
     const TrackPoint point = TrackAt(course.ahead, now + double(i) * steps);
     const cv::Point2d at = to_pixel(point.x, point.y);
     if (!IsNear(at) || !cv::Rect({0, 0}, image.size()).contains(cv::Point(at))) continue;
-    FillCircle(image, at, 3.2 * layout.unit, Bgr(layout.style->halo));
-    FillCircle(image, at, 2.2 * layout.unit, Bgr(layout.style->label));
+    FillCircle(image, at, 4.2 * layout.unit, Bgr(layout.style->halo));
+    FillCircle(image, at, 3.0 * layout.unit, Bgr(layout.style->label));
     const double lead = double(i) * hours;
     const std::string text = "+" + Number(lead, lead == std::floor(lead) ? 0 : 1) + " h";
     const std::string wind = WindText(point);
@@ -133,6 +133,18 @@ void BlockMarks(const std::vector<CourseMark>& marks, FreeSpace& space, const La
   }
 }
 
+namespace {
+
+// Connects a mark with a label that is not next to it.
+void DrawMarkLeader(cv::Mat& image, cv::Point2d mark, cv::Rect label, const Layout& layout) {
+  const cv::Point2d to(std::clamp(mark.x, double(label.x), double(label.br().x)),
+                       std::clamp(mark.y, double(label.y), double(label.br().y)));
+  if (cv::norm(to - mark) < 8.0 * layout.unit) return;
+  DrawLine(image, mark, to, Bgr(layout.style->label), layout.Px(1));
+}
+
+}  // namespace
+
 void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace& space,
                 const Layout& layout, const Fonts& fonts) {
   BlockMarks(marks, space, layout);
@@ -146,6 +158,7 @@ void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace&
       if (!place) place = space.Take(size, mark.at - aside, 6.0 * layout.unit);
       if (!place && may_be_far) {
         place = space.Take(size, mark.at, 36.0 * layout.unit + size.width / 2.0);
+        if (place) DrawMarkLeader(image, mark.at, *place, layout);
       }
       if (place) DrawLabel(image, fonts.small, text, place->tl(), layout);
       return place.has_value();

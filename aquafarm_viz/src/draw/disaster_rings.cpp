@@ -42,13 +42,13 @@ struct ShadeEntry {
 
 using ShadeTable = std::array<ShadeEntry, 256>;
 
-ShadeTable MakeShadeTable(const Style& style) {
+ShadeTable MakeShadeTable(const Style& style, double tint) {
   ShadeTable table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
     const double severity = SeverityOf(i);
     const double cover = std::min(1.0, double(i) / kFaintest);
     table[i].color = Bgr(style.Risk(severity));
-    table[i].tint = static_cast<float>(style.ring_tint * cover *
+    table[i].tint = static_cast<float>(tint * cover *
                                        (kTintFaintest + (kTintWorst - kTintFaintest) * severity));
     table[i].half_width = static_cast<float>(cover * (0.35 + 1.15 * severity));
   }
@@ -191,7 +191,7 @@ void DrawRiskSample(cv::Mat& image, cv::Rect box, std::uint8_t kind, double risk
   cv::rectangle(image, box, Bgr(layout.style->sea_south), cv::FILLED);
   Patterns patterns(DisasterKindCount());
   patterns[KindIndex(kind)].emplace(kind, std::max(4, layout.Px(6)));
-  const ShadeTable table = MakeShadeTable(*layout.style);
+  const ShadeTable table = MakeShadeTable(*layout.style, layout.style->ring_tint);
   const std::vector<std::uint8_t> land(std::size_t(box.width), 0);
   RingRow line(std::size_t(box.width), kind);
   line.Clear();
@@ -204,7 +204,7 @@ void DrawRiskSample(cv::Mat& image, cv::Rect box, std::uint8_t kind, double risk
   }
 }
 
-void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land,
+void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land, bool is_tinted,
                     const Layout& layout) {
   std::vector<Rings> all;
   for (const auto& disaster : state.disasters) {
@@ -216,7 +216,7 @@ void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land,
     auto& pattern = patterns[KindIndex(rings.kind)];
     if (!pattern) pattern.emplace(rings.kind, layout.Px(13));
   }
-  const ShadeTable table = MakeShadeTable(*layout.style);
+  const ShadeTable table = MakeShadeTable(*layout.style, is_tinted ? layout.style->ring_tint : 0.0);
   RingRow line(static_cast<std::size_t>(map.cols), all.front().kind);
   for (int row = 0; row < map.rows; ++row) {
     line.Clear();

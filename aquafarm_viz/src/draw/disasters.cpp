@@ -72,16 +72,12 @@ void DrawCentre(cv::Mat& map, const DisasterState& disaster, const SignPlace& si
                   Bgr(disaster.grade == 2 ? kInk : kPaper));
 }
 
-// Draws a pointer at the border towards a centre outside the map, and its heading.
+// Draws a pointer at the border towards a centre outside the map.
 void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, const SignPlace& sign,
                        const Layout& layout) {
   static const std::vector<cv::Point2f> kPointer{{0.0F, 1.0F}, {0.75F, -0.7F}, {-0.75F, -0.7F}};
   const cv::Point2d centre = layout.view.ToPixel(disaster.x, disaster.y);
   const double bearing = std::atan2(centre.x - sign.at.x, sign.at.y - centre.y) * 180.0 / CV_PI;
-  if (disaster.speed > 0.0F) {
-    DrawHeading(map, sign.arrow_from, disaster.heading_deg,
-                cv::norm(sign.arrow_to - sign.arrow_from), layout);
-  }
   const Pose2 placing{sign.at, 9.0 * layout.unit, bearing};
   StrokeShape(map, kPointer, placing, Bgr(layout.style->halo), layout.Px(5));
   StrokeShape(map, kPointer, placing, Bgr(layout.style->label), layout.Px(3));
@@ -93,12 +89,12 @@ void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, const SignPl
 SignPlace PlaceSign(const DisasterState& disaster, const Layout& layout) {
   const cv::Size map = layout.map.size();
   const cv::Point2d centre = layout.view.ToPixel(disaster.x, disaster.y);
-  SignPlace sign{centre, centre, centre, true};
+  SignPlace sign{centre, centre, true};
   sign.is_inside =
       centre.x >= 0.0 && centre.y >= 0.0 && centre.x < map.width && centre.y < map.height;
-  const double turn = disaster.heading_deg % 360 * CV_PI / 180.0;
-  const cv::Point2d heading(std::sin(turn), -std::cos(turn));
   if (sign.is_inside) {
+    const double turn = disaster.heading_deg % 360 * CV_PI / 180.0;
+    const cv::Point2d heading(std::sin(turn), -std::cos(turn));
     const double length =
         std::clamp(2.2 * layout.view.cell_px(), 40.0 * layout.unit, 60.0 * layout.unit);
     if (disaster.speed > 0.0F) sign.arrow_to = centre + heading * length;
@@ -108,14 +104,7 @@ SignPlace PlaceSign(const DisasterState& disaster, const Layout& layout) {
   const double margin = std::min(13.0 * layout.unit, shorter / 2.0);
   sign.at = {std::clamp(centre.x, margin, map.width - margin),
              std::clamp(centre.y, margin, map.height - margin)};
-  sign.arrow_from = sign.arrow_to = sign.at;
-  if (!(disaster.speed > 0.0F)) return sign;
-  // Next to the pointer, so that the whole arrow is on the map.
-  const cv::Point2d way = heading * (40.0 * layout.unit);
-  const double room = std::min(2.0 * margin, shorter / 2.0);
-  sign.arrow_to = {std::clamp(sign.at.x + way.x, room, map.width - room),
-                   std::clamp(sign.at.y + way.y, room, map.height - room)};
-  sign.arrow_from = sign.arrow_to - way;
+  sign.arrow_to = sign.at;
   return sign;
 }
 

@@ -206,21 +206,43 @@ void DrawPorts(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const
 }
 
 void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, const Layout& layout) {
-  const double size = std::max(0.5 * layout.view.cell_px(), 10.0 * layout.unit);
+  const double size = std::max(0.9 * layout.view.cell_px(), 18.0 * layout.unit);
   for (const auto& port : ports) {
     const cv::Point2d middle = layout.view.ToPixel(port.cell.x, port.cell.y);
     for (const std::uint8_t action : port.actions) {
       const int bearing = MoveBearingDeg(action);
       const Pose2 placing{middle, layout.port_radius_px() + 0.5 * size, double(bearing)};
       const cv::Point2d at = Place({0.0, 1.0}, placing);
-      DrawArrow(map, at, bearing, size, Bgr(kInk), layout.Px(4));
-      DrawArrow(map, at, bearing, size, Bgr(kDirectionColor), layout.Px(2));
+      DrawArrow(map, at, bearing, size, Bgr(kInk), layout.Px(4.5));
+      DrawArrow(map, at, bearing, size, Bgr(kDirectionColor), layout.Px(2.5));
     }
   }
 }
 
+void DrawFetched(cv::Mat& image, std::uint8_t kind, cv::Point2d at, double radius_px,
+                 const Layout& layout) {
+  StrokeShape(image, DeviceOutline(kind), {at, radius_px, 0.0},
+              Bgr(Mix(DeviceColor(kind), layout.style->sea_south, 0.3)), 1);
+}
+
+namespace {
+
+// Marks where a device was that a ship has fetched.
+void DrawFormerPlace(cv::Mat& map, const FarmSpec& spec, std::int32_t id, const Layout& layout) {
+  for (const DeviceState& device : spec.devices) {
+    if (device.id != id || device.self_propelled || !InGrid(spec, device.x, device.y)) continue;
+    DrawFetched(map, device.kind, layout.view.ToPixel(device.x, device.y),
+                0.8 * layout.device_radius_px(), layout);
+  }
+}
+
+}  // namespace
+
 void DrawDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
   const double radius = layout.device_radius_px();
+  for (const auto& device : state.devices) {
+    if (device.status != DeviceState::DEPLOYED) DrawFormerPlace(map, spec, device.id, layout);
+  }
   std::map<std::pair<int, int>, int> delivered;
   for (const auto& device : state.devices) {
     if (!InGrid(spec, device.x, device.y)) continue;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "aquafarm_viz/base/checks.h"
@@ -56,8 +57,8 @@ struct FarmPainter::Parts {
   std::string sea;  // sea layer of the background
   cv::Mat background;
   std::optional<std::vector<PortDirections>> directions;  // of the spec; nullopt before use
-  StormTracks storms;                                     // of the background's scenario
-  cv::Mat1b land;                                         // IslandCoverage of the background
+  CourseReader courses;
+  cv::Mat1b land;                  // IslandCoverage of the background
   std::optional<MoveSigns> moves;  // for the layout; nullopt before the first use
   Values values;                   // values drawn in `valued`
   cv::Mat valued;                  // map of the background with V_π; empty if not drawn yet
@@ -83,7 +84,6 @@ struct FarmPainter::Parts {
     cv::Mat below = fresh(layout.map);
     if (!wanted_sea.empty()) DrawSea(below, spec, wanted_sea, layout, fonts);
     background = fresh;
-    storms = ReadStormTracks(spec.scenario_yaml, spec.cell_size_m);
     land = IslandCoverage(spec, layout);
     drawn = spec;
     sea = wanted_sea;
@@ -92,8 +92,10 @@ struct FarmPainter::Parts {
 
   /// Draws rings, courses, signs and the devices in danger. Returns the marks of the courses.
   std::vector<CourseMark> DrawDisasters(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
-                                        const Forecasts& forecasts, bool has_risk) {
-    if (has_risk) ShadeDisasters(map, state, land, layout);
+                                        const Forecasts& forecasts, bool has_risk,
+                                        bool has_values) {
+    // Between the lines of the pattern the colours of values must stay those of their scale.
+    if (has_risk) ShadeDisasters(map, state, land, /*is_tinted=*/!has_values, layout);
     std::vector<CourseMark> marks;
     for (std::size_t i = 0; has_risk && i < state.disasters.size(); ++i) {
       if (!IsDrawn(state.disasters[i])) continue;
@@ -120,12 +122,21 @@ struct FarmPainter::Parts {
   }
 
   /// Writes the labels of the map, the most important first.
-  void Label(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layers& layers,
+  void Label(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Overlays& overlays,
              const Forecasts& forecasts, const std::vector<CourseMark>& marks, FreeSpace& space) {
+    const Layers& layers = overlays.layers;
     LabelShips(map, spec, state, space, layout, fonts);
-    if (layers.risk) LabelDanger(map, spec, state, forecasts.outlook, space, layout, fonts);
+    // Before the devices, which have more places around them than a pointer at the edge.
     LabelPointers(map, spec, state, forecasts.courses, space, layout, fonts);
-    if (layers.labels) LabelDevices(map, spec, state, space, layout, fonts);
+    std::set<std::int32_t> labelled;
+    if (layers.risk) {
+      labelled = LabelDanger(map, spec, state, forecasts.outlook, space, layout, fonts);
+    }
+    if (layers.labels) {
+      LabelDevices(map, spec, state, layers.trail ? overlays.trail : nullptr, labelled, space,
+                   layout, fonts);
+      LabelFetched(map, spec, state, overlays.trail, space, layout, fonts);
+    }
     if (layers.risk) LabelRings(map, spec, state, forecasts.courses, space, layout, fonts);
     LabelMarks(map, marks, space, layout, fonts);
   }
@@ -158,13 +169,12 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
     }
   }
   Forecasts forecasts;
-  for (std::size_t i = 0; i < state.disasters.size(); ++i) {
-    forecasts.courses.push_back(CourseOf(spec, state, i, p.storms));
-  }
+  forecasts.courses = p.courses.Read(spec, state);
   forecasts.outlook = ComputeOutlook(spec, state, forecasts.courses);
   FreeSpace space = BlockSymbols(spec, state, forecasts.outlook, p.layout);
   if (layers.trail && overlays.trail != nullptr) DrawPaths(map, state, *overlays.trail, p.layout);
-  const auto marks = p.DrawDisasters(map, spec, state, forecasts, layers.risk);
+  const auto marks =
+      p.DrawDisasters(map, spec, state, forecasts, layers.risk, layers.values && values != nullptr);
   if (layers.route && overlays.route != nullptr) DrawPaths(map, state, *overlays.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
   if (layers.directions) {
@@ -178,7 +188,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   if (!DrawPanel(p.image, spec, state, overlays, values, forecasts, p.layout, p.fonts)) {
     p.DrawPolicyKey(map, state, overlays, values, space);
   }
-  p.Label(map, spec, state, layers, forecasts, marks, space);
+  p.Label(map, spec, state, overlays, forecasts, marks, space);
   if (layers.moves && values != nullptr) {  // where the map is free, so that they cover nothing
     if (!p.moves) p.moves.emplace(p.layout);
     p.moves->Draw(map, *values, &space);

@@ -8,6 +8,7 @@
 
 #include "aquafarm/tracks/wind_name.h"
 #include "draw/symbols.h"
+#include "scene/nautical.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -47,13 +48,7 @@ int SignsPx(const std::vector<Sign>& signs, const Layout& layout) {
 void DrawScaleBar(cv::Mat& image, cv::Point left, int room_px, double cell_size_m,
                   const Layout& layout, const Fonts& fonts) {
   const double px_per_m = layout.view.cell_px() / cell_size_m;
-  double length_m = std::pow(10.0, std::floor(std::log10(room_px / px_per_m)));
-  for (const double factor : {5.0, 2.0}) {
-    if (factor * length_m * px_per_m <= room_px) {
-      length_m *= factor;
-      break;
-    }
-  }
+  const double length_m = RoundLength(room_px / px_per_m);
   const int length = std::max(2, cvRound(length_m * px_per_m));
   const int half = length / 2;
   const int tall = layout.Px(4);
@@ -184,6 +179,12 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
                     return device.status == aquafarm_msgs::DeviceState::DELIVERED;
                   }),
       Sign::kDelivered);
+  add(std::any_of(state.devices.begin(), state.devices.end(),
+                  [](const auto& device) {
+                    return device.status != aquafarm_msgs::DeviceState::DEPLOYED &&
+                           !device.self_propelled;
+                  }),
+      Sign::kFetched);
   const auto has_way = [&state](const Trail* trail) {
     return trail != nullptr &&
            std::any_of(state.ships.begin(), state.ships.end(), [trail](const auto& ship) {
@@ -197,8 +198,9 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
   bool has_pointer = false;
   for (const auto& disaster : state.disasters) {
     if (!IsDrawn(disaster)) continue;
-    has_heading = has_heading || disaster.speed > 0.0F;
-    has_pointer = has_pointer || !PlaceSign(disaster, layout).is_inside;
+    const bool is_inside = PlaceSign(disaster, layout).is_inside;
+    has_heading = has_heading || (is_inside && disaster.speed > 0.0F);
+    has_pointer = has_pointer || !is_inside;
   }
   add(has_pointer, Sign::kPointer);
   add(has_heading, Sign::kHeading);
@@ -217,6 +219,8 @@ const char* SignWords(Sign sign) {
       return "in danger";
     case Sign::kDelivered:
       return "in port";
+    case Sign::kFetched:
+      return "fetched";
     case Sign::kPath:
       return "ship path";
     case Sign::kPointer:
@@ -265,6 +269,9 @@ void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
       break;
     case Sign::kDelivered:
       DrawDeviceSymbol(image, 0, {at, 4.5 * unit, 0.0}, 0.35);
+      break;
+    case Sign::kFetched:
+      DrawFetched(image, 0, at, 6.0 * unit, layout);
       break;
     case Sign::kPath:
       DrawPathSample(image, at - half, at + half, state, layout);

@@ -46,6 +46,7 @@ enum class Sign {
   kInDanger,      ///< ring around a device
   kFirstReached,  ///< two rings around a device
   kDelivered,     ///< small device at a port
+  kFetched,       ///< outline where a fetched device was
   kPath,          ///< of a ship
   kHeading,       ///< arrow of a disaster
   kPointer,       ///< triangle towards a centre outside the map

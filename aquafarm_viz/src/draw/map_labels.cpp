@@ -46,10 +46,6 @@ const DeviceState* Find(const FarmState& state, std::int32_t id) {
   return found == state.devices.end() ? nullptr : &*found;
 }
 
-double NextRisk(const DeviceOutlook& device) {
-  return device.arrivals.empty() ? device.risk_now : device.arrivals.front().risk;
-}
-
 // Connects a symbol with a label that is not next to it, unless the line would cross another label.
 void DrawLeader(cv::Mat& map, cv::Point2d symbol, double radius, cv::Rect label, FreeSpace& space,
                 const Layout& layout) {
@@ -64,20 +60,37 @@ void DrawLeader(cv::Mat& map, cv::Point2d symbol, double radius, cv::Rect label,
   space.BlockLine(from, to, layout.Px(3));
 }
 
-// Draws a text on a plate with a bar in the colour of a risk.
-void DrawPlate(cv::Mat& map, cv::Rect plate, const std::string& text, double risk,
+constexpr double kPlateMargins = 13.0;  // left and right of a text on a plate [design units]
+constexpr double kPlateRow = 16.0;      // [design units]
+
+// Draws lines of text on a plate with a bar in a colour.
+void DrawPlate(cv::Mat& map, cv::Rect plate, const std::vector<std::string>& lines, Rgb color,
                const Layout& layout, const Fonts& fonts) {
   const Style& style = *layout.style;
   Tint(map, plate, Bgr(style.panel), 0.88);
   const int bar = layout.Px(4);
-  cv::rectangle(map, cv::Rect(plate.x, plate.y, bar, plate.height), Bgr(style.Risk(Severity(risk))),
-                cv::FILLED);
+  cv::rectangle(map, cv::Rect(plate.x, plate.y, bar, plate.height), Bgr(color), cv::FILLED);
   cv::rectangle(map, plate, Bgr(style.rule), 1);
-  fonts.bold.Draw(
-      map, text,
-      {plate.x + bar + layout.Px(4), plate.y + (plate.height + fonts.bold.cap_height()) / 2},
-      Bgr(style.words));
+  const int row = plate.height / static_cast<int>(lines.size());
+  int base = plate.y + (row + fonts.bold.cap_height()) / 2;
+  for (const std::string& line : lines) {
+    fonts.bold.Draw(map, line, {plate.x + bar + layout.Px(4), base}, Bgr(style.words));
+    base += row;
+  }
 }
+
+// Marks islands and rocks as used, so that a label on water does not seem to name them.
+void BlockLand(const FarmSpec& spec, FreeSpace& space, const Layout& layout) {
+  const double half_cell = 0.5 * layout.view.cell_px();
+  for (const auto& cell : spec.islands) {
+    space.Block(Around(layout.view.ToPixel(cell.x, cell.y), half_cell));
+  }
+  for (const auto& rock : spec.rocks) {
+    space.Block(Around(layout.view.ToPixel(rock.cell.x, rock.cell.y), 0.8 * half_cell));
+  }
+}
+
+Rgb RiskColor(double risk, const Layout& layout) { return layout.style->Risk(Severity(risk)); }
 
 }  // namespace
 
@@ -96,13 +109,17 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlo
     if (device.status == DeviceState::DEPLOYED) {
       const bool is_marked = std::any_of(
           outlook.devices.begin(), outlook.devices.end(),
-          [&device](const auto& one) { return one.id == device.id && NextRisk(one) < 0.0; });
+          [&device](const auto& one) { return one.id == device.id && WorstRisk(one) < 0.0; });
       const double radius = (is_marked ? kDangerRing : kSymbol) * layout.device_radius_px();
       space.Block(WithBar(at, radius + gap, layout));
     } else if (device.status == DeviceState::DELIVERED &&
                quays.insert({device.x, device.y}).second) {
       space.Block(Around(at, 30.0 * layout.unit));  // the delivered devices stand there in rows
     }
+  }
+  for (const auto& device : spec.devices) {
+    if (!InGrid(spec, device.x, device.y)) continue;
+    space.Block(Around(layout.view.ToPixel(device.x, device.y), layout.device_radius_px()));
   }
   for (const auto& ship : state.ships) {
     if (!ship.visible || !ship.active || !InGrid(spec, ship.x, ship.y)) continue;
@@ -113,9 +130,9 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlo
     if (!IsDrawn(disaster)) continue;
     const SignPlace sign = PlaceSign(disaster, layout);
     space.Block(Around(sign.at, 12.0 * layout.unit));
-    const cv::Point2d middle = (sign.arrow_from + sign.arrow_to) * 0.5;
-    const cv::Point2d half(std::abs(sign.arrow_to.x - sign.arrow_from.x) / 2.0 + 8.0 * layout.unit,
-                           std::abs(sign.arrow_to.y - sign.arrow_from.y) / 2.0 + 8.0 * layout.unit);
+    const cv::Point2d middle = (sign.at + sign.arrow_to) * 0.5;
+    const cv::Point2d half(std::abs(sign.arrow_to.x - sign.at.x) / 2.0 + 8.0 * layout.unit,
+                           std::abs(sign.arrow_to.y - sign.at.y) / 2.0 + 8.0 * layout.unit);
     space.Block({cvFloor(middle.x - half.x), cvFloor(middle.y - half.y), cvCeil(2.0 * half.x),
                  cvCeil(2.0 * half.y)});
   }
@@ -127,11 +144,11 @@ void DrawDangerMarks(cv::Mat& map, const FarmState& state, const Outlook& outloo
   bool first = true;
   for (const DeviceOutlook& one : outlook.devices) {
     const DeviceState* device = Find(state, one.id);
-    const double risk = NextRisk(one);
+    const double risk = WorstRisk(one);
     if (device == nullptr || !(risk < 0.0)) continue;
     const cv::Point2d at = layout.view.ToPixel(device->x, device->y);
     const double radius = layout.device_radius_px();
-    const cv::Scalar color = Bgr(layout.style->Risk(Severity(risk)));
+    const cv::Scalar color = Bgr(RiskColor(risk, layout));
     for (const double times :
          first ? std::vector<double>{1.5, kDangerRing} : std::vector<double>{1.5}) {
       StrokeCircle(map, at, times * radius, Bgr(layout.style->halo), layout.Px(4));
@@ -141,34 +158,45 @@ void DrawDangerMarks(cv::Mat& map, const FarmState& state, const Outlook& outloo
   }
 }
 
-void LabelDanger(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
-                 FreeSpace& space, const Layout& layout, const Fonts& fonts) {
-  std::size_t labels = 0;
+std::set<std::int32_t> LabelDanger(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
+                                   const Outlook& outlook, FreeSpace& space, const Layout& layout,
+                                   const Fonts& fonts) {
+  std::set<std::int32_t> labelled;
+  FreeSpace water = space;
+  BlockLand(spec, water, layout);
   for (const DeviceOutlook& one : outlook.devices) {
     const DeviceState* device = Find(state, one.id);
     const std::string danger = DangerText(spec, one);
     if (device == nullptr || danger.empty()) continue;
-    if (labels++ == kMaxDangerLabels) break;
+    if (labelled.size() == kMaxDangerLabels) break;
     const std::string text = DeviceLabel(one.id) + ": " + danger;
     const cv::Point2d at = layout.view.ToPixel(device->x, device->y);
-    const cv::Size size(fonts.bold.Width(text) + layout.Px(13), layout.Px(18));
-    const auto plate = space.Take(size, at, 140.0 * layout.unit);
+    const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins),
+                        layout.Px(kPlateRow + 2.0));
+    auto plate = water.Take(size, at, 100.0 * layout.unit);
+    if (!plate) plate = space.Take(size, at, 140.0 * layout.unit);
     if (!plate) continue;
+    water.Block(*plate);
+    space.Block(*plate);
     DrawLeader(map, at, kDangerRing * layout.device_radius_px(), *plate, space, layout);
-    DrawPlate(map, *plate, text, NextRisk(one), layout, fonts);
+    DrawPlate(map, *plate, {text}, RiskColor(WorstRisk(one), layout), layout, fonts);
+    labelled.insert(one.id);
   }
+  return labelled;
 }
 
 namespace {
 
-// Marks islands and rocks as used, so that a label on water does not seem to name them.
-void BlockLand(const FarmSpec& spec, FreeSpace& space, const Layout& layout) {
-  const double half_cell = 0.5 * layout.view.cell_px();
-  for (const auto& cell : spec.islands) {
-    space.Block(Around(layout.view.ToPixel(cell.x, cell.y), half_cell));
-  }
-  for (const auto& rock : spec.rocks) {
-    space.Block(Around(layout.view.ToPixel(rock.cell.x, rock.cell.y), 0.8 * half_cell));
+void BlockPaths(const FarmState& state, const Trail& trail, FreeSpace& space,
+                const Layout& layout) {
+  for (const auto& ship : state.ships) {
+    const ShipTrail* way = ship.visible ? trail.Find(ship.id) : nullptr;
+    for (std::size_t i = 1; way != nullptr && i < way->places.size(); ++i) {
+      const cv::Point from = way->places[i - 1];
+      const cv::Point to = way->places[i];
+      space.BlockLine(layout.view.ToPixel(from.x, from.y), layout.view.ToPixel(to.x, to.y),
+                      layout.Px(4));
+    }
   }
 }
 
@@ -252,14 +280,15 @@ void LabelRings(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
          ++ring) {
       const std::string name = ring < winds.size() ? aquafarm::RingName(winds[ring]) + ", " : "";
       const std::string text = name + "risk " + Number(double(disaster.risks[ring]), 0);
-      const cv::Size size(fonts.bold.Width(text) + layout.Px(13), layout.Px(16));
+      const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins), layout.Px(kPlateRow));
       const auto points = PointsOnMap(disaster, ring, map.size(), layout);
       FreeSpace water = land;
       BlockOtherRings(state, disaster, ring, map.size(), water, layout);
       const auto place = PlaceBesideRing(points, size, water, layout);
       if (!place) continue;  // the key of risks has to do
       land.Block(*place);
-      DrawPlate(map, *place, text, double(disaster.risks[ring]), layout, fonts);
+      DrawPlate(map, *place, {text}, RiskColor(double(disaster.risks[ring]), layout), layout,
+                fonts);
       space.Block(*place);
     }
   }
@@ -273,19 +302,36 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     if (!IsDrawn(disaster)) continue;
     const SignPlace sign = PlaceSign(disaster, layout);
     if (sign.is_inside) continue;
-    const std::string text = CentreText(spec, disaster, courses[i]);
-    const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
-    const auto place = space.Take(size, sign.at, double(map.cols + map.rows));
-    if (place) DrawLabel(map, fonts.bold, text, place->tl(), layout);
+    const std::vector<std::string> lines{CentreText(spec, disaster, courses[i]),
+                                         MotionNow(spec, disaster)};
+    const int width = std::max(fonts.bold.Width(lines[0]), fonts.bold.Width(lines[1]));
+    const cv::Size size(width + layout.Px(kPlateMargins), layout.Px(2.0 * kPlateRow));
+    // Beside the pointer, which lies at the edge, if possible: above or below it, another pointer's
+    // label is near.
+    FreeSpace water = space;
+    BlockLand(spec, water, layout);
+    const double aside = size.width / 2.0 + 14.0 * layout.unit;
+    const cv::Point2d beside(sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside,
+                             sign.at.y);
+    const double near = 24.0 * layout.unit;
+    auto place = water.Take(size, beside, near);
+    if (!place) place = space.Take(size, beside, near);
+    if (!place) place = space.Take(size, sign.at, double(map.cols + map.rows));
+    if (!place) continue;
+    space.Block(*place);
+    DrawLeader(map, sign.at, 9.0 * layout.unit, *place, space, layout);
+    DrawPlate(map, *place, lines, GradeColor(disaster.grade), layout, fonts);
   }
 }
 
-void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, FreeSpace& space,
-                  const Layout& layout, const Fonts& fonts) {
+void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Trail* trail,
+                  const std::set<std::int32_t>& labelled, FreeSpace& space, const Layout& layout,
+                  const Fonts& fonts) {
   FreeSpace water = space;
   BlockLand(spec, water, layout);
+  if (trail != nullptr) BlockPaths(state, *trail, water, layout);
   for (const auto& device : state.devices) {
-    if (!IsLabelled(spec, device)) continue;
+    if (!IsLabelled(spec, device) || labelled.count(device.id) > 0) continue;
     const std::string text = DeviceLabel(device.id);
     const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
     const double radius = layout.device_radius_px();
@@ -298,6 +344,31 @@ void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, Fr
     water.Block(*place);
     space.Block(*place);
     DrawLabel(map, fonts.bold, text, place->tl(), layout);
+  }
+}
+
+void LabelFetched(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Trail* trail,
+                  FreeSpace& space, const Layout& layout, const Fonts& fonts) {
+  for (const DeviceState& device : spec.devices) {
+    const DeviceState* now = Find(state, device.id);
+    const bool was_fetched = now != nullptr && now->status != DeviceState::DEPLOYED;
+    if (!was_fetched || device.self_propelled || !InGrid(spec, device.x, device.y)) continue;
+    const auto at_s = trail == nullptr ? std::nullopt : trail->FetchedAt(device.id);
+    const std::string text =
+        DeviceLabel(device.id) + (at_s ? " " + TimeOfDay(spec, *at_s) : std::string());
+    const cv::Size size(fonts.small.Width(text), fonts.small.cap_height());
+    const double radius = layout.device_radius_px();
+    const cv::Point2d at = layout.view.ToPixel(device.x, device.y);
+    FreeSpace water = space;
+    water.Block(Around(at, 0.8 * radius));
+    BlockLand(spec, water, layout);
+    if (trail != nullptr) BlockPaths(state, *trail, water, layout);
+    const auto place = water.Take(size, at + cv::Point2d(radius + size.width / 2.0, 0.0),
+                                  3.0 * radius + size.width);
+    if (!place) continue;
+    space.Block(*place);
+    DrawLabel(map, fonts.small, text, place->tl(), layout,
+              Mix(layout.style->label, layout.style->sea_south, 0.25));
   }
 }
 

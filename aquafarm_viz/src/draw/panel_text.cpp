@@ -214,13 +214,6 @@ class Panel {
   int end_;
 };
 
-// The time at which a device was fetched: local, or since the start of the farm's world.
-std::string TimeOfDay(const FarmSpec& spec, std::int64_t at_s) {
-  if (spec.has_start_time) return LocalTimeText(spec, at_s, "%H:%M").substr(0, 5);
-  const std::string minutes = std::to_string(at_s / 60 % 60);
-  return std::to_string(at_s / 3600) + ":" + (minutes.size() < 2 ? "0" : "") + minutes;
-}
-
 // One row for each device: its symbol, kind, and danger or status.
 void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                     const Outlook& outlook, const Layout& layout) {

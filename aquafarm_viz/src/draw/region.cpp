@@ -25,27 +25,16 @@ using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr double kSmallestSide = 50.0;  // [design units]
+constexpr double kSmallestSide = 70.0;  // [design units]
 
 bool IsOutside(const FarmSpec& spec, const DisasterState& disaster) {
   return IsDrawn(disaster) && !IsCentreInFarm(spec, disaster);
 }
 
-// Distance from the farm's middle to the edge of the inset: a round number of metres.
-double Reach(double farthest_m) {
-  double reach = 1000.0;
-  while (true) {
-    for (const double factor : {1.0, 2.0, 3.0, 5.0}) {
-      if (factor * reach >= farthest_m || reach > 1e7) return factor * reach;
-    }
-    reach *= 10.0;
-  }
-}
-
 // Maps cells to the pixels of the inset.
 struct Inset {
   cv::Mat image;
-  cv::Point2d middle;  // of the farm [cells]
+  cv::Point2d middle;  // of the part that is shown [cells]
   double px_per_cell{};
 
   cv::Point2d At(double x, double y) const {
@@ -131,12 +120,14 @@ RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subj
   const std::string wind = WindOverFarm(spec, course);
   const std::string over = OverText(wind.empty() ? RiskOverFarm(spec, course) : wind);
   if (ahead_s > 0.0) {
-    const std::string nearest = PlaceText(spec, subject.nearest.x, subject.nearest.y);
-    const std::string when = "in " + HoursText(ahead_s);
+    const std::string nearest = "closest " + PlaceText(spec, subject.nearest.x, subject.nearest.y) +
+                                " in " + HoursText(ahead_s);
     const auto then = static_cast<std::time_t>(state.world_time.sec + ahead_s);
     const std::string time = spec.has_start_time ? LocalTimeText(spec, then, "%d %b %H:%M") : "";
-    if (is_over) return {over, {"closest " + nearest + " " + when, time}};
-    return {"CLOSEST " + nearest, {when + (time.empty() ? "" : ", " + time), ""}};
+    const std::string heading = is_over                         ? over
+                                : std::isfinite(subject.danger) ? "REACHES THE RANCH"
+                                                                : "COMES NEARER";
+    return {heading, {nearest, time}};
   }
   if (is_over) return {over, {centre, ""}};
   if (std::isfinite(subject.danger)) {
@@ -172,7 +163,7 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
   // The present motion continued says when a ring comes, but not that none does.
   words.lines[0] =
       DisasterName(disaster.kind) + ", centre " + PlaceText(spec, disaster.x, disaster.y);
-  words.lines[1] = subject->danger == 0.0 ? RiskOverFarm(spec, course) + " over the ranch now"
+  words.lines[1] = subject->danger == 0.0 ? RiskOverFarm(spec, course) + " over a part of the ranch"
                    : std::isfinite(subject->danger)
                        ? "reaches it in about " + AheadText(spec, subject->danger)
                        : SourceText(spec, disaster, course);
@@ -181,18 +172,53 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
 
 namespace {
 
-// Writes the radius of the circle of half the reach.
-void LabelScale(Inset& inset, double reach_m, FreeSpace& space, const Layout& layout,
-                const Fonts& fonts) {
-  const cv::Point2d middle(inset.image.cols / 2.0, inset.image.rows / 2.0);
-  const double radius = std::min(inset.image.cols, inset.image.rows) / 4.0;
-  const std::string half = DistanceText(reach_m / 2.0);
-  const cv::Size size(fonts.small.Width(half), fonts.small.cap_height());
-  const auto place = space.Take(size, middle - cv::Point2d(0.0, radius), inset.image.cols);
-  if (place) {
-    fonts.small.Draw(inset.image, half, {place->x, place->y + size.height},
-                     Bgr(layout.style->faint));
+// The part of the region that the inset shows [cells]: farm, centres, and courses as far as they
+// matter to the farm.
+cv::Rect2d ShownPart(const FarmSpec& spec, const FarmState& state,
+                     const std::vector<Course>& courses, double farthest_m) {
+  cv::Rect2d part(-0.5, -0.5, spec.width, spec.height);
+  const auto add = [&part](double x, double y) {
+    const cv::Point2d from(std::min(part.x, x), std::min(part.y, y));
+    const cv::Point2d to(std::max(part.br().x, x), std::max(part.br().y, y));
+    part = {from, to};
+  };
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    if (!IsDrawn(state.disasters[i])) continue;
+    const Track& ahead = courses[i].ahead;
+    add(state.disasters[i].x, state.disasters[i].y);
+    if (courses[i].kind == Course::Kind::kExtrapolated) continue;
+    const TrackPoint nearest = ClosestApproach(spec, ahead, ahead.front().step);
+    add(nearest.x, nearest.y);
+    for (const TrackPoint& point : ahead) {
+      if (MetresFromFarm(spec, point.x, point.y) < 0.5 * farthest_m) add(point.x, point.y);
+    }
   }
+  return part;
+}
+
+Inset MakeInset(const cv::Mat& image, const cv::Rect2d& part) {
+  constexpr double kMargin = 1.3;
+  const double px_per_cell = std::min(image.cols / part.width, image.rows / part.height) / kMargin;
+  return {image, (part.tl() + part.br()) * 0.5, px_per_cell};
+}
+
+// Draws a scale where there is space, in the lower left corner if it is free.
+void DrawScale(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout& layout,
+               const Fonts& fonts) {
+  const double length_m =
+      RoundLength(0.3 * inset.image.cols / inset.px_per_cell * spec.cell_size_m);
+  const int length = cvRound(length_m / spec.cell_size_m * inset.px_per_cell);
+  const std::string text = DistanceText(length_m);
+  const cv::Size size(std::max(length, fonts.small.Width(text)),
+                      fonts.small.cap_height() + layout.Px(6));
+  const cv::Point2d corner(size.width / 2.0 + 6.0 * layout.unit,
+                           inset.image.rows - size.height / 2.0 - 6.0 * layout.unit);
+  const auto place = space.Take(size, corner, inset.image.cols);
+  if (!place) return;
+  const Rgb color = layout.style->words;
+  fonts.small.Draw(inset.image, text, {place->x, place->y + fonts.small.cap_height()}, Bgr(color));
+  const int y = place->br().y - layout.Px(2);
+  cv::rectangle(inset.image, cv::Rect(place->x, y, length, layout.Px(2)), Bgr(color), cv::FILLED);
 }
 
 // Draws a square, also where the course crosses the farm, and the word "ranch" next to it.
@@ -201,8 +227,9 @@ void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout
   constexpr double kMinSide = 9.0;  // [design units]
   const double wide = std::max(kMinSide * layout.unit, spec.width * inset.px_per_cell);
   const double tall = std::max(kMinSide * layout.unit, spec.height * inset.px_per_cell);
-  const cv::Rect farm(cvRound((inset.image.cols - wide) / 2.0),
-                      cvRound((inset.image.rows - tall) / 2.0), cvRound(wide), cvRound(tall));
+  const cv::Point2d middle = inset.At((spec.width - 1) / 2.0, (spec.height - 1) / 2.0);
+  const cv::Rect farm(cvRound(middle.x - wide / 2.0), cvRound(middle.y - tall / 2.0), cvRound(wide),
+                      cvRound(tall));
   cv::rectangle(inset.image, farm, Bgr(layout.style->halo), layout.Px(4.0));
   cv::rectangle(inset.image, farm, Bgr(layout.style->label), layout.Px(1.6));
   const cv::Point gap(layout.Px(6), layout.Px(3));  // free of labels
@@ -210,7 +237,6 @@ void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout
   const std::string word = "ranch";
   const cv::Size size(fonts.small.Width(word), fonts.small.cap_height());
   const cv::Point2d aside(size.width / 2.0 + wide / 2.0 + 7.0 * layout.unit, 0.0);
-  const cv::Point2d middle(inset.image.cols / 2.0, inset.image.rows / 2.0);
   const double farthest = 12.0 * layout.unit;
   if (wide > size.width + 12.0 * layout.unit && tall > 3.0 * size.height) {  // in the square
     const cv::Point2d half(size.width / 2.0, size.height / 2.0);
@@ -221,17 +247,11 @@ void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout
   if (place) DrawLabel(inset.image, fonts.small, word, place->tl(), layout);
 }
 
-void DrawInset(const cv::Mat& image, double reach_m, const FarmSpec& spec, const FarmState& state,
+void DrawInset(Inset inset, const FarmSpec& spec, const FarmState& state,
                const std::vector<Course>& courses, const Layout& layout, const Fonts& fonts) {
   const Style& style = *layout.style;
-  Inset inset{image,
-              {(spec.width - 1) / 2.0, (spec.height - 1) / 2.0},
-              std::min(image.cols, image.rows) / 2.0 / reach_m * spec.cell_size_m};
   inset.image.setTo(Bgr(Mix(style.sea_south, style.panel, 0.4)));
-  // The scale: a circle of half the reach.
-  StrokeCircle(inset.image, cv::Point2d(image.cols / 2.0, image.rows / 2.0),
-               std::min(image.cols, image.rows) / 4.0, Bgr(style.faint), 1);
-  FreeSpace space(image.size());
+  FreeSpace space(inset.image.size());
   std::vector<CourseMark> marks;
   for (std::size_t i = 0; i < courses.size(); ++i) {
     const DisasterState& disaster = state.disasters[i];
@@ -254,7 +274,7 @@ void DrawInset(const cv::Mat& image, double reach_m, const FarmSpec& spec, const
   BlockMarks(marks, space, layout);
   DrawFarm(inset, spec, space, layout, fonts);
   LabelMarks(inset.image, marks, space, layout, fonts);
-  LabelScale(inset, reach_m, space, layout, fonts);
+  DrawScale(inset, spec, space, layout, fonts);
 }
 
 }  // namespace
@@ -281,7 +301,8 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
   if (is_drawn) {
     // As wide as the room, so that labels have space next to the course.
     const cv::Rect place = cv::Rect(room.x, y, room.width, side) & cv::Rect({0, 0}, image.size());
-    DrawInset(image(place), Reach(1.12 * farthest_m), spec, state, courses, layout, fonts);
+    const cv::Rect2d part = ShownPart(spec, state, courses, farthest_m);
+    DrawInset(MakeInset(image(place), part), spec, state, courses, layout, fonts);
     cv::rectangle(image, place, Bgr(layout.style->rule), 1);
     y += place.height;
   }

@@ -81,19 +81,23 @@ cv::Mat1b IslandCoverage(const aquafarm_msgs::FarmSpec& spec, const Layout& layo
 /// Draws the rings of all disasters on the map: an outline, a tint and a pattern for each kind of
 /// disaster. Where they overlap the worst risk counts.
 /// @param land  IslandCoverage; fainter over land
+/// @param is_tinted  false: nothing between the lines of the pattern
 void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const cv::Mat1b& land,
-                    const Layout& layout);
+                    bool is_tinted, const Layout& layout);
 
 /// Draws a part of an area at risk into a box of a legend: the pattern of the kind and the colour
 /// of the risk.
 void DrawRiskSample(cv::Mat& image, cv::Rect box, std::uint8_t kind, double risk,
                     const Layout& layout);
 
+/// Draws the outline of a device, which marks where a ship fetched it.
+void DrawFetched(cv::Mat& image, std::uint8_t kind, cv::Point2d at, double radius_px,
+                 const Layout& layout);
+
 /// Where the sign of a disaster is drawn [pixels of the map].
 struct SignPlace {
-  cv::Point2d at;  ///< centre, or the pointer at the border
-  cv::Point2d arrow_from;
-  cv::Point2d arrow_to;  ///< arrow_from if it stands still
+  cv::Point2d at;        ///< centre, or the pointer at the border
+  cv::Point2d arrow_to;  ///< `at` if it stands still or the centre lies outside the map
   bool is_inside{};      ///< false: the centre lies outside the map
 };
 SignPlace PlaceSign(const aquafarm_msgs::DisasterState& disaster, const Layout& layout);

@@ -15,11 +15,12 @@ using visualization_msgs::MarkerArray;
 
 constexpr Rgb kTickColor{0xb4, 0xc3, 0xd0};
 
-// Degrees and minutes of arc: 30 06'N. The letters of rviz have no degree sign.
+// Degrees and minutes of arc as in navigational warnings: 30-06N. The letters of rviz have no
+// degree sign.
 std::string ArcText(int minutes, char positive, char negative) {
   const int all = std::abs(minutes);
   const std::string rest = std::to_string(all % 60);
-  return std::to_string(all / 60) + " " + (rest.size() < 2 ? "0" : "") + rest + "'" +
+  return std::to_string(all / 60) + "-" + (rest.size() < 2 ? "0" : "") + rest +
          (minutes < 0 ? negative : positive);
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,7 +14,6 @@
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "markers/maker.h"
-#include "scene/arrow.h"
 #include "scene/nautical.h"
 #include "scene/outlook.h"
 #include "scene/port_shift.h"
@@ -30,7 +30,9 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr std::size_t kMaxLabels = 40;  // more are not read, and cost time
+constexpr double kRim = 0.2;            // of a label from the edge of the farm [cells]
 constexpr double kMaxLine = 1.05;       // width of a headline's line, of the farm's longer side
+constexpr double kLineOfOutside = 3.0;  // above the clock
 constexpr Rgb kAlarm{0xff, 0xb4, 0x54};
 
 // A rectangle that a label covers [cells].
@@ -105,7 +107,7 @@ class Labels {
   std::optional<Plate> Place(const std::string& text, double x, double y, bool must_show) {
     const auto lines = 1 + std::count(text.begin(), text.end(), '\n');
     const double half_width =
-        std::min(0.5 * (TextWidth(text) + 0.8) * word_, 0.5 * spec_.width - 0.5);
+        std::min(0.5 * (TextWidth(text) + 0.8) * word_, 0.5 * spec_.width - 0.5 - kRim);
     const double half_height = (0.1 + 0.5 * double(lines)) * word_;
     const double row = std::max(1.5, 1.5 * word_) + half_height - 0.6 * word_;
     Plate plate{x, y, half_width, half_height};
@@ -116,8 +118,10 @@ class Labels {
     for (const auto& [is_near, avoids_land] : kTries) {
       for (const cv::Point2d& offset : OffsetsOf(half_width, row, must_show)) {
         if ((cv::norm(offset) <= near) != is_near) continue;
-        plate.x = std::clamp(x + offset.x, half_width - 0.5, spec_.width - 0.5 - half_width);
-        plate.y = std::clamp(y + offset.y, half_height - 0.5, spec_.height - 0.5 - half_height);
+        plate.x = std::clamp(x + offset.x, half_width - 0.5 + kRim,
+                             spec_.width - 0.5 - kRim - half_width);
+        plate.y = std::clamp(y + offset.y, half_height - 0.5 + kRim,
+                             spec_.height - 0.5 - kRim - half_height);
         if (Covers(plate, used_) || (avoids_land && Covers(plate, land_))) continue;
         used_.push_back(plate);
         labels_.push_back(plate);
@@ -219,10 +223,6 @@ std::string InLines(std::string text, double max_width) {
   return text;
 }
 
-double NextRisk(const DeviceOutlook& device) {
-  return device.arrivals.empty() ? device.risk_now : device.arrivals.front().risk;
-}
-
 void AddCircle(MarkerArray& array, const Maker& maker, const DeviceState& device, double risk) {
   Marker circle =
       maker.Make("danger", device.id, Marker::TRIANGLE_LIST, kPortLayer, device.x, device.y);
@@ -233,106 +233,42 @@ void AddCircle(MarkerArray& array, const Maker& maker, const DeviceState& device
   array.markers.push_back(circle);
 }
 
-// The labels of the devices in danger: that of the first one, then, if called again, of the others.
-class DeviceLabels {
- public:
-  DeviceLabels(const Maker& maker, const FarmSpec& spec, const FarmState& state,
-               const Outlook& outlook)
-      : maker_(maker), spec_(spec), state_(state) {
-    for (const DeviceOutlook& one : outlook.devices) {
-      if (NextRisk(one) < 0.0) devices_.push_back(&one);
-    }
+// Adds circles around the devices in danger and labels those that have space, those that are
+// reached first before others. Deletes the circles and labels of all other devices.
+void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
+                const FarmState& state, const Outlook& outlook, Labels& labels) {
+  const double radius = 0.86 * maker.thing_m() / maker.cell_m();
+  std::set<std::int32_t> circled;
+  std::set<std::int32_t> labelled;
+  for (const DeviceOutlook& one : outlook.devices) {
+    if (!(WorstRisk(one) < 0.0)) continue;
+    const DeviceState& device =
+        *std::find_if(state.devices.begin(), state.devices.end(),
+                      [&one](const DeviceState& other) { return other.id == one.id; });
+    AddCircle(array, maker, device, WorstRisk(one));
+    circled.insert(one.id);
+    if (labelled.size() == kMaxLabels) continue;
+    const std::string text = DeviceLabel(one.id) + ": " + WorstText(spec, one);
+    const auto plate = labels.Place(text, device.x, device.y, /*must_show=*/labelled.empty());
+    if (!plate) continue;
+    AddText(array, maker, "danger_label", one.id, *plate, text);
+    AddLeader(array, maker, "danger_label", one.id,
+              labels.Leader(cv::Point2d(device.x, device.y), radius, *plate));
+    labelled.insert(one.id);
   }
-
-  // Labels the next devices, up to a number of labels in all.
-  void Add(MarkerArray& array, Labels& labels, std::size_t max_labels) {
-    const double radius = 0.86 * maker_.thing_m() / maker_.cell_m();
-    for (; next_ < devices_.size() && labelled_.size() < max_labels; ++next_) {
-      const DeviceOutlook& one = *devices_[next_];
-      const DeviceState& device = Find(one.id);
-      const std::string text = DeviceLabel(one.id) + ": " + WorstText(spec_, one);
-      const auto plate = labels.Place(text, device.x, device.y, /*must_show=*/labelled_.empty());
-      if (!plate) continue;
-      AddText(array, maker_, "danger_label", one.id, *plate, text);
-      AddLeader(array, maker_, "danger_label", one.id,
-                labels.Leader(cv::Point2d(device.x, device.y), radius, *plate));
-      labelled_.push_back(one.id);
-    }
+  for (const auto& device : state.devices) {
+    if (circled.count(device.id) == 0) array.markers.push_back(maker.Delete("danger", device.id));
+    if (labelled.count(device.id) == 0) DeleteText(array, maker, "danger_label", device.id);
   }
-
-  // Adds the circles, and deletes those and the labels of all other devices.
-  void Finish(MarkerArray& array) {
-    std::vector<std::int32_t> shown;
-    for (const DeviceOutlook* one : devices_) {
-      AddCircle(array, maker_, Find(one->id), NextRisk(*one));
-      shown.push_back(one->id);
-    }
-    const auto is_in = [](const std::vector<std::int32_t>& ids, std::int32_t id) {
-      return std::find(ids.begin(), ids.end(), id) != ids.end();
-    };
-    for (const auto& device : state_.devices) {
-      if (!is_in(shown, device.id)) array.markers.push_back(maker_.Delete("danger", device.id));
-      if (!is_in(labelled_, device.id)) DeleteText(array, maker_, "danger_label", device.id);
-    }
-  }
-
- private:
-  const DeviceState& Find(std::int32_t id) const {
-    return *std::find_if(state_.devices.begin(), state_.devices.end(),
-                         [id](const DeviceState& other) { return other.id == id; });
-  }
-
-  const Maker& maker_;
-  const FarmSpec& spec_;
-  const FarmState& state_;
-  std::vector<const DeviceOutlook*> devices_;
-  std::vector<std::int32_t> labelled_;
-  std::size_t next_{};
-};
-
-// A pointer at the edge of the farm towards the centre of a disaster outside it.
-struct EdgePointer {
-  std::size_t disaster{};
-  cv::Point2d at;  // [cells]
-};
-
-// Draws the arrow of a motion next to a pointer.
-void AddHeading(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
-                const DisasterState& disaster, cv::Point2d at, Labels& labels) {
-  if (!(disaster.speed > 0.0F)) {
-    array.markers.push_back(maker.Delete("pointer_heading", disaster.id));
-    return;
-  }
-  const double thing = maker.thing_m() / maker.cell_m();
-  constexpr int kDirections = 12;
-  std::vector<cv::Point2d> places;
-  for (const double away : {1.9, 2.4, 3.0}) {
-    for (int i = 0; i < kDirections; ++i) {
-      const double angle = 2.0 * CV_PI * i / kDirections;
-      places.push_back(at + away * thing * cv::Point2d(std::cos(angle), std::sin(angle)));
-    }
-  }
-  // Along the edge: the label stands towards the middle.
-  const cv::Point2d inwards = cv::Point2d((spec.width - 1) / 2.0, (spec.height - 1) / 2.0) - at;
-  std::stable_sort(places.begin(), places.begin() + kDirections, [&](const auto& a, const auto& b) {
-    return std::abs((a - at).dot(inwards)) < std::abs((b - at).dot(inwards));
-  });
-  const cv::Point2d place = labels.FirstFree(places, 0.8 * thing);
-  Marker arrow =
-      maker.Make("pointer_heading", disaster.id, Marker::TRIANGLE_LIST, kSignLayer, 0.0, 0.0);
-  arrow.color = Color(kPaper);
-  AddArrow(arrow, place.x, place.y, disaster.heading_deg, maker.cell_m(), 3.0 * thing);
-  array.markers.push_back(arrow);
-  labels.Block(place.x, place.y, 0.9 * thing);
 }
 
-// Adds the pointers with their motion, without labels.
-std::vector<EdgePointer> AddPointers(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
+// Adds a pointer at the edge of the farm towards each centre outside it. Returns those disasters.
+std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                                      const FarmState& state, Labels& labels) {
-  static const std::vector<cv::Point2f> kPointer{{0.0F, 0.7F}, {-0.5F, -0.5F}, {0.5F, -0.5F}};
+  static const std::vector<cv::Point2f> kPointer{{0.0F, 0.75F}, {-0.4F, -0.5F}, {0.4F, -0.5F}};
   const double middle_x = (spec.width - 1) / 2.0;
   const double middle_y = (spec.height - 1) / 2.0;
-  std::vector<EdgePointer> pointers;
+  std::vector<std::size_t> outside;
   for (std::size_t i = 0; i < state.disasters.size(); ++i) {
     const auto& disaster = state.disasters[i];
     const double east = disaster.x - middle_x;
@@ -341,8 +277,6 @@ std::vector<EdgePointer> AddPointers(MarkerArray& array, const Maker& maker, con
                                    std::abs(north) / (spec.height / 2.0 - 0.8));
     if (!disaster.known || disaster.steps_left <= 0 || IsCentreInFarm(spec, disaster)) {
       array.markers.push_back(maker.Delete("pointer", disaster.id));
-      array.markers.push_back(maker.Delete("pointer_heading", disaster.id));
-      DeleteText(array, maker, "pointer_label", disaster.id);
       continue;
     }
     const cv::Point2d edge(middle_x + east / beyond, middle_y + north / beyond);
@@ -355,72 +289,63 @@ std::vector<EdgePointer> AddPointers(MarkerArray& array, const Maker& maker, con
     const cv::Point2d at = labels.FirstFree(places, 0.55 * maker.thing_m() / maker.cell_m());
     const double bearing = std::atan2(east, north) * 180.0 / CV_PI;
     Marker pointer = maker.Shape("pointer", disaster.id, kSignLayer, at.x, at.y, kPointer,
-                                 1.2 * maker.thing_m(), GradeColor(disaster.grade));
+                                 1.5 * maker.thing_m(), GradeColor(disaster.grade));
     pointer.pose.orientation = Turned(bearing, 0.0);
     array.markers.push_back(pointer);
     labels.Block(at.x, at.y, 0.8 * maker.thing_m() / maker.cell_m());
-    AddHeading(array, maker, spec, disaster, at, labels);
-    pointers.push_back({i, at});
+    outside.push_back(i);
   }
-  return pointers;
+  return outside;
 }
 
-void LabelPointers(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
-                   const FarmState& state, const std::vector<Course>& courses,
-                   const std::vector<EdgePointer>& pointers, Labels& labels) {
-  const double radius = 0.8 * maker.thing_m() / maker.cell_m();
-  for (const EdgePointer& pointer : pointers) {
-    const DisasterState& disaster = state.disasters[pointer.disaster];
-    const Course& course = courses[pointer.disaster];
-    const std::string text =
-        CentreText(spec, disaster, course) + "\n" + ApproachText(spec, disaster, course);
-    const auto plate = labels.Place(text, pointer.at.x, pointer.at.y, /*must_show=*/true);
-    AddText(array, maker, "pointer_label", disaster.id, *plate, text);
-    AddLeader(array, maker, "pointer_label", disaster.id,
-              labels.Leader(pointer.at, radius, *plate));
+// Adds lines of text above the farm, the lowest in a line, or deletes them.
+void AddLines(MarkerArray& array, const Maker& maker, const FarmSpec& spec, const char* space,
+              double lowest, const std::string& text, Rgb color) {
+  if (text.empty()) return array.markers.push_back(maker.Delete(space, 0));
+  const double side_m = std::max(spec.width, spec.height) * maker.cell_m();
+  const std::string lines = InLines(text, kMaxLine * side_m / maker.line_m());
+  const auto more = double(std::count(lines.begin(), lines.end(), '\n'));
+  array.markers.push_back(maker.Text(space, 0, (spec.width - 1) / 2.0,
+                                     maker.LineAbove(lowest + 0.5 * more), lines, maker.line_m(),
+                                     color));
+}
+
+// Returns what the pointers point to: for one its strength, place and course, for several the
+// places.
+std::string OutsideText(const FarmSpec& spec, const FarmState& state,
+                        const std::vector<Course>& courses,
+                        const std::vector<std::size_t>& outside) {
+  std::string text;
+  for (const std::size_t i : outside) {
+    text += (text.empty() ? "" : ", ") + CentreText(spec, state.disasters[i], courses[i]);
   }
+  if (outside.size() != 1) return text;
+  const std::size_t only = outside.front();
+  return text + ", " + ApproachText(spec, state.disasters[only], courses[only]);
 }
 
 }  // namespace
 
 struct DangerMarkers::Parts {
-  std::string scenario_yaml;  // of the tracks
-  StormTracks tracks;
+  CourseReader courses;
 };
 
 DangerMarkers::DangerMarkers() : parts_(std::make_unique<Parts>()) {}
 DangerMarkers::~DangerMarkers() = default;
 
 MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state) {
-  if (parts_->scenario_yaml != spec.scenario_yaml) {
-    parts_->scenario_yaml = spec.scenario_yaml;
-    parts_->tracks = ReadStormTracks(spec.scenario_yaml, spec.cell_size_m);
-  }
-  std::vector<Course> courses;
-  for (std::size_t i = 0; i < state.disasters.size(); ++i) {
-    courses.push_back(CourseOf(spec, state, i, parts_->tracks));
-  }
+  const std::vector<Course> courses = parts_->courses.Read(spec, state);
   const Outlook outlook = ComputeOutlook(spec, state, courses);
   const Maker maker(spec, state.header);
   MarkerArray array;
   Labels labels(maker, spec, state);
-  const auto pointers = AddPointers(array, maker, spec, state, labels);
-  // The device that is reached first has its label next to it; the others have more places to go
-  // than a pointer at the edge.
-  DeviceLabels devices(maker, spec, state, outlook);
-  devices.Add(array, labels, 1);
-  LabelPointers(array, maker, spec, state, courses, pointers, labels);
-  devices.Add(array, labels, kMaxLabels);
-  devices.Finish(array);
-  const std::string alarm = OutlookText(spec, state, outlook);
-  if (alarm.empty() || state.terminated || state.truncated) {
-    array.markers.push_back(maker.Delete("alarm", 0));
-    return array;
-  }
-  const double side_m = std::max(spec.width, spec.height) * maker.cell_m();
-  array.markers.push_back(maker.Text("alarm", 0, (spec.width - 1) / 2.0, maker.LineAbove(0.5),
-                                     InLines(alarm, kMaxLine * side_m / maker.line_m()),
-                                     maker.line_m(), IsInDanger(outlook) ? kAlarm : kPaper));
+  const std::vector<std::size_t> outside = AddPointers(array, maker, spec, state, labels);
+  AddDevices(array, maker, spec, state, outlook, labels);
+  const bool is_over = state.terminated || state.truncated;
+  AddLines(array, maker, spec, "alarm", 0.0, is_over ? "" : OutlookText(spec, state, outlook),
+           IsInDanger(outlook) ? kAlarm : kPaper);
+  AddLines(array, maker, spec, "outside", kLineOfOutside,
+           OutsideText(spec, state, courses, outside), kPaper);
   return array;
 }
 

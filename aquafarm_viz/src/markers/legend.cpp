@@ -12,6 +12,8 @@
 #include "base/marker_color.h"
 #include "markers/maker.h"
 #include "scene/arrow.h"
+#include "scene/nautical.h"
+#include "scene/storm_track.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -88,7 +90,7 @@ class Row {
   // The pointer towards a centre outside the farm.
   void Pointer() {
     Marker pointer = MakeList();
-    for (const auto& [x, y] : {std::pair(0.0, 0.5), {-0.4, -0.4}, {0.4, -0.4}}) {
+    for (const auto& [x, y] : {std::pair(0.0, 0.6), {-0.35, -0.45}, {0.35, -0.45}}) {
       pointer.points.push_back(Point(x * size_m_, y * size_m_));
     }
     pointer.color = Color(GradeColor(3));
@@ -154,15 +156,6 @@ class Row {
   int next_id_{0};
 };
 
-// The largest of 1, 2 and 5 times a power of ten that is at most `most_m`.
-double RoundLength(double max_m) {
-  const double power = std::pow(10.0, std::floor(std::log10(max_m)));
-  for (const double factor : {5.0, 2.0}) {
-    if (factor * power <= max_m) return factor * power;
-  }
-  return power;
-}
-
 }  // namespace
 
 void AddLegend(MarkerArray& array, const FarmSpec& spec) {
@@ -173,22 +166,22 @@ void AddLegend(MarkerArray& array, const FarmSpec& spec) {
                               : Number(length_m, length_m < 1.0 ? 2 : 0) + " m");
   row.Skip(row.size_m());
   row.Text("risk");
-  for (const int risk : {-5, -10, -15, -20}) {
+  for (const auto& [risk, name] : NamedRisks(spec)) {
     row.Bar(row.size_m(), SeverityColor(Severity(risk)));
-    row.Text(std::to_string(risk));
+    row.Text(name);
   }
-  row.Text("north is up");
 }
 
 void AddSignLegend(MarkerArray& array, const FarmSpec& spec) {
   Row row(array, spec, 1, "sign_legend");
   row.Ring();
-  row.Text("device in danger");
+  row.Text("in danger");
   row.Pointer();
   row.Text("to the centre");
   row.Arrow();
-  row.Text("its heading");
+  row.Text("heading");
   row.Text("pattern: at risk");
+  row.Text("north is up");
 }
 
 void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& values) {

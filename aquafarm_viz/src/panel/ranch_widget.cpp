@@ -84,7 +84,9 @@ RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget*
   reward_ = AddLine(all);
   all->addWidget(ships_ = MakeTable(RanchModel::ShipColumns()), 1);
   all->addWidget(devices_ = MakeTable(RanchModel::DeviceColumns()), 2);
-  devices_->horizontalHeader()->setSectionResizeMode(1, QHeaderView::ResizeToContents);  // symbols
+  for (const int column : {1, 3}) {  // symbols, and dangers
+    devices_->horizontalHeader()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
+  }
   plan_ = AddLine(all);
   plan_->setObjectName("plan");
   all->addWidget(plan_ships_ = MakeTable(PlanShipColumns()), 1);

@@ -10,11 +10,11 @@
 
 namespace aquafarm_viz {
 
-// Room for the texts around the farm, as fractions of its longer side: latitudes on the left, lines
-// above, longitudes and a legend of three lines below.
+// Room for the texts around the farm, as fractions of its longer side: latitudes on the left, five
+// lines above, longitudes and a legend of three lines below.
 constexpr double kLeft = 0.115;
 constexpr double kRight = 0.035;
-constexpr double kAbove = 0.125;
+constexpr double kAbove = 0.18;
 constexpr double kBelow = 0.165;
 
 rviz::ViewController* WholeView::FromAbove(rviz::VisualizationManager& rviz) {

@@ -19,7 +19,28 @@ int ZoneOf(const aquafarm_msgs::FarmSpec& spec) {
   return spec.has_origin ? NauticalZone(spec.origin_longitude_deg) : 0;
 }
 
+// The name of a typhoon's class until it is over, else that of the kind.
+std::string ClassNow(const aquafarm_msgs::DisasterState& disaster, const Course& course) {
+  const bool has_class = disaster.kind == aquafarm_msgs::DisasterState::TYPHOON &&
+                         disaster.steps_left > 0 && !course.ahead.empty() &&
+                         course.ahead.front().wind_mps;
+  if (!has_class) return DisasterName(disaster.kind);
+  const double wind_mps = *course.ahead.front().wind_mps;
+  return wind_mps < 17.2   ? "tropical depression"
+         : wind_mps < 24.5 ? "tropical storm"
+         : wind_mps < 32.7 ? "severe tropical storm"
+                           : DisasterName(disaster.kind);
+}
+
 }  // namespace
+
+double RoundLength(double max_m) {
+  const double power = std::pow(10.0, std::floor(std::log10(max_m)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= max_m) return factor * power;
+  }
+  return power;
+}
 
 std::string DistanceText(double metres) {
   return metres >= 10000.0  ? Number(metres / 1000.0, 0) + " km"
@@ -83,20 +104,18 @@ std::string WindText(const TrackPoint& point) {
 }
 
 std::string NameNow(const aquafarm_msgs::DisasterState& disaster, const Course& course) {
-  const bool has_class = disaster.kind == aquafarm_msgs::DisasterState::TYPHOON &&
-                         disaster.steps_left > 0 && !course.ahead.empty() &&
-                         course.ahead.front().wind_mps;
-  if (!has_class) return DisasterName(disaster.kind);
-  const double wind_mps = *course.ahead.front().wind_mps;
-  return wind_mps < 17.2   ? "tropical depression"
-         : wind_mps < 24.5 ? "tropical storm"
-         : wind_mps < 32.7 ? "severe tropical storm"
-                           : DisasterName(disaster.kind);
+  return ClassNow(disaster, course) + (course.name.empty() ? "" : " " + course.name);
 }
 
 std::string StrengthText(const TrackPoint& point) {
   if (!point.wind_mps) return "";
   return " " + WindText(point) + " (" + Number(*point.wind_mps / aquafarm::kMpsPerKnot, 0) + " kt)";
+}
+
+std::string TimeOfDay(const aquafarm_msgs::FarmSpec& spec, std::int64_t at_s) {
+  if (spec.has_start_time) return LocalTimeText(spec, at_s, "%H:%M").substr(0, 5);
+  const std::string minutes = std::to_string(at_s / 60 % 60);
+  return std::to_string(at_s / 3600) + ":" + (minutes.size() < 2 ? "0" : "") + minutes;
 }
 
 std::string HoursText(double seconds) {

@@ -16,6 +16,10 @@ namespace aquafarm_viz {
 /// Returns a distance such as "850 m", "1.8 km" or "89 km".
 std::string DistanceText(double metres);
 
+/// Returns the largest of 1, 2 and 5 times a power of ten that is at most `max_m`, above 0: the
+/// length of a scale.
+double RoundLength(double max_m);
+
 /// Returns the compass point from the middle of the farm to a point [cells], such as "SE".
 std::string PointFromFarm(const aquafarm_msgs::FarmSpec& spec, double x, double y);
 
@@ -40,13 +44,16 @@ std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, dou
 /// Returns a disaster's max sustained wind, such as "38 m/s"; empty if it is not given.
 std::string WindText(const TrackPoint& point);
 
-/// Returns the name of a disaster. A typhoon whose wind is given has that of its class until it is
-/// over, such as "tropical storm" (Typhoon Committee Operational Manual, WMO TD 196:
-/// from 17.2, 24.5 and 32.7 m/s).
+/// Returns the kind of a disaster and, where it has one, its name: "typhoon In-Fa". For a typhoon
+/// whose wind is given it is the class until it is over, such as "tropical storm" (Typhoon
+/// Committee Operational Manual, WMO TD 196: from 17.2, 24.5 and 32.7 m/s).
 std::string NameNow(const aquafarm_msgs::DisasterState& disaster, const Course& course);
 
 /// Returns WindText also in knots, after a space: " 37 m/s (72 kt)"; empty if not given.
 std::string StrengthText(const TrackPoint& point);
+
+/// Returns a time in hours and minutes: local time, or since the start of the farm's world.
+std::string TimeOfDay(const aquafarm_msgs::FarmSpec& spec, std::int64_t at_s);
 
 /// Returns a duration such as "31 h" or "4.5 h".
 std::string HoursText(double seconds);

@@ -100,13 +100,16 @@ double FirstRisk(const DeviceOutlook& device) {
   return device.arrivals.front().risk;
 }
 
-double WorstRisk(const DeviceOutlook& device) {
-  return device.arrivals.empty() ? device.risk_now : device.arrivals.back().risk;
+// When the next ring arrives, after the one that covers the device now.
+double NextStep(const DeviceOutlook& device) {
+  return device.arrivals.empty() ? std::numeric_limits<double>::infinity()
+                                 : device.arrivals.front().steps;
 }
 
 bool IsMoreUrgent(const DeviceOutlook& a, const DeviceOutlook& b) {
   if (FirstStep(a) != FirstStep(b)) return FirstStep(a) < FirstStep(b);
   if (FirstRisk(a) != FirstRisk(b)) return FirstRisk(a) < FirstRisk(b);
+  if (NextStep(a) != NextStep(b)) return NextStep(a) < NextStep(b);
   return WorstRisk(a) < WorstRisk(b);
 }
 
@@ -143,6 +146,10 @@ bool IsFar(const FarmSpec& spec, const TrackPoint& from, const TrackPoint& to) {
 }
 
 }  // namespace
+
+double WorstRisk(const DeviceOutlook& device) {
+  return device.arrivals.empty() ? device.risk_now : device.arrivals.back().risk;
+}
 
 const char* WindOverFarm(const FarmSpec& spec, const Course& course) {
   const TrackPoint& now = course.ahead.front();
@@ -229,15 +236,24 @@ std::string AheadText(const FarmSpec& spec, double steps) {
 
 namespace {
 
-// Returns "risk -10", or "storm (50 kt)" where the wind is given.
-std::string RingText(const RingArrival& ring) {
-  return ring.wind_kt > 0 ? aquafarm::RingName(ring.wind_kt) : "risk " + Number(ring.risk, 0);
+// Returns "risk -10", or "storm" where the wind is given.
+std::string RingText(double risk, std::int32_t wind_kt) {
+  return wind_kt > 0 ? aquafarm::WindName(wind_kt) : "risk " + Number(risk, 0);
 }
 
-// Returns "risk -5 now", or "gale now" where the wind is given.
-std::string NowText(const DeviceOutlook& device) {
-  const std::string name = NameOf(device.wind_now_kt);
-  return (name.empty() ? "risk " + Number(device.risk_now, 0) : name) + " now";
+// Returns "gale over F0 and F1 now": the devices in the same ring as the first one.
+std::string NowText(const Outlook& outlook) {
+  constexpr std::size_t kMaxNames = 2;
+  const DeviceOutlook& first = outlook.devices.front();
+  std::vector<std::string> names;
+  for (const DeviceOutlook& one : outlook.devices) {
+    const bool is_same = one.disaster_now == first.disaster_now && one.risk_now == first.risk_now;
+    if (is_same) names.push_back(DeviceLabel(one.id));
+  }
+  const std::string over = names.size() > kMaxNames    ? std::to_string(names.size()) + " devices"
+                           : names.size() == kMaxNames ? names[0] + " and " + names[1]
+                                                       : names[0];
+  return RingText(first.risk_now, first.wind_now_kt) + " over " + over + " now";
 }
 
 // Returns "gale in 2 h"; the wind must be given.
@@ -245,11 +261,11 @@ std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
   return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
 }
 
-// Returns ", hurricane force (64 kt) in 9 h": the worst ring to come, if it is not the next one.
+// Returns ", hurricane force in 9 h": the worst ring to come, if it is not the next one.
 std::string WorstToCome(const FarmSpec& spec, const DeviceOutlook& device) {
   if (device.arrivals.size() < 2) return "";
   const RingArrival& worst = device.arrivals.back();
-  return ", " + RingText(worst) + " in " + AheadText(spec, worst.steps);
+  return ", " + RingText(worst.risk, worst.wind_kt) + " in " + AheadText(spec, worst.steps);
 }
 
 // Returns ", Sun 06:24 UTC+8", the local time in some steps; empty without a start time.
@@ -287,14 +303,12 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
   if (outlook.devices.empty()) return "";
   const DeviceOutlook& first = outlook.devices.front();
   const bool is_now = first.risk_now < 0.0;
-  const std::string now = is_now ? outlook.names[first.disaster_now] + " over " +
-                                       DeviceLabel(first.id) + ": " + NowText(first)
-                                 : "";
+  const std::string now = is_now ? outlook.names[first.disaster_now] + ": " + NowText(outlook) : "";
   if (first.arrivals.empty()) return is_now ? now : KnownText(spec, outlook);
   const RingArrival& next = first.arrivals.front();
   const std::string when = std::string(" in ") + (outlook.is_extrapolated ? "about " : "") +
                            AheadText(spec, next.steps) + ClockAhead(spec, state, next.steps);
-  const std::string risk = RingText(next);
+  const std::string risk = RingText(next.risk, next.wind_kt);
   const std::string worst = WorstToCome(spec, first);
   if (is_now) return now + ", " + risk + when + worst;
   return outlook.names[next.disaster] + ", " + risk + ", reaches " + DeviceLabel(first.id) + when +
@@ -362,6 +376,11 @@ std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState&
   return NameNow(disaster, course) + StrengthText(course.ahead.front()) + ", centre " +
          DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) + " " +
          PointFromFarm(spec, disaster.x, disaster.y);
+}
+
+std::string MotionNow(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster) {
+  const std::string motion = MotionText(spec, disaster.heading_deg, double(disaster.speed));
+  return disaster.speed > 0.0F ? "now moving " + motion : motion;
 }
 
 std::string ApproachText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,

@@ -43,7 +43,7 @@ struct Outlook {
   double known_until{std::numeric_limits<double>::infinity()};
   std::vector<DeviceOutlook> devices;  ///< deployed devices, the soonest danger first: those in a
                                        ///< ring now, then by first arrival; at equal times the
-                                       ///< worse risk first
+                                       ///< worse risk first, then the sooner next arrival
 };
 
 /// Computes the outlook along the courses of the drawn disasters.
@@ -67,12 +67,15 @@ std::string RiskOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& cour
 std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 
 /// Returns the outlook in one sentence, such as "typhoon, risk -10, reaches F3 in 6.5 h" or
-/// "typhoon over F2: risk -5 now, risk -20 in 6.5 h"; where the winds of the rings are given
-/// "typhoon over F2: gale now, storm (50 kt) in 6.5 h". If a worse ring than this one follows, it
-/// is named too: ", hurricane (64 kt) in 9 h". Without such a danger "no danger to devices known
+/// "typhoon: risk -5 over F2 now, risk -20 in 6.5 h"; where the winds of the rings are given
+/// "typhoon In-Fa: gale over F0 and F1 now, storm in 6.5 h". If a worse ring than this one follows,
+/// it is named too: ", hurricane force in 9 h". Without such a danger "no danger to devices known
 /// until +12 h" if a course ends before its disaster; else empty, also if the outlook is not known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
+
+/// Returns the risk of the worst ring that covers or reaches a device; 0 if none does.
+double WorstRisk(const DeviceOutlook& device);
 
 /// Returns whether a ring covers or reaches a device.
 bool IsInDanger(const Outlook& outlook);
@@ -108,6 +111,10 @@ std::pair<std::string, std::string> NameAndDanger(
 /// its strength "typhoon 37 m/s (72 kt), centre 89 km SE".
 std::string CentreText(const aquafarm_msgs::FarmSpec& spec,
                        const aquafarm_msgs::DisasterState& disaster, const Course& course);
+
+/// Returns the present motion of a disaster: "now moving NW at 13 km/h", or "stands still".
+std::string MotionNow(const aquafarm_msgs::FarmSpec& spec,
+                      const aquafarm_msgs::DisasterState& disaster);
 
 /// Returns the motion of a disaster and, where its course is given and comes nearer, its closest
 /// approach: "NW at 13 km/h, closest 29 km S in 11 h".

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
+#include "scene/outlook.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -35,6 +37,8 @@ std::string Percent(double share) {
 }
 
 }  // namespace
+
+RanchModel::RanchModel() : courses_(std::make_shared<CourseReader>()) {}
 
 std::string RanchModel::Take(const aquafarm_msgs::FarmStateConstPtr& state) {
   return pairing_.AddState(state);
@@ -135,9 +139,17 @@ std::vector<RanchModel::Row> RanchModel::Ships() const {
 std::vector<RanchModel::Row> RanchModel::Devices() const {
   std::vector<Row> rows;
   if (shown().state == nullptr) return rows;
-  for (const auto& device : shown().state->devices) {
+  const auto& spec = *shown().spec;
+  const auto& state = *shown().state;
+  std::map<std::int32_t, std::string> dangers;
+  for (const DeviceOutlook& one :
+       ComputeOutlook(spec, state, courses_->Read(spec, state)).devices) {
+    dangers[one.id] = WorstText(spec, one);
+  }
+  for (const auto& device : state.devices) {
+    const std::string& danger = dangers[device.id];
     rows.push_back({DeviceLabel(device.id), DeviceName(device.kind), CellText(device.x, device.y),
-                    StatusName(device.status),
+                    danger.empty() ? StatusName(device.status) : danger,
                     device.health_known ? Percent(double(device.health)) : "?",
                     Number(double(device.value), 0)});
   }

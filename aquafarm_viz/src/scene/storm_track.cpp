@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <opencv2/core/types.hpp>
 
 #include "aquafarm/scenario/limits.h"
+#include "aquafarm/tracks/wind_name.h"
+#include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/rings.h"
 
 namespace aquafarm_viz {
@@ -156,6 +160,7 @@ StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m
         }
       }
       storms.growths.push_back(disaster["radius_growth"].as<double>(0.0));
+      storms.names.push_back(disaster["name"].as<std::string>(""));
       storms.ring_winds_kt.emplace_back();
       for (const YAML::Node& wind : disaster["ring_winds_kt"]) {
         storms.ring_winds_kt.back().push_back(wind.as<std::int32_t>());
@@ -170,6 +175,25 @@ StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m
     return {};
   }
   return storms;
+}
+
+std::vector<std::pair<double, std::string>> NamedRisks(const FarmSpec& spec) {
+  constexpr std::size_t kMaxNames = 4;
+  const auto winds = ReadStormTracks(spec.scenario_yaml, spec.cell_size_m).ring_winds_kt;
+  std::map<double, std::string, std::greater<>> names;  // the mildest first
+  bool is_named = winds.size() == spec.disasters.size();
+  for (std::size_t i = 0; is_named && i < winds.size(); ++i) {
+    const auto& risks = spec.disasters[i].risks;
+    is_named = !winds[i].empty() && winds[i].size() == risks.size();
+    for (std::size_t ring = 0; is_named && ring < risks.size(); ++ring) {
+      const double risk = std::round(double(risks[ring]));
+      const std::string name =
+          std::string(aquafarm::WindName(winds[i][ring])) + " " + Number(risk, 0);
+      is_named = names.emplace(risk, name).first->second == name;
+    }
+  }
+  if (is_named && !names.empty() && names.size() <= kMaxNames) return {names.begin(), names.end()};
+  return {{-5.0, "-5"}, {-10.0, "-10"}, {-15.0, "-15"}, {-20.0, "-20"}};
 }
 
 TrackPoint TrackAt(const Track& track, double step) {
@@ -239,6 +263,7 @@ Course CourseOf(const FarmSpec& spec, const FarmState& state, std::size_t index,
                 {},
                 forecast != nullptr ? std::min(end, source.back().step) : end,
                 {}};
+  course.name = tracks.names[index];
   // A bulletin may have replaced the rings by those of other winds.
   const std::vector<std::int32_t>& winds = tracks.ring_winds_kt[index];
   if (winds.size() == present.radii.size()) course.ring_winds_kt = winds;
@@ -257,6 +282,18 @@ Course CourseOf(const FarmSpec& spec, const FarmState& state, std::size_t index,
   AddRings(course.ahead, truth);
   if (forecast == nullptr) course.errors = ErrorsOf(course.ahead, spec, tracks.error_cells);
   return course;
+}
+
+std::vector<Course> CourseReader::Read(const FarmSpec& spec, const FarmState& state) {
+  if (scenario_yaml_ != spec.scenario_yaml) {
+    scenario_yaml_ = spec.scenario_yaml;
+    tracks_ = ReadStormTracks(spec.scenario_yaml, spec.cell_size_m);
+  }
+  std::vector<Course> courses;
+  for (std::size_t i = 0; i < state.disasters.size(); ++i) {
+    courses.push_back(CourseOf(spec, state, i, tracks_));
+  }
+  return courses;
 }
 
 double MeanForecastError(const std::vector<double>& errors, double lead_h) {

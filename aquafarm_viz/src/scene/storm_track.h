@@ -11,6 +11,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aquafarm_viz {
@@ -43,12 +44,17 @@ struct StormTracks {
   std::vector<double> growths;  ///< of every radius [cells/step], one per disaster
   /// Wind within each ring [kn], one list per disaster; empty: not given.
   std::vector<std::vector<std::int32_t>> ring_winds_kt;
+  std::vector<std::string> names;   ///< one per disaster; empty: it has no name
   std::vector<double> error_cells;  ///< mean error after 24, 48, … hours; empty: not given
 };
 
 /// Reads a canonical scenario. The tracks are empty if the text cannot be read, and for a disaster
 /// that draws another storm in each episode.
 StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m);
+
+/// Returns risks for a key, the mildest first, and their words: those of the disasters' rings with
+/// their winds, such as "gale -5", if all are given, else four from "-5" to "-20".
+std::vector<std::pair<double, std::string>> NamedRisks(const aquafarm_msgs::FarmSpec& spec);
 
 /// Returns a track's position and rings at a step; at a step outside the track those of the nearest
 /// end. Between two points all is interpolated, as in the farm.
@@ -73,12 +79,25 @@ struct Course {
   double known_until{};        ///< step until which it is recorded, published or extrapolated
   std::vector<double> errors;  ///< mean forecast error at each point of `ahead` [cells], or empty
   std::vector<std::int32_t> ring_winds_kt{};  ///< wind within each ring [kn]; empty: not given
+  std::string name{};  ///< of the storm; empty: it has none, or this need not be its course
 };
 
 /// Returns the course of disaster `index`. An observation contains no track, so its course is
 /// extrapolated, and so is that of a disaster that is not where its track has it.
 Course CourseOf(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                 std::size_t index, const StormTracks& tracks);
+
+/// Returns the courses of the disasters of a state, and reads a scenario's text once.
+class CourseReader {
+ public:
+  /// @return one course per disaster
+  std::vector<Course> Read(const aquafarm_msgs::FarmSpec& spec,
+                           const aquafarm_msgs::FarmState& state);
+
+ private:
+  std::string scenario_yaml_;  // of the tracks
+  StormTracks tracks_;
+};
 
 /// Returns the mean forecast error at a lead time [cells]: 0 at lead 0, linear between the errors
 /// after 24, 48, … hours, and beyond along the last two. `errors` must not be empty.

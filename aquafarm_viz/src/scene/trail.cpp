@@ -6,12 +6,22 @@
 #include "aquafarm_viz/base/palette.h"
 
 namespace aquafarm_viz {
+namespace {
+
+std::optional<std::int64_t> TimeIn(const std::map<std::int32_t, std::int64_t>& times,
+                                   std::int32_t device) {
+  const auto found = times.find(device);
+  return found == times.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace
 
 void Trail::Update(const aquafarm_msgs::FarmState& state) {
   if (state.seed != seed_ || state.episode != episode_ || state.step < step_) {
     ships_.clear();
     statuses_.clear();
     changed_at_.clear();
+    fetched_at_.clear();
   }
   seed_ = state.seed;
   episode_ = state.episode;
@@ -19,6 +29,9 @@ void Trail::Update(const aquafarm_msgs::FarmState& state) {
   for (const auto& device : state.devices) {
     const auto [known, is_new] = statuses_.emplace(device.id, device.status);
     if (is_new || known->second == device.status) continue;
+    if (known->second == aquafarm_msgs::DeviceState::DEPLOYED) {
+      fetched_at_[device.id] = state.world_time.sec;
+    }
     known->second = device.status;
     changed_at_[device.id] = state.world_time.sec;
   }
@@ -51,8 +64,11 @@ std::size_t ShipTrail::UnbrokenFrom() const {
 }
 
 std::optional<std::int64_t> Trail::ChangedAt(std::int32_t device) const {
-  const auto found = changed_at_.find(device);
-  return found == changed_at_.end() ? std::nullopt : std::optional(found->second);
+  return TimeIn(changed_at_, device);
+}
+
+std::optional<std::int64_t> Trail::FetchedAt(std::int32_t device) const {
+  return TimeIn(fetched_at_, device);
 }
 
 const ShipTrail* Trail::Find(std::int32_t ship) const {

@@ -203,6 +203,7 @@ class Writer {
 
   void WriteStorm() {
     Line("  - kind: typhoon");
+    if (!plan_.storm.name.empty()) Line("    name: " + InQuotes(plan_.storm.name));
     Line("    grade_risks: " + RiskTable(plan_.storm.wind_kt.size()) + "  # grades 1 to 4");
     Line("    ring_winds_kt: " + Value(plan_.storm.wind_kt));
     Line(Text("    duration: %d\n    track:", plan_.storm_steps));

@@ -144,6 +144,7 @@ std::uint64_t HashScenario(const Scenario& scenario) {
   rules.description.clear();
   for (DisasterSpec& disaster : rules.disasters) {
     disaster.ring_winds_kt.clear();
+    disaster.name.clear();
     for (Waypoint& point : disaster.track) point.wind_mps.reset();
     for (IssuedForecast& forecast : disaster.forecasts) {
       for (Waypoint& point : forecast.points) point.wind_mps.reset();

@@ -208,6 +208,8 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   const bool graded = a.Has("grade_risks", !disaster.grade_risks.empty());
   const bool by_quadrant = a.Has("quadrants", !disaster.quadrants.empty());
   a.Field("kind", disaster.kind, OneOfNames{}, Need::kRequired);
+  a.When(Archive::kReads || !disaster.name.empty(), "");
+  a.Field("name", disaster.name, TextOf{0, 100});
   a.When(!graded, "there are no grade_risks");
   a.Field("risks", disaster.risks, risks);
   a.When(tracked && graded, "there is a track or storms");

@@ -92,6 +92,7 @@ std::string_view ToString(RingReduction value) {
 StormRings ToRings(const StormTrack& track, RingReduction reduction,
                    const std::vector<std::int32_t>& winds_kt) {
   StormRings storm;
+  storm.name = track.name;
   storm.wind_kt = winds_kt.empty() ? WindsOf(track) : winds_kt;
   for (StormFix fix : track.fixes) {
     StormWaypoint waypoint;

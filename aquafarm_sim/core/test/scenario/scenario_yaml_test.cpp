@@ -184,6 +184,15 @@ TEST(Reader, KeepsWindsOfRingsWithoutEffect) {
   EXPECT_EQ(ToYaml(ranch("")).find("ring_winds_kt"), std::string::npos);
 }
 
+TEST(Reader, KeepsTheNameOfAStormWithoutEffect) {
+  const auto ranch = [](const std::string& name) {
+    return ParseScenario("name: x\ndisasters:\n  - kind: typhoon\n" + name, "ranch.yaml");
+  };
+  const Scenario named = ranch("    name: 'In-Fa: \"2106\"'\n");
+  EXPECT_EQ(ParseScenario(ToYaml(named), "again").disasters[0].name, "In-Fa: \"2106\"");
+  EXPECT_EQ(named.hash, ranch("").hash) << "policies and bags of the scenario stay valid";
+}
+
 // A scenario that sets every key of a file to a value other than the default.
 Scenario UnusualScenario() {
   Scenario s = test::CrowdedScenario(2);

@@ -3,13 +3,13 @@
 
 /// Markers of the danger to devices, with the same words as in pictures.
 ///
-///     | namespace              | id       | content                                          |
-///     | alarm                  | 0        | the next danger, a line above the farm           |
-///     | danger                 | device   | circle around a device that a ring reaches       |
-///     | danger_label (1)       | device   | risk and time of arrival                         |
-///     | pointer, pointer_label | disaster | where a centre outside the farm lies, its motion |
-///     |                        |          | and closest approach                             |
-///     | pointer_heading        | disaster | arrow of this motion, next to the pointer        |
+///     | namespace        | id       | content                                                |
+///     | alarm            | 0        | the next danger, in one or two lines above the farm    |
+///     | outside          | 0        | above the clock: strength, place and motion of the     |
+///     |                  |          | disasters whose centres lie outside the farm           |
+///     | danger           | device   | circle around a device that a ring covers or reaches   |
+///     | danger_label (1) | device   | the worst ring and the time of its arrival             |
+///     | pointer          | disaster | where a centre outside the farm lies                   |
 ///
 /// A label has a plate below it, in the namespace of the label with _plate, and a line to its
 /// symbol where it is not next to it, with _leader.

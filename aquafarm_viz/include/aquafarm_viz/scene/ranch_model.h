@@ -11,6 +11,7 @@
 #include <ros/steady_timer.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@
 #include "aquafarm_viz/scene/plan_text.h"
 
 namespace aquafarm_viz {
+
+class CourseReader;
 
 /// One point of the training curve.
 struct CurvePoint {
@@ -28,6 +31,8 @@ struct CurvePoint {
 
 class RanchModel {
  public:
+  RanchModel();
+
   using Row = std::vector<std::string>;
   /// Capacity of the curve. A long training keeps between half this number and this number of
   /// points, spread over the whole training.
@@ -58,6 +63,7 @@ class RanchModel {
   static const Row& ShipColumns();
   static const Row& DeviceColumns();
   std::vector<Row> Ships() const;
+  /// The status of a device in danger is the worst ring to come: "storm in 6.4 h".
   std::vector<Row> Devices() const;
 
   /// Returns the last rescue plan; null before the first one.
@@ -84,6 +90,7 @@ class RanchModel {
 
  private:
   Pairing pairing_;
+  std::shared_ptr<CourseReader> courses_;
   aquafarm_msgs::TrainingStatusConstPtr training_;
   aquafarm_msgs::RescuePlanConstPtr plan_;
   ros::SteadyTime plan_node_seen_;

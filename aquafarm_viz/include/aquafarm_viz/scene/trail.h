@@ -43,6 +43,10 @@ class Trail {
   /// was before the first state.
   std::optional<std::int64_t> ChangedAt(std::int32_t device) const;
 
+  /// Returns when a device was taken aboard [s of the world time]; nullopt if that was before the
+  /// first state, or never.
+  std::optional<std::int64_t> FetchedAt(std::int32_t device) const;
+
   /// Returns the trail of a ship; nullptr for an unknown ship.
   const ShipTrail* Find(std::int32_t ship) const;
 
@@ -54,6 +58,7 @@ class Trail {
   std::map<std::int32_t, ShipTrail> ships_;
   std::map<std::int32_t, std::uint8_t> statuses_;    // of devices
   std::map<std::int32_t, std::int64_t> changed_at_;  // last change of a status [s]
+  std::map<std::int32_t, std::int64_t> fetched_at_;  // [s]
 };
 
 /// Returns the bearing to draw a ship at: that of its move in this state, else of its trail, or 0.

@@ -139,6 +139,8 @@ struct DisasterSpec {
   /// Wind within each ring [kn], strongest first, as many as risks; empty: not given. Informative
   /// only: pictures name the rings by it.
   std::vector<std::int32_t> ring_winds_kt{};
+  /// Name of the storm, such as "In-Fa"; empty: it has none. Informative only: pictures show it.
+  std::string name{};
 };
 
 /// Returns the risks of the rings for grades 1 to 4: grade_risks, or risks times grade_factors,

@@ -49,6 +49,7 @@ struct StormWaypoint {
 
 /// A storm as rings of wind.
 struct StormRings {
+  std::string name;                   ///< of the storm; empty: it has none
   std::vector<std::int32_t> wind_kt;  ///< the strongest first; as many as radii per waypoint
   std::vector<StormWaypoint> waypoints;
   std::int32_t estimated{};  ///< waypoints with an estimated radius

@@ -81,18 +81,15 @@ class FiguresTest(unittest.TestCase):
             [np.mean(loss[place:place + WINDOW]) for place in range(121 - WINDOW)],
             self.lines()["LSTM-DQN"][1])
 
-    def test_fig_12c_shows_each_run_and_the_middle_half(self):
+    def test_fig_12c_shows_the_median_and_shades_from_the_lowest_run_to_the_highest(self):
         self.runs["sarsa"] = [make_run(seed, 120) for seed in range(1, 6)]
         for factor, run in zip((1.0, 2.0, 3.0, 4.0, 500.0), self.runs["sarsa"]):
             run["curve"]["loss"] = np.full(120, factor)
         figures.plot_square_error(self.axes, [by_name("sarsa")], self.runs)
         _, y = self.lines()["SARSA"]
         np.testing.assert_allclose(3.0, y, err_msg="the median, whatever one run does")
-        thin = sorted(float(line.get_ydata()[0]) for line in self.axes.lines
-                      if line.get_label() == "_run")
-        np.testing.assert_allclose([1.0, 2.0, 3.0, 4.0, 500.0], thin)
         edge = self.axes.collections[0].get_paths()[0].vertices[:, 1]
-        np.testing.assert_allclose([2.0, 4.0], [edge.min(), edge.max()])
+        np.testing.assert_allclose([1.0, 500.0], [edge.min(), edge.max()])
 
     def test_names_stand_at_the_ends_of_the_lines_and_apart_from_each_other(self):
         self.runs["lstm_dqn"] = self.runs["sarsa"]  # both lines end at the same place
@@ -151,35 +148,46 @@ class FiguresTest(unittest.TestCase):
     def names_of(self, axes):
         return {text.get_text() for text in axes.texts}
 
-    def test_returns_are_drawn_enlarged_above_zero_and_on_the_whole_range(self):
-        lost = [make_run(1, 120), make_run(2, 120)]
-        for run in lost:
+    def test_returns_are_linear_above_zero_and_logarithmic_below(self):
+        for run in self.runs["sarsa"]:
             run["curve"]["return"] -= 1000.0
-        self.runs["sarsa"] = lost
         for draw, count in ((figures.draw_repeated, 1), (figures.draw_average_rewards, 1),
                             (figures.draw_rewards, 2)):
             figure = self.drawn(draw, self.contestants, self.runs, OPTIMUM)
-            for zoom, whole in zip(figure.axes[:count], figure.axes[count:]):
-                self.assertEqual({"linear"}, {zoom.get_yscale(), whole.get_yscale()})
-                self.assertEqual(0.0, zoom.get_ylim()[0])
-                self.assertGreater(zoom.get_ylim()[1], 90.0)
-                self.assertLess(whole.get_ylim()[0], -990.0)
-                self.assertGreater(whole.get_ylim()[1], 90.0)
-            self.assertTrue(any("SARSA" in name for name in self.names_of(whole)))
-            self.assertTrue(any("LSTM" in name for name in self.names_of(zoom)))
-            self.assertIn("clairvoyant 90", self.names_of(zoom))
+            self.assertEqual(count, len(figure.axes))
+            for axes in figure.axes:
+                low, high = axes.get_ylim()
+                self.assertLess(low, -990.0)
+                self.assertGreater(high, 90.0)
+                height = axes.transAxes.inverted().transform(
+                    axes.transData.transform([(1.0, y) for y in (-990.0, -480.0, 0.0, 30.0, 60.0)]))
+                steps = np.diff(height[:, 1])
+                self.assertAlmostEqual(steps[2], steps[3], msg="30 points above 0")
+                self.assertGreater(steps[2], 2.0 * 30.0 / 510.0 * steps[0])
+                self.assertTrue(all(low <= tick <= high for tick in axes.get_yticks()))
+            names = self.names_of(axes)
+            self.assertTrue(any("SARSA" in name for name in names))
+            self.assertTrue(any("LSTM" in name for name in names))
+            self.assertIn("clairvoyant 90", names)
 
-    def test_returns_below_zero_only_are_not_enlarged(self):
+    def test_returns_below_zero_only_have_a_linear_scale(self):
         for runs in self.runs.values():
             for run in runs:
                 run["curve"]["return"] -= 1000.0
-        figure = self.drawn(figures.draw_repeated, self.contestants, self.runs, {})
-        zoom, whole = figure.axes
-        self.assertEqual(zoom.get_ylim(), whole.get_ylim())
-        self.assertEqual({"SARSA, 2 runs", "LSTM-DQN, 2 runs"}, self.names_of(zoom))
+        axes, = self.drawn(figures.draw_repeated, self.contestants, self.runs, {}).axes
+        self.assertEqual("linear", axes.get_yscale())
+        self.assertLess(axes.get_ylim()[1], 0.0)
+        self.assertEqual({"SARSA, 2 runs", "LSTM-DQN, 2 runs"}, self.names_of(axes))
+
+    def test_fig_12a_shades_the_middle_of_each_window(self):
+        self.runs["sarsa"][0]["curve"]["return"] = np.arange(120.0)
+        figures.plot_rewards_by_episodes(self.axes, [by_name("sarsa")], self.runs, {})
+        edge = self.axes.collections[0].get_paths()[0].vertices
+        at_start = edge[edge[:, 0] == WINDOW][:, 1]
+        np.testing.assert_allclose([4.9, 44.1], [at_start.min(), at_start.max()])
 
     def test_fig_13_shows_the_return_per_step(self):
-        figures.plot_mean_score(self.axes, self.contestants, self.runs)
+        figures.plot_mean_score(self.axes, self.contestants, self.runs, {})
         x, y = self.lines()["SARSA"]
         np.testing.assert_array_equal(np.arange(WINDOW, 121), x)
         for place in (0, 33, 70):
@@ -191,7 +199,10 @@ class FiguresTest(unittest.TestCase):
             self.assertAlmostEqual(sum(scores) / 2.0, y[place])
 
     def test_fig_13_has_a_panel_of_lstm_dqn_one_of_sarsa_and_one_of_all(self):
-        figure = self.drawn(figures.draw_mean_score, self.contestants, self.runs)
+        figure = self.drawn(figures.draw_mean_score, self.contestants, self.runs,
+                            {"clairvoyant": 5.1})
+        self.assertEqual(1, len({axes.get_ylim() for axes in figure.axes}), "one scale")
+        self.assertTrue(all("clairvoyant 5.10" in self.names_of(axes) for axes in figure.axes))
         panels = [set(self.lines(axes)) for axes in figure.axes]
         self.assertEqual([{"LSTM-DQN"}, {"SARSA"}, {"SARSA", "LSTM-DQN"}], panels)
 
@@ -264,11 +275,15 @@ class FiguresTest(unittest.TestCase):
                  for marks in self.axes.collections}
         self.assertEqual([[3, 2]], marks["device that was not fetched"])
         self.assertEqual([[0, 0]], marks["ship at the end"])
-        self.assertIn("ring of a disaster in the last step",
-                      [patch.get_label() for patch in self.axes.patches])
-        self.assertEqual("ranch 7: 0 of 2 devices in port\ntime limit after 3 steps, return -12",
+        lines = self.lines()
+        self.assertIn("ring of a disaster in the last step", lines)
+        np.testing.assert_array_equal([[1, 1, 0], [0, 0, 0]],
+                                      lines["last leg: route with a device aboard"])
+        np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
+        self.assertEqual("ranch 7: 0 of 2 devices in port\n"
+                         "time limit after 3 steps; the last 2 without a stop",
                          self.axes.get_title())
-        self.assertEqual((8.5, 4.5), (self.axes.get_xlim()[1], self.axes.get_ylim()[1]),
+        self.assertEqual((9.0, 5.0), (self.axes.get_xlim()[1], self.axes.get_ylim()[1]),
                          "the scale of the largest ranch")
 
 

@@ -119,7 +119,7 @@ class CompareBrowserTest(unittest.TestCase):
                 one.getBoundingClientRect().bottom < innerHeight).map(one => one.textContent)
                 .join(" | ");""")
             self.assertIn(words, seen, page.name)
-            self.assertRegex(seen, r"-?[\d.]+( \| 95 %: | )\[-?[\d.]+, -?[\d.]+\]", page.name)
+            self.assertRegex(seen, r"[−-]?[\d.]+( \| 95 %: | )\[[−-]?[\d.]+, [−-]?[\d.]+\]", page.name)
 
     def test_tiles_show_both_runs_between_the_references(self):
         self.show()
@@ -128,7 +128,7 @@ class CompareBrowserTest(unittest.TestCase):
         self.assertEqual(["RANDOM", "table: q_learning", "other: sarsa", "planner", "clairvoyant"],
                          [tile[0] for tile in tiles])
         for tile in tiles:
-            self.assertRegex(tile[2], r"^95 %: \[-?[\d.]+, -?[\d.]+\]$")
+            self.assertRegex(tile[2], r"^95 %: \[−?[\d.]+, −?[\d.]+\]$")
             self.assertRegex(tile[3], r"^success \d+% \[\d+%, \d+%\]$")
             self.assertRegex(tile[5], rf"^{EPISODES} episodes, \d+ distinct$")
         self.assertEqual("100.0% of the optimum", tiles[-1][4])
@@ -138,7 +138,7 @@ class CompareBrowserTest(unittest.TestCase):
         place = self.chart("curve_return")
         ActionChains(self.browser).move_to_element_with_offset(place, 100, 0).perform()
         legend = self.browser.find_element(By.ID, "curve_return_legend").text
-        self.assertRegex(legend, r"\d+: .*table: q_learning: -?[\d.]+ .*other: sarsa: -?[\d.]+")
+        self.assertRegex(legend, r"\d+: .*table: q_learning: −?[\d.]+ .*other: sarsa: −?[\d.]+")
         first = legend.partition(":")[0]
         ActionChains(self.browser).move_to_element_with_offset(place, 200, 0).perform()
         second = self.browser.find_element(By.ID, "curve_return_legend").text.partition(":")[0]

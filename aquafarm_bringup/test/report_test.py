@@ -241,7 +241,7 @@ class ReportTest(unittest.TestCase):
         player.distinct = 1
         self.assertEqual("100.0", references.return_text(player))
 
-    def test_a_run_that_plays_otherwise_than_it_trained_has_a_sentence(self):
+    def test_a_run_that_plays_worse_than_it_trained_has_a_sentence(self):
         columns = {"return": np.full(120, 150.0), "success": np.ones(120)}
 
         def note(*returns):
@@ -249,11 +249,11 @@ class ReportTest(unittest.TestCase):
             return curves.gap_note("a", columns, references.Player("a", rows, len(rows)))
 
         self.assertEqual(
-            "a: 150.0 at the end of the training (success 100%), -160.0 in greedy play (success "
-            "50%): without the random moves of training it gets stuck or does worse; train longer.",
+            "a: 150.0 at the end of the training, −160.0 [−454.2, 134.2] in greedy play: without the "
+            "random moves of training 2 of 4 episodes end with devices at sea; train longer.",
             note(-420.0, 100.0, -420.0, 100.0))
-        self.assertIn("240.0 in greedy play (success 100%): without the random moves of training "
-                      "it does better.", note(239.0, 241.0))
+        self.assertIn("without the random moves of training it does worse", note(99.0, 101.0))
+        self.assertEqual("", note(239.0, 241.0), "better than in training")
         self.assertEqual("", note(140.0, 160.0), "no difference beyond the interval")
         self.assertEqual("", note(-160.0), "one start has no interval")
 
@@ -270,28 +270,47 @@ class ReportTest(unittest.TestCase):
             last = [float(row[name]) for row in trained[-50:]]
             self.assertAlmostEqual(sum(last) / 50.0, mean, delta=1e-3 * abs(mean) + 1e-6)
 
-    def test_curves_of_returns_have_lines_of_the_references_and_an_enlarged_part(self):
+    def test_the_chart_of_returns_has_the_references_and_greedy_play(self):
         columns = {"return": np.linspace(-300.0, 150.0, 120)}
         players = [references.Player("RANDOM", [{"return": "-1500"}, {"return": "-1501"}]),
-                   references.Player("a", [{"return": "90"}], is_run=True),
+                   references.Player("a", [{"return": "90"}, {"return": "110"}], 2, is_run=True),
                    references.Player("planner", fault="took too long"),
                    references.Player("clairvoyant", [{"return": "278.16"}])]
 
-        def charts(columns):
+        def chart(columns):
             text = curves.show(["a"], [columns], players=players)
-            return {chart["id"]: chart for chart in
-                    json.loads(re.search(r"const CURVES=(.*?);\n", text).group(1))["charts"]}
+            found, = json.loads(re.search(r"const CURVES=(.*?);\n", text).group(1))["charts"]
+            return found
 
-        found = charts(columns)
-        lines = [{"label": "RANDOM", "value": -1500.5}, {"label": "clairvoyant", "value": 278.2}]
-        self.assertEqual(lines, found["curve_return"]["lines"])
-        self.assertEqual(lines, found["curve_return_part"]["lines"])
-        low, high = found["curve_return_part"]["range"]
-        self.assertEqual(0.0, low)
-        self.assertGreater(high, 278.2)
-        self.assertEqual(found["curve_return"]["rows"], found["curve_return_part"]["rows"])
-        self.assertEqual(["curve_return"], list(charts({"return": columns["return"] - 1000.0})),
-                         "no mean is above 0")
+        found = chart(columns)
+        self.assertEqual([{"label": "RANDOM", "value": -1500.5},
+                          {"label": "clairvoyant", "value": 278.2}], found["lines"])
+        self.assertEqual([[100.0, 80.4, 119.6]], found["marks"])
+        highest = float(np.mean(columns["return"][-50:]))
+        self.assertAlmostEqual(highest / 3.0, found["bend"], delta=0.01)
+        self.assertIn("logarithmic below 0", found["title"])
+        found = chart({"return": columns["return"] - 1000.0})
+        self.assertIsNone(found["bend"], "no mean is above 0")
+        self.assertNotIn("logarithmic", found["title"])
+
+    def test_one_sentence_says_how_good_a_run_is(self):
+        def player(label, returns, **more):
+            rows = [{"episode": str(i), "return": str(one)} for i, one in enumerate(returns)]
+            return references.Player(label, rows, len(rows), **more)
+
+        others = [player("RANDOM", [-9, -9, -9, -9]), player("planner", [98, 98, 98, 98]),
+                  player("clairvoyant", [100, 100, 100, 100])]
+        self.assertEqual("a: it reaches 90.0% of the optimum, 8.0 points [5.7, 10.3] below planner.",
+                         references.verdict([player("a", [88, 92, 88, 92], is_run=True), *others]))
+        two = [player("a", [88, 92, 88, 92], is_run=True), player("b", [80, 80, 80, 80], is_run=True)]
+        self.assertEqual("a is the best run: it reaches 90.0% of the optimum, 10.0 points "
+                         "[7.7, 12.3] above b, 8.0 points [5.7, 10.3] below planner. One training "
+                         "each does not rank their algorithms.",
+                         references.verdict([*two, *others]))
+        self.assertEqual("a: its returns sum up to less than 0, 103.0 points below planner.",
+                         references.verdict([references.Player(
+                             "a", [{"episode": "0", "return": "-5"}], 1, is_run=True), *others]))
+        self.assertEqual("", references.verdict(others))
 
     def test_devices_of_episodes_with_other_devices_have_their_own_kinds(self):
         first = [outcomes.Outcome("F0 monitoring", 3, 9, 1.0)]

@@ -421,7 +421,9 @@ def _conclude(folder, contestants, found, settings, people):
         figures.draw_average_rewards(pictures / "average_rewards.png", trained, found, references)
         figures.draw_square_error(pictures / "mean_square_error.png", trained, found)
         figures.draw_repeated(pictures / "repeated_trainings.png", trained, found, references)
-        figures.draw_mean_score(pictures / "mean_score.png", trained, found)
+        per_step = {one.label: row["return_per_step"] for one, row in zip(everyone, rows)
+                    if one.name == OPTIMUM.name}
+        figures.draw_mean_score(pictures / "mean_score.png", trained, found, per_step)
     figures.draw_evaluation(pictures / "evaluation.png", everyone, rows)
     if any(row["money"] for row in rows):
         figures.draw_losses(pictures / "losses.png", everyone, rows)

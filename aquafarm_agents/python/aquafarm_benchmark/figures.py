@@ -7,7 +7,7 @@ import matplotlib
 
 matplotlib.use("Agg")  # needs no display
 import numpy as np  # noqa: E402
-from matplotlib import pyplot as plt  # noqa: E402
+from matplotlib import pyplot as plt, ticker  # noqa: E402
 
 from aquafarm_benchmark import losses, measures  # noqa: E402
 
@@ -45,40 +45,45 @@ def _range_of(axes):
     return min(np.quantile(y, 0.02) for y in shown), max(np.max(y) for y in shown)
 
 
+def _scale_returns(axes):
+    """Sets a scale of returns that is linear above 0 and logarithmic below, because the returns of
+    the first episodes are far below those that differ between policies."""
+    low, top = _range_of(axes)
+    if top <= 0.0 or low >= 0.0:
+        margin = 0.05 * (top - low)
+        axes.set_ylim(low - margin, top + margin)
+        return
+    unit = top / 3.0  # where the logarithmic part bends
+    axes.set_yscale("function", functions=(
+        lambda y: np.where(y < 0.0, -unit * np.log1p(np.maximum(-y, 0.0) / unit), y),
+        lambda y: np.where(y < 0.0, unit * (1.0 - np.exp(np.maximum(-y, 0.0) / unit)), y)))
+    above = [tick for tick in ticker.MaxNLocator(6).tick_values(0.0, top) if 0.0 <= tick <= top]
+    below = [tick for power in range(1, 8) for tick in (-(10.0 ** power), -3.0 * 10.0 ** power)
+             if low <= tick <= -unit]
+    axes.set_yticks([*below, *above])
+    axes.set_ylim(1.15 * low, 1.07 * top)
+    axes.axhspan(1.15 * low, 0.0, color=_LOGARITHMIC, linewidth=0, zorder=0)
+
+
 def _draw_returns(path, title, plots):
-    """Draws returns on linear scales: the part above 0 enlarged, and below it the whole range. Lines
-    are named at their right end, in the upper axes if that end is there.
+    """Draws returns on the scale of _scale_returns. Lines are named at their right end.
 
     plots: (function that plots on axes and returns the ends of the lines, ylabel, xlabel), one for
         each column; the names are those of the last one
     """
-    figure, rows = plt.subplots(2, len(plots), figsize=(5.5 + 3.0 * len(plots), 7.0),
-                                squeeze=False, layout="constrained", height_ratios=[3, 2],
-                                sharex="col", sharey="row")
+    figure, columns = plt.subplots(1, len(plots), figsize=(5.5 + 3.2 * len(plots), 5.4),
+                                   squeeze=False, layout="constrained", sharey="row")
     figure.suptitle(title, fontsize=13)
-    for (plot, ylabel, xlabel), (zoom, whole) in zip(plots, rows.T):
-        for axes in (zoom, whole):
-            ends = plot(axes)
-            axes.axhline(0.0, color="black", linewidth=0.5, label="_zero")
-            axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
-        _label(zoom, "", ylabel and f"{ylabel}\nenlarged: above 0", "")
-        _label(whole, "", ylabel and "whole range", xlabel)
-        low, top = _range_of(whole)
-        margin = 0.05 * (top - low)
-        whole.set_ylim(low - margin, top + margin)
-        if top <= 0.0:  # there is nothing to enlarge
-            zoom.set_ylim(low - margin, top + margin)
-            continue
-        zoom.set_ylim(0.0, 1.07 * top)
-        whole.axhspan(0.0, top + margin, color=_ENLARGED, linewidth=0, zorder=0)
-        zoom.set_facecolor(_ENLARGED)
-    seen = [end for end in ends if zoom.get_ylim()[0] <= end[1]]
-    _name_ends(zoom, seen)
-    _name_ends(whole, [end for end in ends if end not in seen])
+    for (plot, ylabel, xlabel), axes in zip(plots, columns[0]):
+        ends = plot(axes)
+        _label(axes, "", ylabel, xlabel)
+        _scale_returns(axes)
+        axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
+    _name_ends(axes, ends)
     save(figure, path)
 
 
-_ENLARGED = "#fbf6e6"  # background of the part of a scale that is shown enlarged
+_LOGARITHMIC = "#eef1f4"  # background of the part of a scale that is logarithmic
 _NAME_GAP = 0.062  # height of a name, as a share of the axes
 
 
@@ -114,11 +119,12 @@ def _name_ends(axes, ends):
                                   "relpos": (0.0, 0.5), "shrinkA": 1.0, "shrinkB": 0.0})
 
 
-def _plot_references(axes, references, end):
-    """Draws returns to compare with, {name: return}, and returns the ends of their lines."""
+def _plot_references(axes, references, end, digits=0):
+    """Draws values to compare with, {name: value}, and returns the ends of their lines."""
     for value in references.values():
         axes.axhline(value, color="black", linestyle="--", linewidth=1.2, label="_reference")
-    return [(end, value, "black", f"{name} {value:.0f}") for name, value in references.items()]
+    return [(end, value, "black", f"{name} {value:.{digits}f}")
+            for name, value in references.items()]
 
 
 def _line_style(one):
@@ -130,43 +136,53 @@ def _runs_text(count):
     return f"{count} {'run' if count == 1 else 'runs'}"
 
 
+def _plot_one_run(axes, one, curve, x):
+    """Plots the 50-episode mean return of a run at x, one for each episode, shaded between the 10th
+    and the 90th percentile of these episodes; returns the last point."""
+    episodes, means = _smooth(curve["return"])
+    windows = np.lib.stride_tricks.sliding_window_view(curve["return"],
+                                                       len(curve["return"]) - len(means) + 1)
+    low, high = np.quantile(windows, (0.1, 0.9), axis=1)
+    axes.fill_between(x[episodes - 1], low, high, color=one.colour, alpha=0.18, linewidth=0)
+    axes.plot(x[episodes - 1], means, **_line_style(one), label=one.label)
+    return x[episodes[-1] - 1], means[-1], one.colour, one.label
+
+
 def plot_rewards_by_steps(axes, contestants, runs, references):
     """Fig. 12a: 50-episode mean return of the first run by time steps taken so far."""
     for one in contestants:
         curve = runs[one.name][0]["curve"]
-        episodes, means = _smooth(curve["return"])
-        axes.plot(np.cumsum(curve["steps"])[episodes - 1], means, **_line_style(one), label=one.label)
+        _plot_one_run(axes, one, curve, np.cumsum(curve["steps"]))
     axes.set_xscale("log")
     return _plot_references(axes, references, axes.get_xlim()[1])
 
 
 def plot_rewards_by_episodes(axes, contestants, runs, references):
-    """Return of every episode of the first run, and its 50-episode mean."""
+    """50-episode mean return of the first run by episodes."""
     ends = []
     for one in contestants:
-        curve = runs[one.name][0]["curve"]["return"]
-        axes.plot(np.arange(1, len(curve) + 1), curve, color=one.colour, alpha=0.12, linewidth=0.5)
-        episodes, means = _smooth(curve)
-        axes.plot(episodes, means, **_line_style(one), label=one.label)
-        ends.append((episodes[-1], means[-1], one.colour, one.label))
+        curve = runs[one.name][0]["curve"]
+        ends.append(_plot_one_run(axes, one, curve, np.arange(1, len(curve["return"]) + 1)))
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
 def draw_rewards(path, contestants, runs, references):
     """Fig. 12a by time steps, next to the same data by episodes."""
     data = (contestants, runs, references)
-    _draw_returns(path, "Return of the first run by time steps (Fig. 12a) and by episodes\n"
-                  "thick: mean of 50 episodes, thin: each episode", [
-                      (lambda axes: plot_rewards_by_steps(axes, *data), "return of an episode",
-                       "time steps so far (logarithmic scale)"),
+    _draw_returns(path, f"Return of the first run (Fig. 12a): mean of {measures.WINDOW} episodes, and "
+                  "their middle 80 %", [
+                      (lambda axes: plot_rewards_by_steps(axes, *data),
+                       "return of an episode\n(logarithmic below 0)",
+                       "time steps so far (logarithmic)"),
                       (lambda axes: plot_rewards_by_episodes(axes, *data), "", "episode")])
 
 
 def draw_average_rewards(path, contestants, runs, references):
     """Fig. 12b: mean return of all episodes so far, over all runs."""
-    _draw_returns(path, "Mean return of all episodes so far, all runs (Fig. 12b)", [
+    _draw_returns(path, "Mean return of all episodes so far (Fig. 12b), which failures of the first\n"
+                  "episodes lower for long; mean of the runs", [
         (lambda axes: plot_average_rewards(axes, contestants, runs, references),
-         "mean return so far", "episode")])
+         "mean return so far\n(logarithmic below 0)", "episode")])
 
 
 def plot_average_rewards(axes, contestants, runs, references):
@@ -185,15 +201,15 @@ def draw_square_error(path, contestants, runs):
     figure, axes = _axes("Mean square error of the value estimates (Fig. 12c)",
                          f"{measures.WINDOW}-episode mean [reward²]\n(logarithmic scale)")
     plot_square_error(axes, contestants, runs)
-    axes.text(0.0, -0.17, "Lower: the value of a step agrees better with its reward and the next "
-              "value. Thick: median of the runs,\nshaded: their middle half, thin: each run.",
-              transform=axes.transAxes, fontsize=9, va="top")
+    axes.text(0.0, -0.17, "Low: the value of a step agrees with its reward and the next value, which "
+              "a policy that fails can reach, too.\nLine: median of the runs; shaded: from the lowest "
+              "run to the highest.", transform=axes.transAxes, fontsize=9, va="top")
     save(figure, path)
 
 
 def plot_square_error(axes, contestants, runs):
     """50-episode means of the squared TD error, without RANDOM: the median of the runs, shaded
-    between their quartiles, and each run. Each line ends with its name."""
+    between their lowest and highest value. Each line ends with its name."""
     ends = []
     for one in contestants:
         errors = _curves(runs[one.name], "loss")
@@ -205,39 +221,43 @@ def plot_square_error(axes, contestants, runs):
         if not len(smooth) or not known.any():
             continue
         logs = np.log(smooth[:, known])
-        low, median, high = np.exp(np.quantile(logs, (0.25, 0.5, 0.75), axis=0))
+        low, median, high = np.exp(np.quantile(logs, (0.0, 0.5, 1.0), axis=0))
         axes.plot(episodes[known], median, **_line_style(one), linewidth=2.2, label=one.label)
         if len(smooth) > 1:
-            axes.plot(episodes[known], np.exp(logs).T, color=one.colour, linewidth=0.7, alpha=0.45,
-                      label="_run")
             axes.fill_between(episodes[known], low, high, color=one.colour, alpha=0.18,
                               linewidth=0)
         ends.append((episodes[known][-1], float(median[-1]), one.colour,
                      f"{one.label}, {_runs_text(len(smooth))}"))
     axes.set_yscale("log")
+    axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.6g}")
     if ends:
         _name_ends(axes, ends)
 
 
-def draw_mean_score(path, contestants, runs):
-    """Fig. 13: mean return per step by episode: (a) LSTM-DQN, (b) SARSA, (c) all learners."""
+def draw_mean_score(path, contestants, runs, references):
+    """Fig. 13: mean return per step by episode: (a) LSTM-DQN, (b) SARSA, (c) all learners.
+
+    references: {name: return per step} to compare with
+    """
     panels = [("a", [one for one in contestants if one.algorithm_name == "lstm_dqn"]),
               ("b", [one for one in contestants if one.algorithm_name == "sarsa"])]
     panels = [(letter, panel) for letter, panel in panels if panel]
     figure = plt.figure(figsize=(9, 8 if panels else 4.5), layout="constrained")
+    figure.suptitle(f"Return per step: {measures.WINDOW}-episode means, the mean of the runs,\n"
+                    "shaded from the lowest run to the highest", fontsize=13)
     places = [[letter for letter, _ in panels], ["c"] * len(panels)] if panels else [["c"]]
     all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)
-    for letter, panel in [*panels, ("c", contestants)]:
-        _label(all_axes[letter], f"Return per step (Fig. 13{letter})",
-               f"{measures.WINDOW}-episode mean\nmean and range of the runs")
-        plot_mean_score(all_axes[letter], panel, runs)
+    for letter, panel in [("c", contestants), *panels]:
+        whose = panel[0].label if len(panel) == 1 else "All learners"
+        _label(all_axes[letter], f"{whose} (Fig. 13{letter})", "return per step")
+        plot_mean_score(all_axes[letter], panel, runs, references, all_axes["c"].get_ylim())
     save(figure, path)
 
 
-def plot_mean_score(axes, contestants, runs):
-    """50-episode mean return per step, mean over the runs, shaded between their lowest
-    and highest value."""
+def plot_mean_score(axes, contestants, runs, references, limits=None):
+    """50-episode mean return per step, mean over the runs, shaded between their lowest and highest
+    value, with references {name: return per step}, within limits of y if any."""
     ends = []
     for one in contestants:
         returns, steps = _curves(runs[one.name], "return"), _curves(runs[one.name], "steps")
@@ -247,7 +267,10 @@ def plot_mean_score(axes, contestants, runs):
         episodes = np.arange(window, returns.shape[1] + 1)
         _plot_shaded(axes, episodes, scores, one, one.label)
         ends.append((episodes[-1], scores.mean(axis=0)[-1], one.colour, one.label))
-    axes.axhline(0.0, color="black", linewidth=0.5)
+    axes.axhline(0.0, color="black", linewidth=0.5, label="_zero")
+    ends += _plot_references(axes, references, max(end[0] for end in ends), digits=2)
+    if limits and limits != (0.0, 1.0):
+        axes.set_ylim(limits)
     _name_ends(axes, ends)
 
 
@@ -328,10 +351,10 @@ def plot_loss_by_kind(axes, contestants, rows):
 
 def draw_repeated(path, contestants, runs, references):
     """Fig. 14: 50-episode means over all runs, shaded between their lowest and highest value."""
-    _draw_returns(path, "Repeated trainings (Fig. 14): mean of the runs, shaded between their lowest "
-                  "and highest value", [
+    _draw_returns(path, "Repeated trainings (Fig. 14): mean of the runs,\n"
+                  "shaded from the lowest run to the highest", [
         (lambda axes: plot_repeated(axes, contestants, runs, references),
-         "50-episode mean return", "episode")])
+         f"{measures.WINDOW}-episode mean return\n(logarithmic below 0)", "episode")])
 
 
 def plot_repeated(axes, contestants, runs, references):

@@ -13,6 +13,7 @@ _DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0
                "south_east": (1, -1)}
 _EVERY = 2  # an arrow stands in each second column and row, so that it can be long enough to see
 _SHOWN_STEPS = 4  # number of steps whose rings are drawn
+_RIM = 1.0  # from the middle of the outermost cells to the edge of the axes [cells]
 _LANE = 0.14  # distance of a leg from the middle of its cells; the next leg has the other side
 # Legs by whether something is aboard; colours of Okabe and Ito (2008).
 _LEGS = {False: ("#0072b2", (0, (4, 1.5)), "route with nothing aboard"),
@@ -40,9 +41,13 @@ def draw_route(path, label, route_file):
     for empty in all_axes[len(panels) + 1:]:
         empty.axis("off")
     _chart(axes, route["chart"])
-    _disasters(axes, route["steps"])
     stops = plot_route(axes, route["steps"])
-    axes.set_title(f"its route: {route['reason'].replace('_', ' ')}, return {route['return']:.1f}")
+    _disasters(axes, route["steps"])
+    for shown in all_axes[:len(panels) + 1]:
+        shown.set_xlabel("cells to the east")
+        shown.set_ylabel("cells to the north")
+    axes.set_title(f"Its route in this episode: {route['reason'].replace('_', ' ')}, "
+                   f"return {route['return']:.1f}", fontsize=11)
     _explain(all_axes[-1], [*all_axes[:len(panels)], axes], stops, bool(panels))
     save(figure, path)
 
@@ -83,22 +88,32 @@ def draw_unfinished(path, routes):
 def plot_unfinished(axes, name, route, size):
     """Draws one of these routes on axes for ranches of at most this size (columns, rows)."""
     chart, last = route["chart"], route["steps"][-1]
-    _chart(axes, chart, size)
+    sea = _chart(axes, chart, size)
     axes.set_xlabel("cells to the east")
     axes.set_ylabel("cells to the north")
+    for spine in axes.spines.values():  # the axes are larger than most ranches
+        spine.set_visible(False)
     for disaster in route["steps"][-2]["disasters"]:  # they are over in the last state
         for ring in _rings(disaster):
-            axes.add_patch(Polygon(ring, color="#b22222", alpha=0.12, zorder=1))
-            axes.add_patch(Polygon(ring, fill=False, color="#b22222", zorder=2, linewidth=1.4,
-                                   label="ring of a disaster in the last step"))
-    _plot_legs(axes, route["steps"])
+            inside = axes.add_patch(Polygon(ring, color="#b22222", alpha=0.12, zorder=1))
+            outline, = axes.plot(*np.vstack([ring, ring[:1]]).T, color="#b22222", zorder=2,
+                                 linewidth=1.4, label="ring of a disaster in the last step")
+            inside.set_clip_path(sea)
+            outline.set_clip_path(sea)
+    *before, (loaded, last_leg) = legs(route["steps"])
+    for _, cells in before:
+        axes.plot(*np.array(cells, dtype=float).T, color="#8a959e", linewidth=1.3, zorder=4,
+                  label="route before")
+    colour, dashes, kind = _LEGS[loaded]
+    axes.plot(*np.array(last_leg, dtype=float).T, color=colour, linewidth=1.8, linestyle=dashes,
+              zorder=5, label=f"last leg: {kind}")
     axes.scatter(*zip(*devices_left(route)), s=260, facecolor="none", edgecolor="black",
                  linewidth=2.2, zorder=8, label="device that was not fetched")
     axes.scatter(*last["cell"], s=150, marker="*", color="#f0e442", edgecolor="black", zorder=9,
                  label="ship at the end")
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port\n"
-                   f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps, "
-                   f"return {route['return']:.0f}", fontsize=11)
+                   f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps; "
+                   f"the last {len(last_leg) - 1} without a stop", fontsize=11)
 
 
 def _symbols(charts):
@@ -110,13 +125,14 @@ def _symbols(charts):
 
 
 def _chart(axes, chart, size=None):
-    """Draws a ranch on axes for ranches of at most this size; by default, its own."""
+    """Draws a ranch on axes for ranches of at most this size; by default, its own. Returns the patch
+    of its sea."""
     width, height = size or (chart["width"], chart["height"])
     axes.set_aspect("equal")
-    axes.set_xlim(-0.5, width - 0.5)
-    axes.set_ylim(-0.5, height - 0.5)
-    axes.add_patch(Rectangle((-0.5, -0.5), chart["width"], chart["height"], facecolor=_SEA,
-                             edgecolor="#5b6b78", zorder=0))
+    axes.set_xlim(-_RIM, width - 1 + _RIM)
+    axes.set_ylim(-_RIM, height - 1 + _RIM)
+    sea = axes.add_patch(Rectangle((-0.5, -0.5), chart["width"], chart["height"], facecolor=_SEA,
+                                   edgecolor="#5b6b78", zorder=0))
     area = 4900.0 / max(width, height)  # of a marker that fills a cell
     for cells, colour, marker, share, label in (
             (chart["islands"], "#c9b98a", "s", 1.0, "island"),
@@ -126,6 +142,7 @@ def _chart(axes, chart, size=None):
         if cells:
             x, y = zip(*cells)
             axes.scatter(x, y, color=colour, marker=marker, label=label, zorder=3, s=area * share)
+    return sea
 
 
 def plot_moves(axes, moves):
@@ -134,7 +151,7 @@ def plot_moves(axes, moves):
                if action in _DIRECTIONS and x % _EVERY == 0 and y % _EVERY == 0]
     if pointed:
         x, y, dx, dy = np.array(pointed, dtype=float).T
-        share = 0.75 * _EVERY / np.hypot(dx, dy)
+        share = 0.62 * _EVERY / np.hypot(dx, dy)
         axes.quiver(x, y, dx * share, dy * share, pivot="mid", angles="xy", scale_units="xy",
                     scale=1, width=0.006, headwidth=4.5, color="#34506b", zorder=4)
     for action, (marker, name) in _STOPS.items():
@@ -161,11 +178,23 @@ def _plot_legs(axes, steps):
         x, y = np.array(cells, dtype=float).T
         axes.plot(x + lane, y - lane, color=colour, linestyle=dashes, linewidth=2.2, zorder=5,
                   label=name if i < len(_LEGS) else "_leg")
+        _point_along(axes, x + lane, y - lane, colour)
+
+
+def _point_along(axes, x, y, colour):
+    """Draws an arrowhead in the middle of a line, if it has a length."""
+    middle = len(x) // 2
+    if len(x) > 2 and (x[middle - 1], y[middle - 1]) != (x[middle], y[middle]):
+        axes.annotate("", (x[middle], y[middle]), (x[middle - 1], y[middle - 1]), zorder=6,
+                      arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 0,
+                                  "mutation_scale": 18, "shrinkA": 0, "shrinkB": 0})
 
 
 def plot_route(axes, steps):
     """Draws the legs and numbers the stops of a route; returns a line of text for each stop."""
     _plot_legs(axes, steps)
+    axes.scatter(*steps[0]["cell"], s=170, facecolor="none", edgecolor="black", linewidth=1.8,
+                 zorder=6, label="start")
     lines, here = [], {}
     for at, step in enumerate(steps):
         if step.get("action") in _STOPS:
@@ -204,12 +233,20 @@ def _rings(disaster):
 
 
 def _disasters(axes, steps):
-    """Draws the rings at the start strongly and those of some later steps faintly."""
+    """Draws the rings at the start strongly and the outermost ones of some later steps faintly."""
+    stops = np.array([step["cell"] for step in steps if step.get("action") in _STOPS], dtype=float)
+    inside = axes.viewLim.padded(-1.5)
     for at in np.linspace(0, len(steps) - 1, _SHOWN_STEPS).astype(int):
-        style = {"linewidth": 1.6, "alpha": 0.9} if at == 0 else {"linewidth": 0.9, "alpha": 0.5}
+        style = {"linewidth": 1.6, "alpha": 0.9} if at == 0 else {"linewidth": 0.9, "alpha": 0.6}
         for disaster in steps[at]["disasters"]:
-            outer = [*_rings(disaster)][-1]
-            for ring in _rings(disaster):
+            *inner, outer = _rings(disaster)
+            for ring in [*inner, outer] if at == 0 else [outer]:
                 axes.add_patch(Polygon(ring, fill=False, color="#b22222", zorder=2, **style))
-            axes.annotate(f"step {at}", outer[90], xytext=(3, 0), textcoords="offset points",
-                          color="#b22222", fontsize=9, va="center", annotation_clip=True)
+            seen = [point for point in outer[::15] if inside.contains(*point)]
+            if not seen:
+                continue
+            # Where the route does not stop.
+            best = max(seen, key=lambda point: min(np.hypot(*(stops - point).T), default=0.0))
+            axes.annotate(f"step {at}", best, color="#b22222", fontsize=9, ha="center", va="center",
+                          zorder=7, bbox={"boxstyle": "round,pad=0.1", "facecolor": _SEA,
+                                          "edgecolor": "none"})

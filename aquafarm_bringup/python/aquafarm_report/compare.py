@@ -133,7 +133,8 @@ def report(folders, work, episodes, read_metrics):
                                 [run.columns for run in runs],
                                 [curves.gap_note(run.player.label, run.columns, run.player)
                                  for run in runs],
-                                players if len(by_scenario) == 1 else ()))
+                                [*[run.player for run in runs],
+                                 *(players if len(by_scenario) == 1 else ())]))
     sections.append(blocks.section("Greedy play, 95 % intervals",
                                    measure_table([run.player for run in runs])))
     devices = [(run.player.label, outcomes.summary_table(run.summary)) for run in runs]

@@ -44,17 +44,17 @@ def rows_of(columns, name):
 
 
 def gap_note(label, columns, player):
-    """A sentence for a run whose greedy play differs from the end of its training; else empty."""
+    """A sentence for a run whose greedy play is worse than the end of its training; else empty."""
     mean, low, high = references.mean_interval(references.column(player, "return"), player.distinct)
     means = smooth(columns["return"])[1]
-    if not len(means) or math.isnan(low) or low <= means[-1] <= high:
+    if not len(means) or math.isnan(high) or means[-1] <= high:
         return ""
-    trained = smooth(columns["success"])[1][-1]
-    success = float(np.mean(references.column(player, "success")))
-    cause = ("without the random moves of training it does better" if mean > means[-1] else
-             "without the random moves of training it gets stuck or does worse; train longer")
-    return (f"{label}: {means[-1]:.1f} at the end of the training (success {trained:.0%}), "
-            f"{mean:.1f} in greedy play (success {success:.0%}): {cause}.")
+    failed = sum(not float(row["success"]) for row in player.rows)
+    what = (f"{failed} of {len(player.rows)} episodes end with devices at sea" if failed else
+            "it does worse")
+    return (f"{label}: {means[-1]:.1f} at the end of the training, "
+            f"{references.text((mean, low, high))} in greedy play: without the random moves of "
+            f"training {what}; train longer.")
 
 
 def _library(name):
@@ -65,23 +65,26 @@ def _library(name):
                           "libjs-dygraphs; run ./aquafarm setup") from None
 
 
-def enlarged(rows, lines):
-    """Range of the returns above 0 with the lines of references there; None if no mean is there."""
-    top = max((mean for row in rows for mean in row[1:] if mean is not None), default=0.0)
-    if top <= 0.0:
-        return None
-    return [0.0, 1.16 * max([top, *(line["value"] for line in lines)])]
+def bend(rows):
+    """Returns the unit of a scale that is linear above 0 and logarithmic below, where the returns of
+    first episodes are far away; None if the means are not on both sides of 0."""
+    means = [mean for row in rows for mean in row[1:] if mean is not None]
+    return max(means) / 3.0 if min(means) < 0.0 < max(means) else None
 
 
 def show(labels, columns, notes=(), players=()):
     """Section with one chart for each measure, with a curve for each run; empty without curves.
-    Returns have two: of the whole range, and above 0.
 
     notes: sentences below the introduction
-    players: references, whose mean returns are lines
+    players: the runs in the order of labels, whose mean returns in greedy play and 95 % intervals
+        are marks, and references, whose mean returns are lines
     """
+    shown = [one for one in players if one.rows]
     lines = [{"label": one.label, "value": round(float(np.mean(references.column(one, "return"))), 1)}
-             for one in players if one.rows and not one.is_run]
+             for one in shown if not one.is_run]
+    marks = [[round(value, 1) if math.isfinite(value) else None for value in
+              references.mean_interval(references.column(one, "return"), one.distinct)]
+             for one in shown if one.is_run]
     charts = []
     for name, title in CURVES:
         rows = rows_of(columns, name)
@@ -89,11 +92,11 @@ def show(labels, columns, notes=(), players=()):
             continue
         chart = {"id": f"curve_{name}", "title": title, "rows": rows}
         if name == "return":
-            if part := enlarged(rows, lines):
-                charts.append({"id": "curve_return_part", "title": f"{title}, enlarged: above 0",
-                               "rows": rows, "range": part, "lines": lines})
-                chart["title"] += ", whole range"
-            chart["lines"] = lines
+            chart.update(lines=lines, marks=marks, bend=bend(rows))
+            if marks:
+                chart["title"] += "; mark on the right: greedy play, 95 % interval"
+            if chart["bend"]:
+                chart["title"] += " (logarithmic below 0)"
         charts.append(chart)
     if not charts:
         return ""

@@ -65,9 +65,9 @@ def text(interval, form="{:.1f}"):
     """Returns "160.2 [157.0, 163.4]"; without bounds the mean alone."""
     mean, low, high = interval
     found = form.format(mean)
-    if math.isnan(low):
-        return found
-    return f"{found} [{form.format(low)}, {form.format(high)}]"
+    if not math.isnan(low):
+        found += f" [{form.format(low)}, {form.format(high)}]"
+    return found.replace("-", "−")
 
 
 def column(player, name):
@@ -100,6 +100,47 @@ def share_text(player, optimum):
     return "below 0" if share < 0.0 else f"{share:.1%} of the optimum"
 
 
+def difference(one, other):
+    """(mean, low, high) of the paired differences of the returns of two players, with a 95 %
+    interval; None without common episodes."""
+    returns = {row["episode"]: float(row["return"]) for row in other.rows}
+    pairs = [float(row["return"]) - returns[row["episode"]] for row in one.rows
+             if row["episode"] in returns]
+    return mean_interval(pairs, min(one.distinct, other.distinct, len(pairs))) if pairs else None
+
+
+def _points(interval):
+    """Returns "24.0 points [21.2, 26.9]" of a difference above 0."""
+    return text(interval).replace(" [", " points [") if "[" in text(interval) else (
+        f"{text(interval)} points")
+
+
+def verdict(players):
+    """One sentence on the runs among players: the best one, and how far it is from the others."""
+    runs = sorted((one for one in players if one.is_run and one.rows),
+                  key=lambda one: -np.mean(column(one, "return")))
+    if not runs:
+        return ""
+    best = runs[0]
+    share = share_text(best, optimum_of(players))
+    facts = [] if share == "–" else ["its returns sum up to less than 0" if share == "below 0" else
+                                     f"it reaches {share}"]
+    planner = next((one for one in players if one.label == "planner" and one.rows), None)
+    for other in [*runs[1:2], *([planner] if planner else [])]:
+        gap = difference(best, other)
+        if gap is None:
+            continue
+        side = "above" if gap[0] >= 0.0 else "below"
+        mean, *bounds = gap if gap[0] >= 0.0 else (-gap[0], -gap[2], -gap[1])
+        facts.append(f"{_points((mean, *bounds))} {side} {other.label}")
+    if not facts:
+        return ""
+    if len(runs) == 1:
+        return f"{best.label}: {', '.join(facts)}."
+    return (f"{best.label} is the best run: {', '.join(facts)}. One training each does not rank their "
+            "algorithms.")
+
+
 def optimum_of(players):
     return next((one for one in players if one.label == OPTIMUM and one.rows), None)
 
@@ -117,6 +158,7 @@ def show_tiles(players):
                  share_text(one, optimum), f"{len(one.rows)} episodes, {one.distinct} distinct"]
         shown.append((one.label, mean, [line for line in lines if line], one.is_run))
     note = ("<p>Return per episode, success and their 95 % intervals in evaluation episodes of "
-            f"seed {videos.SEED}. RANDOM moves without a goal; the planner knows what ships know; "
+            f"seed {videos.SEED}. RANDOM draws among all actions; the planner knows what ships know; "
             "clairvoyant knows the storm's whole track, and its return is the optimum.</p>")
-    return blocks.players(shown) + note
+    said = verdict(players)
+    return (f"<p><b>{blocks.escape(said)}</b></p>" if said else "") + blocks.players(shown) + note

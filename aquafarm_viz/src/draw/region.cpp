@@ -25,7 +25,7 @@ using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr double kSmallestSide = 70.0;  // [design units]
+constexpr double kSmallestSide = 62.0;  // [design units]
 
 bool IsOutside(const FarmSpec& spec, const DisasterState& disaster) {
   return IsDrawn(disaster) && !IsCentreInFarm(spec, disaster);

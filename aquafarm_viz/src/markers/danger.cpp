@@ -32,7 +32,6 @@ using visualization_msgs::MarkerArray;
 constexpr std::size_t kMaxLabels = 40;  // more are not read, and cost time
 constexpr double kRim = 0.2;            // of a label from the edge of the farm [cells]
 constexpr double kMaxLine = 1.05;       // width of a headline's line, of the farm's longer side
-constexpr double kLineOfOutside = 3.0;  // above the clock
 constexpr Rgb kAlarm{0xff, 0xb4, 0x54};
 
 // A rectangle that a label covers [cells].
@@ -298,16 +297,17 @@ std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, con
   return outside;
 }
 
-// Adds lines of text above the farm, the lowest in a line, or deletes them.
+// Adds one or two lines of text next to the clock, above the farm, or deletes them.
+// @param side  1: above the clock, -1: below it
 void AddLines(MarkerArray& array, const Maker& maker, const FarmSpec& spec, const char* space,
-              double lowest, const std::string& text, Rgb color) {
+              double side, const std::string& text, Rgb color) {
   if (text.empty()) return array.markers.push_back(maker.Delete(space, 0));
   const double side_m = std::max(spec.width, spec.height) * maker.cell_m();
   const std::string lines = InLines(text, kMaxLine * side_m / maker.line_m());
   const auto more = double(std::count(lines.begin(), lines.end(), '\n'));
   array.markers.push_back(maker.Text(space, 0, (spec.width - 1) / 2.0,
-                                     maker.LineAbove(lowest + 0.5 * more), lines, maker.line_m(),
-                                     color));
+                                     maker.LineAbove(kLineOfClock + side * (1.0 + 0.5 * more)),
+                                     lines, maker.line_m(), color));
 }
 
 // Returns what the pointers point to: for one its strength, place and course, for several the
@@ -342,10 +342,9 @@ MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state) {
   const std::vector<std::size_t> outside = AddPointers(array, maker, spec, state, labels);
   AddDevices(array, maker, spec, state, outlook, labels);
   const bool is_over = state.terminated || state.truncated;
-  AddLines(array, maker, spec, "alarm", 0.0, is_over ? "" : OutlookText(spec, state, outlook),
+  AddLines(array, maker, spec, "alarm", -1.0, is_over ? "" : OutlookText(spec, state, outlook),
            IsInDanger(outlook) ? kAlarm : kPaper);
-  AddLines(array, maker, spec, "outside", kLineOfOutside,
-           OutsideText(spec, state, courses, outside), kPaper);
+  AddLines(array, maker, spec, "outside", 1.0, OutsideText(spec, state, courses, outside), kPaper);
   return array;
 }
 

@@ -35,6 +35,8 @@ enum Layer {
   kWordLayer
 };
 
+constexpr double kLineOfClock = 2.0;  ///< above the farm
+
 inline geometry_msgs::Point Point(double x, double y, double z = 0.0) {
   geometry_msgs::Point point;
   point.x = x;

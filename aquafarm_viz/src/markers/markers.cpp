@@ -304,8 +304,8 @@ Marker Status(const Maker& maker, const FarmSpec& spec, const FarmState& state) 
   const std::string text = WorldTimeText(spec, state) + "  episode " + Count(state.episode) +
                            "  step " + Count(state.step) + "  return " +
                            Number(state.joint_return, 1);
-  return maker.Text("status", 0, (spec.width - 1) / 2.0, maker.LineAbove(2), text, maker.line_m(),
-                    kPaper);
+  return maker.Text("status", 0, (spec.width - 1) / 2.0, maker.LineAbove(kLineOfClock), text,
+                    maker.line_m(), kPaper);
 }
 
 }  // namespace

@@ -2,11 +2,15 @@
 // Draws the charts of CURVES; an enlarged part applies to all of them.
 window.charts = [];
 // Runs differ by their dashes too, so that they can be told apart in a print without colours.
+const LINES = [[2, 3], [8, 4], [1, 0]];  // of references
 const DASHES = [null, [9, 4], [2, 3], [12, 4, 2, 4], [5, 5], [1, 6], [14, 6]];
 let moving = false;
 for (const chart of CURVES.charts) {
-  const returns = chart.id.startsWith("curve_return");
-  window.charts.push(new Dygraph(document.getElementById(chart.id), chart.rows, {
+  const unit = chart.bend;
+  const onScale = value => value === null ? null : toScale(value, unit);
+  const returns = chart.id === "curve_return";
+  window.charts.push(new Dygraph(document.getElementById(chart.id),
+    chart.rows.map(([episode, ...means]) => [episode, ...means.map(onScale)]), {
     labels: CURVES.labels,
     colors: CURVES.colours,
     series: Object.fromEntries(CURVES.labels.slice(1).map(
@@ -20,9 +24,17 @@ for (const chart of CURVES.charts) {
     gridLineColor: "rgba(128, 128, 128, 0.3)",
     axisLabelColor: "currentColor",
     axisLabelWidth: 60,
-    digitsAfterDecimal: returns ? 1 : 3,
-    valueRange: chart.range || (returns ? visible(chart) : null),
-    underlayCallback: (canvas, area, dygraph) => reference(canvas, area, dygraph, chart.lines || []),
+    digitsAfterDecimal: 3,
+    axes: returns ? {y: {
+      valueFormatter: y => inWords(fromScale(y, unit), 1),
+      ticker: (low, high) => ticks(fromScale(low, unit), fromScale(high, unit)).map(
+        value => ({v: toScale(value, unit), label: inWords(value, 0)})),
+    }} : {},
+    valueRange: returns ? visible(chart).map(onScale) : null,
+    underlayCallback: (canvas, area, dygraph) => {
+      reference(canvas, area, dygraph, chart.lines || [], onScale);
+      mark(canvas, area, dygraph, chart.marks || [], onScale);
+    },
     highlightSeriesOpts: {strokeWidth: 3},
     zoomCallback: (from, to) => {
       if (moving) return;
@@ -37,43 +49,98 @@ for (const chart of CURVES.charts) {
   }));
 }
 
-// Draws a dashed line with a name for each reference in the range of a chart; names above each other
-// are written once, with commas.
-function reference(canvas, area, dygraph, lines) {
-  const seen = lines.map(line => ({...line, y: dygraph.toDomYCoord(line.value)}))
+// A scale that is linear above 0 and logarithmic below; `unit` is null where it is linear.
+function toScale(value, unit) {
+  return unit && value < 0 ? -unit * Math.log1p(-value / unit) : value;
+}
+
+function fromScale(y, unit) {
+  return unit && y < 0 ? unit * (1 - Math.exp(-y / unit)) : y;
+}
+
+function inWords(value, digits) {
+  return value.toFixed(digits).replace("-", "\u2212").replace(/\B(?=(\d{3})+(?!\d))/g,
+    digits ? "" : ",");
+}
+
+// Round values between two: up to six above 0, and below 0 powers of ten and three times these.
+function ticks(low, high) {
+  if (low >= 0 || high <= 0) return steps(low, high);
+  const below = [];
+  for (let value = 1; value <= -low; value *= 10) {
+    for (const tick of [-value, -3 * value]) if (tick >= low && tick < -high / 4) below.push(tick);
+  }
+  return [...below, ...steps(0, high)];
+}
+
+function steps(low, high) {
+  const power = 10 ** Math.floor(Math.log10((high - low) / 5 || 1));
+  const step = [1, 2, 5, 10].map(factor => factor * power).find(one => (high - low) / one <= 6);
+  const found = [];
+  for (let at = Math.ceil(low / step); at * step <= high; ++at) found.push(at * step);
+  return found;
+}
+
+// Draws a line with a name for each reference in the range of a chart; names above each other are
+// written once, with commas.
+function reference(canvas, area, dygraph, lines, onScale) {
+  const style = getComputedStyle(document.body);
+  const seen = lines
+    .map((line, i) => ({...line, y: dygraph.toDomYCoord(onScale(line.value)), dash: LINES[i % 3]}))
     .filter(line => line.y >= area.y && line.y <= area.y + area.h)
     .sort((a, b) => a.y - b.y);
   canvas.save();
-  canvas.strokeStyle = canvas.fillStyle = getComputedStyle(document.body).color;
-  canvas.font = "13px sans-serif";
-  canvas.textAlign = "right";
-  canvas.setLineDash([6, 4]);
+  canvas.strokeStyle = canvas.fillStyle = style.color;
+  canvas.font = `13px ${style.fontFamily}`;
+  canvas.textAlign = "left";
   const names = [];
   for (const line of seen) {
+    canvas.setLineDash(line.dash);
     canvas.beginPath();
     canvas.moveTo(area.x, line.y);
     canvas.lineTo(area.x + area.w, line.y);
     canvas.stroke();
-    const name = `${line.label} ${line.value.toFixed(1)}`;
+    const name = `${line.label} ${inWords(line.value, 1)}`;
     const last = names[names.length - 1];
     if (last && line.y - last.y < 16) last.text += `, ${name}`;
     else names.push({y: line.y, text: name});
   }
   for (const name of names) {
     const above = name.y - area.y > 18;
-    canvas.fillText(name.text, area.x + area.w - 6, name.y + (above ? -5 : 26));
+    canvas.fillText(name.text, area.x + 6, name.y + (above ? -5 : 16));
   }
   canvas.restore();
 }
 
-// The range of returns with the lines of references, without the lowest tenth of the curves: returns
-// of the first episodes are far below.
+// Draws the mean of greedy play of each run with its interval at the right edge.
+function mark(canvas, area, dygraph, marks, onScale) {
+  const at = value => dygraph.toDomYCoord(onScale(value));
+  canvas.save();
+  canvas.lineWidth = 2;
+  marks.forEach(([mean, low, high], i) => {
+    const x = area.x + area.w - 8 - 12 * (marks.length - 1 - i);
+    canvas.strokeStyle = canvas.fillStyle = CURVES.colours[i];
+    canvas.beginPath();
+    canvas.arc(x, at(mean), 5, 0, 2 * Math.PI);
+    canvas.fill();
+    if (low === null) return;
+    canvas.beginPath();
+    canvas.moveTo(x, at(low));
+    canvas.lineTo(x, at(high));
+    canvas.stroke();
+  });
+  canvas.restore();
+}
+
+// The range of returns with the lines of references and the marks, without the lowest tenth of the
+// curves if the scale is linear: returns of the first episodes are far below.
 function visible(chart) {
   const values = chart.rows.flatMap(row => row.slice(1)).filter(value => value !== null)
     .sort((a, b) => a - b);
-  const lines = (chart.lines || []).map(line => line.value);
-  const low = Math.min(values[Math.floor(0.1 * (values.length - 1))], ...lines);
-  const high = Math.max(values[values.length - 1], ...lines);
+  const others = [...chart.lines.map(line => line.value),
+    ...chart.marks.flat().filter(value => value !== null)];
+  const low = Math.min(values[chart.bend ? 0 : Math.floor(0.1 * (values.length - 1))], ...others);
+  const high = Math.max(values[values.length - 1], ...others);
   const margin = 0.08 * (high - low || 1);
-  return [low - margin, high + margin];
+  return chart.bend ? [1.3 * low, 1.16 * high] : [low - margin, high + margin];
 }

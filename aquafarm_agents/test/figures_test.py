@@ -281,7 +281,7 @@ class FiguresTest(unittest.TestCase):
                                       lines["last leg: route with a device aboard"])
         np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
         self.assertEqual("ranch 7: 0 of 2 devices in port\n"
-                         "time limit after 3 steps; the last 2 without a stop",
+                         "time limit after 3 steps\nthe last 2 steps without a stop",
                          self.axes.get_title())
         self.assertEqual((9.0, 5.0), (self.axes.get_xlim()[1], self.axes.get_ylim()[1]),
                          "the scale of the largest ranch")

@@ -79,13 +79,13 @@ class PlanFiguresTest(unittest.TestCase):
 
         km = ranch["cell_size_m"] / 1000.0
         found = pointer(300.0 / km, 0.0)
-        self.assertIn("centre 300 km E at ", found["words"])
+        self.assertIn("centre 300 km E (090°) at ", found["words"])
         self.assertEqual(90.0, found["bearing"])
         frame = chart.Frame(ranch)
         self.assertAlmostEqual(frame.height / 2, found["xy"][1])
         self.assertAlmostEqual(frame.width - 30.0, found["xy"][0])
         south_west = pointer(-300.0 / km, -300.0 / km)
-        self.assertIn("centre 424 km SW at ", south_west["words"])
+        self.assertIn("centre 424 km SW (225°) at ", south_west["words"])
         for value, side in zip(south_west["xy"], (frame.width, frame.height)):
             self.assertTrue(30.0 - 1e-6 <= value <= side - 30.0 + 1e-6)
         self.assertIsNone(pointer(1.0, 1.0), "the centre is on the map")

@@ -253,13 +253,12 @@ class ReportTest(unittest.TestCase):
             "random moves of training 2 of 4 episodes end with devices at sea; train longer.",
             note(-420.0, 100.0, -420.0, 100.0))
         self.assertIn("without the random moves of training it does worse", note(99.0, 101.0))
-        self.assertEqual("", note(239.0, 241.0), "better than in training")
-        self.assertEqual("", note(140.0, 160.0), "no difference beyond the interval")
-        self.assertEqual("", note(-160.0), "one start has no interval")
+        for why, returns in (("better", (239.0, 241.0)), ("within the interval", (140.0, 160.0)),
+                             ("one start has no interval", (-160.0,))):
+            self.assertEqual("", note(*returns), why)
 
     def test_it_holds_curves_of_return_success_and_loss(self):
-        data = re.search(r"const CURVES=(.*?);\n", self.page.text).group(1)
-        found = json.loads(data)
+        found = json.loads(re.search(r"const CURVES=(.*?);\n", self.page.text).group(1))
         self.assertEqual(["episode", "q_learning"], found["labels"])
         with open(self.trained / "metrics.csv", newline="") as file:
             trained = list(csv.DictReader(file))
@@ -272,10 +271,9 @@ class ReportTest(unittest.TestCase):
 
     def test_the_chart_of_returns_has_the_references_and_greedy_play(self):
         columns = {"return": np.linspace(-300.0, 150.0, 120)}
-        players = [references.Player("RANDOM", [{"return": "-1500"}, {"return": "-1501"}]),
-                   references.Player("a", [{"return": "90"}, {"return": "110"}], 2, is_run=True),
-                   references.Player("planner", fault="took too long"),
-                   references.Player("clairvoyant", [{"return": "278.16"}])]
+        players = [references.Player(label, [{"return": one} for one in returns], 2, is_run=own)
+                   for label, returns, own in (("RANDOM", (-1500, -1501), False), ("planner", (), False),
+                                               ("a", (90, 110), True), ("best", (278.16,), False))]
 
         def chart(columns):
             text = curves.show(["a"], [columns], players=players)
@@ -284,32 +282,27 @@ class ReportTest(unittest.TestCase):
 
         found = chart(columns)
         self.assertEqual([{"label": "RANDOM", "value": -1500.5},
-                          {"label": "clairvoyant", "value": 278.2}], found["lines"])
+                          {"label": "best", "value": 278.2}], found["lines"])
         self.assertEqual([[100.0, 80.4, 119.6]], found["marks"])
-        highest = float(np.mean(columns["return"][-50:]))
-        self.assertAlmostEqual(highest / 3.0, found["bend"], delta=0.01)
+        self.assertAlmostEqual(np.mean(columns["return"][-50:]) / 3.0, found["bend"], delta=0.01)
         self.assertIn("logarithmic below 0", found["title"])
-        found = chart({"return": columns["return"] - 1000.0})
-        self.assertIsNone(found["bend"], "no mean is above 0")
-        self.assertNotIn("logarithmic", found["title"])
+        self.assertIsNone(chart({"return": columns["return"] - 1000.0})["bend"], "all are below 0")
 
     def test_one_sentence_says_how_good_a_run_is(self):
-        def player(label, returns, **more):
+        def player(label, *returns, is_run=False):
             rows = [{"episode": str(i), "return": str(one)} for i, one in enumerate(returns)]
-            return references.Player(label, rows, len(rows), **more)
+            return references.Player(label, rows, len(rows), is_run=is_run)
 
-        others = [player("RANDOM", [-9, -9, -9, -9]), player("planner", [98, 98, 98, 98]),
-                  player("clairvoyant", [100, 100, 100, 100])]
+        others = [player("planner", 98, 98, 98, 98), player("clairvoyant", 100, 100, 100, 100)]
+        two = [player("a", 88, 92, 88, 92, is_run=True), player("b", 80, 80, 80, 80, is_run=True)]
         self.assertEqual("a: it reaches 90.0% of the optimum, 8.0 points [5.7, 10.3] below planner.",
-                         references.verdict([player("a", [88, 92, 88, 92], is_run=True), *others]))
-        two = [player("a", [88, 92, 88, 92], is_run=True), player("b", [80, 80, 80, 80], is_run=True)]
+                         references.verdict([two[0], *others]))
         self.assertEqual("a is the best run: it reaches 90.0% of the optimum, 10.0 points "
                          "[7.7, 12.3] above b, 8.0 points [5.7, 10.3] below planner. One training "
                          "each does not rank their algorithms.",
                          references.verdict([*two, *others]))
         self.assertEqual("a: its returns sum up to less than 0, 103.0 points below planner.",
-                         references.verdict([references.Player(
-                             "a", [{"episode": "0", "return": "-5"}], 1, is_run=True), *others]))
+                         references.verdict([player("a", -5, is_run=True), *others]))
         self.assertEqual("", references.verdict(others))
 
     def test_devices_of_episodes_with_other_devices_have_their_own_kinds(self):

@@ -120,7 +120,7 @@ class ValuesTest(unittest.TestCase):
         self.assertIn("The return rises strongly with temperature\nrank correlation +1.00",
                       axis.get_title())
         self.assertEqual("temperature [°C]", axis.get_xlabel())
-        draw_key(axis, {"policy": "planner"})
+        draw_key(axis, {"policy": "planner"}, None)
         for words in (axis.get_title(), *(text.get_text() for text in axis.texts)):
             for jargon in ("SSIM", "Spearman", "rho", "turned over", "degC"):
                 self.assertNotIn(jargon, words)

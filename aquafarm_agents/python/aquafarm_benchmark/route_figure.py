@@ -112,8 +112,8 @@ def plot_unfinished(axes, name, route, size):
     axes.scatter(*last["cell"], s=150, marker="*", color="#f0e442", edgecolor="black", zorder=9,
                  label="ship at the end")
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port\n"
-                   f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps; "
-                   f"the last {len(last_leg) - 1} without a stop", fontsize=11)
+                   f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps\n"
+                   f"the last {len(last_leg) - 1} steps without a stop", fontsize=11)
 
 
 def _symbols(charts):
@@ -214,8 +214,7 @@ def _explain(empty, charts, stops, has_moves):
     symbols = _symbols(charts)
     empty.legend(symbols.values(), symbols.keys(), loc="upper left", frameon=False, fontsize=11,
                  bbox_to_anchor=(0.0, 1.0), labelspacing=0.7, ncols=2)
-    lines = [*stops, "", "red: the disaster's rings in some steps",
-             "axes: cells, east and north"]
+    lines = [*stops, "", "red: the disaster's rings in some steps"]
     if has_moves:
         lines = [f"arrow: the preferred move, in every {_EVERY}nd column and row", "", *lines]
     empty.text(0.03, 0.68, "\n".join(lines), transform=empty.transAxes, va="top", fontsize=11,

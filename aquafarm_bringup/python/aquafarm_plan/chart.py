@@ -72,12 +72,12 @@ def storm_pointer(plan, frame):
                 abs(north) * frame.scale / (frame.height / 2 - inset))
     if reach <= 1.0:
         return None
-    bearing = math.degrees(math.atan2(east, north))
+    bearing = math.degrees(math.atan2(east, north)) % 360
     km = math.hypot(east, north) * ranch["cell_size_m"] / 1000
     name = plan["storm"]["name"] or plan["storm"]["kind"]
     return {"xy": (frame.width / 2 + east * frame.scale / reach,
                    frame.height / 2 - north * frame.scale / reach), "bearing": bearing,
-            "words": f"{name}: centre {km:,.0f} km {compass(bearing)} at {clock.time(clock.at(0))}"}
+            "words": f"{name}: centre {km:,.0f} km {compass(bearing)} ({bearing:03.0f}°) at {clock.time(clock.at(0))}"}
 
 
 def _coast(ranch, frame):
@@ -94,7 +94,7 @@ def _coast(ranch, frame):
     smooth = gaussian_filter(np.kron(mask, np.ones((fine, fine))), 0.28 * fine)
     closed = np.pad(smooth, 1)
     # Sample i of the fine grid, which starts at 1, is centred in cell (i - 0.5) / fine - 0.5 - pad.
-    return _outlines(closed, 0.45, frame, lambda i: (i - 0.5) / fine - 0.5 - pad)
+    return _outlines(closed, 0.55, frame, lambda i: (i - 0.5) / fine - 0.5 - pad)
 
 
 def _outlines(field, level, frame, to_cells):
@@ -211,7 +211,7 @@ def _scale_bar(ranch, frame):
     """Bars of a round length in km and in nautical miles."""
     px_per_km = frame.scale * 1000 / ranch["cell_size_m"]
     bars = []
-    for unit, km in (("km", 1.0), ("nm", 1.852)):
+    for unit, km in (("km", 1.0), ("nmi", 1.852)):
         length = nice(frame.width * 0.22 / px_per_km / km)
         bars.append({"px": length * km * px_per_km, "text": f"{length:g} {unit}"})
     return bars

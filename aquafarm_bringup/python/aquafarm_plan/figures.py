@@ -6,12 +6,13 @@ import math
 from .chart import nice, samples, svg_path
 from .document import Clock, amount, parse_time
 from .labels import Label, place, shorten
-from .words import is_unknown, letter, numbered_name, order_text
+from .words import compass, is_unknown, letter, numbered_name, order_text
 
 REGION = 330.0  # side of the region's drawing [px]
 REGION_LABELS = 4  # most fixes with a label, so that they can be read
 LINE = (1100.0, 104.0)  # width and left margin of the timeline [px]
 HAZARD_HEIGHT, ROW, AXIS = 62.0, 27.0, 48.0
+NEAREST_H = 72  # a closest approach after more hours does not lengthen the timeline
 CURVE = (520.0, 270.0, 58.0, 44.0)  # width, height, left and lower margin of the loss curve [px]
 
 
@@ -46,7 +47,7 @@ def region(plan):
     } for p in points]
     rings, caption = _region_rings(plan, points, middle, px, scale / cell_km, clock)
     bar = [{"px": n * km / cell_km * scale, "text": f"{n:g} {unit}"}
-           for unit, km in (("km", 1), ("nm", 1.852)) for n in [nice(side * cell_km * 0.25 / km)]]
+           for unit, km in (("km", 1), ("nmi", 1.852)) for n in [nice(side * cell_km * 0.25 / km)]]
     lines = {
         source: svg_path([px(*p["at"]) for p in part]) for source, part in _parts(points)
         if len(part) > 1
@@ -137,6 +138,9 @@ def horizon_s(plan):
     events = [clock.seconds(o["time"]) for r in plan["plan"]["routes"] for o in r["orders"]]
     events += [clock.seconds(a["q50"]) for d in plan["devices"] for a in d["arrival"] if a["q50"]]
     events += [clock.seconds(t) for t in (plan["deadlines"]["no_departure_after"], ) if t]
+    nearest = plan["storm"]["closest_approach"]
+    if nearest and 0.0 <= clock.seconds(nearest["time"]) <= NEAREST_H * 3600:
+        events.append(clock.seconds(nearest["time"]))
     return min(end, max(events) + 3 * 3600) if events else end
 
 
@@ -177,8 +181,20 @@ def timeline(plan):
         "width": width, "height": height, "left": left, "right": width - 26, "top": 8,
         "base": HAZARD_HEIGHT + 8, "axis": height - AXIS, "curves": curves, "rows": rows,
         "ticks": _time_ticks(clock, end, x_of), "dates": _dates(clock, end, x_of), "end_s": end,
-        "last": {"x": x_of(clock.seconds(last)), "text": clock.time(last)} if last else None
+        "last": {"x": x_of(clock.seconds(last)), "text": clock.time(last)} if last else None,
+        "nearest": _nearest(plan, clock, end, x_of)
     }
+
+
+def _nearest(plan, clock, end, x_of):
+    """Place and words of the closest approach on the timeline; None if it is not on it."""
+    nearest = plan["storm"]["closest_approach"]
+    if not nearest or not 0.0 <= clock.seconds(nearest["time"]) <= end:
+        return None
+    x = x_of(clock.seconds(nearest["time"]))
+    return {"x": x, "is_right": x > 0.8 * LINE[0],
+            "text": f"centre {nearest['distance_km']:.0f} km {compass(nearest['bearing_deg'])}, "
+                    f"{clock.time(nearest['time'])}"}
 
 
 def _row(plan, route, clock, x_of, y):

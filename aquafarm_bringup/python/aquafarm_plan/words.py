@@ -170,7 +170,7 @@ def _leave(plan):
                       "; ") + "."
     last = deadlines["no_departure_after"]
     if last:
-        remark = f"{_latest(plan, clock)}From {clock.day_time(last)} on, no ship should leave."
+        remark = f"{_latest(plan, clock)}Do not leave after {clock.day_time(last)}."
     elif deadlines.get("not_known_beyond"):
         remark = f"{_latest(plan, clock)}{last_known(plan)}"
     elif away:
@@ -193,8 +193,8 @@ def _latest(plan, clock):
         first = next((one["device"] for one in route["orders"] if one["action"] == "fetch"), None)
         for one in plan["devices"][first]["deadlines"] if first is not None else []:
             if one["probability"] == 0.8 and one["leave"] and not one.get("open"):
-                parts.append(f"{plan['devices'][first]['name']} {clock.time(one['leave'])}")
-    return f"Latest departure for an 80 % chance: {some(parts, ', ')}. " if parts else ""
+                parts.append(f"{clock.time(one['leave'])} ({plan['devices'][first]['name']})")
+    return f"The chance stays at 80 % until {some(parts, ', ')}. " if parts else ""
 
 
 def _lose(plan):

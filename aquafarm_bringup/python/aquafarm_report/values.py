@@ -16,6 +16,8 @@ from aquafarm_bringup.files import open_atomically  # noqa: E402
 MOST_WINDOW = 7  # cells on a side, as in scikit-image
 FEWEST_CELLS = 10
 _COLUMN = 3.3  # width of a map in the figure [inch]
+_LOW_COLOUR = "#440154"  # the lowest one of viridis
+_SEA_COLOURS = {"depth": "Blues", "warmth": "YlOrRd"}
 _LOWEST = 0.05  # share of the cells whose return has one colour
 
 NOTE = ("Spearman's rho is of the ranks over the cells where both are known; neighbouring cells "
@@ -89,6 +91,33 @@ def strength(rho):
     return f"{'rises' if rho > 0 else 'falls'} {size}"
 
 
+def verdict(layers, results):
+    """One sentence on how well the sea explains the return; empty if nothing is known."""
+    known = [(abs(result["spearman_rho"]), sea_words(layer[0]), result["spearman_rho"])
+             for layer, result in zip(layers, results) if result["spearman_rho"] is not None]
+    if not known:
+        return ""
+    size, name, rho = max(known)
+    much = "hardly at all" if size < 0.1 else "little" if size < 0.4 else "in part" if size < 0.7 \
+        else "for the most part"
+    return f"The sea explains it {much}: {name} best, rank correlation {signed(rho)}"
+
+
+def device_distance(values, devices):
+    """Rank correlation of the return with the distance to the nearest device; None if not known."""
+    if not devices:
+        return None
+    north, east = np.indices(values.shape)
+    away = np.min([np.hypot(east - x, north - y) for x, y in devices], axis=0)
+    return compare(values, away)["spearman_rho"]
+
+
+def lowest_cells(values):
+    """Whether a cell is one of the lowest twentieth, which have one colour."""
+    known = values[np.isfinite(values)]
+    return values < np.quantile(known, _LOWEST) if len(known) else np.zeros(values.shape, bool)
+
+
 def sea_words(name):
     """Display name of a layer of the sea."""
     return {"warmth": "temperature"}.get(name, name.replace("_", " "))
@@ -129,7 +158,10 @@ def draw_relation(axis, values, layer, result):
     name, units, field = layer
     known = np.isfinite(values) & np.isfinite(field)
     x, y = field[known], values[known]
+    low = lowest_cells(values)
     axis.scatter(x, y, s=9, color="#0072b2", alpha=0.35, linewidth=0, label="a cell")
+    axis.scatter(field[known & low], values[known & low], s=12, color=_LOW_COLOUR, linewidth=0,
+                 label="of the lowest twentieth")
     if len(x) >= FEWEST_CELLS and np.ptp(x) > 0.0:
         parts = np.array_split(np.argsort(x, kind="stable"), 10)
         axis.plot([np.median(x[part]) for part in parts], [np.median(y[part]) for part in parts],
@@ -137,11 +169,13 @@ def draw_relation(axis, values, layer, result):
                   label="median of 1/10 of the cells")
     words = sea_words(name)
     axis.set_xlabel(f"{words} [{unit_text(units)}]")
+    axis.set_ylabel("return if the ship starts there")
     change = strength(result["spearman_rho"])
-    axis.set_title((f"The return {change} with {words}\n" if change else "") +
-                   (f"rank correlation {signed(result['spearman_rho'])}, {result['cells']} cells"
-                    if change else f"{result['cells']} cells: too few or too alike to compare"),
-                   fontsize=11)
+    rest = compare(np.where(low, np.nan, values), field)["spearman_rho"]
+    axis.set_title((f"The return {change} with {words}\nrank correlation "
+                    f"{signed(result['spearman_rho'])} of {result['cells']} cells\n"
+                    f"{signed(rest)} without the lowest twentieth") if change else
+                   f"{result['cells']} cells: too few or too alike to compare", fontsize=11)
     axis.grid(alpha=0.3)
 
 
@@ -161,36 +195,36 @@ def draw(text, values, layers, results, path):
     axes[0][0].set_ylabel("north [km]")
     for column, (layer, result) in enumerate(zip(layers, results), start=1):
         name, units, field = layer
-        draw_map(axes[0][column], np.where(np.isfinite(values), field, np.nan), km, "cividis",
-                 f"{sea_words(name)} [{unit_text(units)}]")
+        draw_map(axes[0][column], np.where(np.isfinite(values), field, np.nan), km,
+                 _SEA_COLOURS.get(name, "cividis"), f"{sea_words(name)} [{unit_text(units)}]")
         words = sea_words(name)
         axes[0][column].set_title(f"{words[:1].upper()}{words[1:]} of the sea")
         draw_places(axes[0][column], text, km)
         draw_relation(axes[1][column], values, layer, result)
     if layers:
-        axes[1][1].set_ylabel("return if the ship starts there")
-        draw_key(axes[1][0], text)
+        draw_key(axes[1][0], text, device_distance(values, text.get("devices")))
         marks = zip(axes[0][0].get_legend_handles_labels(), axes[1][1].get_legend_handles_labels())
         axes[1][0].legend(*([*one, *other] for one, other in marks), loc="upper left", frameon=False,
-                          bbox_to_anchor=(-0.05, 0.24)).set_in_layout(False)
+                          bbox_to_anchor=(-0.05, 0.42)).set_in_layout(False)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
-    figure.suptitle(f"Where should the ship start, and does the sea explain it?\n"
+    said = verdict(layers, results)
+    figure.suptitle("Where should the ship start?" + (f" {said}\n" if said else "\n") +
                     f"{text['policy']} on {text['scenario']}, {episodes}")
     with open_atomically(path, "wb") as file:
         figure.savefig(file, dpi=110, format="png")
     pyplot.close(figure)
 
 
-def draw_key(axis, text):
+def draw_key(axis, text, distance):
     """What the figure shows, in words."""
     axis.axis("off")
-    axis.text(0.0, 1.12, "\n".join((
-        "Return: of the episode if the", f"ship starts there and {text['policy']}",
-        "steers; the lowest twentieth has", "one colour. Hatched: land,", "rocks or unknown.", "",
-        "Rank correlation: +1 if the", "return always rises with the", "sea's value, −1 if it always",
-        "falls. It does not say that", "one causes the other.")),
-              va="top", fontsize=11).set_in_layout(False)
+    lines = ["Return: of the episode if the ship", f"starts there and {text['policy']} steers;",
+             "the lowest twentieth has one colour.", "Hatched: land, rocks or unknown.", "",
+             "Rank correlation: +1 if the return", "always rises with the value, −1 if it", "always falls; it names no cause."]
+    if distance is not None:
+        lines += [f"With the distance to a device: {signed(distance)}."]
+    axis.text(0.0, 1.14, "\n".join(lines), va="top", fontsize=10).set_in_layout(False)
 
 
 def make(values_file, output):

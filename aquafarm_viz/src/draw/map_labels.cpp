@@ -306,16 +306,16 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
                                          MotionNow(spec, disaster)};
     const int width = std::max(fonts.bold.Width(lines[0]), fonts.bold.Width(lines[1]));
     const cv::Size size(width + layout.Px(kPlateMargins), layout.Px(2.0 * kPlateRow));
-    // Beside the pointer, which lies at the edge, if possible: above or below it, another pointer's
-    // label is near.
+    // To the side of the pointer, which lies at the edge, if possible: above or below it, another
+    // pointer's label is near.
     FreeSpace water = space;
     BlockLand(spec, water, layout);
     const double aside = size.width / 2.0 + 14.0 * layout.unit;
-    const cv::Point2d beside(sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside,
-                             sign.at.y);
+    const cv::Point2d place_aside(
+        sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside, sign.at.y);
     const double near = 24.0 * layout.unit;
-    auto place = water.Take(size, beside, near);
-    if (!place) place = space.Take(size, beside, near);
+    auto place = water.Take(size, place_aside, near);
+    if (!place) place = space.Take(size, place_aside, near);
     if (!place) place = space.Take(size, sign.at, double(map.cols + map.rows));
     if (!place) continue;
     space.Block(*place);

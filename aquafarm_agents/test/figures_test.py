@@ -96,7 +96,7 @@ class FiguresTest(unittest.TestCase):
         figures._name_ends(self.axes, figures.plot_repeated(self.axes, self.contestants, self.runs,
                                                             OPTIMUM))
         names = {text.get_text(): text.get_position()[1] for text in self.axes.texts}
-        self.assertEqual({"SARSA, 2 runs", "LSTM-DQN, 2 runs", "clairvoyant 90"}, set(names))
+        self.assertEqual({"SARSA", "LSTM-DQN", "clairvoyant 90"}, set(names))
         places = sorted(names.values())
         for lower, upper in zip(places, places[1:]):
             self.assertGreaterEqual(upper - lower, 0.06)
@@ -177,14 +177,12 @@ class FiguresTest(unittest.TestCase):
         axes, = self.drawn(figures.draw_repeated, self.contestants, self.runs, {}).axes
         self.assertEqual("linear", axes.get_yscale())
         self.assertLess(axes.get_ylim()[1], 0.0)
-        self.assertEqual({"SARSA, 2 runs", "LSTM-DQN, 2 runs"}, self.names_of(axes))
+        self.assertEqual({"SARSA", "LSTM-DQN"}, self.names_of(axes))
 
-    def test_fig_12a_shades_the_middle_of_each_window(self):
-        self.runs["sarsa"][0]["curve"]["return"] = np.arange(120.0)
-        figures.plot_rewards_by_episodes(self.axes, [by_name("sarsa")], self.runs, {})
-        edge = self.axes.collections[0].get_paths()[0].vertices
-        at_start = edge[edge[:, 0] == WINDOW][:, 1]
-        np.testing.assert_allclose([4.9, 44.1], [at_start.min(), at_start.max()])
+    def test_references_with_almost_one_value_have_one_name(self):
+        ends = figures._plot_references(self.axes, {"planner": 276.0, "clairvoyant": 277.6, "x": 5.0}, 9)
+        self.assertEqual([(9, 276.0, "clairvoyant 278\nplanner 276"), (9, 5.0, "x 5")],
+                         [(x, y, name) for x, y, _, name in ends])
 
     def test_fig_13_shows_the_return_per_step(self):
         figures.plot_mean_score(self.axes, self.contestants, self.runs, {})
@@ -216,7 +214,7 @@ class FiguresTest(unittest.TestCase):
 
     def test_fig_14_shades_from_the_lowest_run_to_the_highest(self):
         figures.plot_repeated(self.axes, self.contestants, self.runs, {})
-        _, y = self.lines()["SARSA, 2 runs"]
+        _, y = self.lines()["SARSA"]
         means = [sum(run["curve"]["return"][:WINDOW]) / WINDOW for run in self.runs["sarsa"]]
         self.assertAlmostEqual(sum(means) / 2.0, y[0])
         edge = self.axes.collections[0].get_paths()[0].vertices

@@ -125,7 +125,8 @@ class CompareBrowserTest(unittest.TestCase):
         self.show()
         tiles = [one.text.splitlines() for one in
                  self.browser.find_elements(By.CSS_SELECTOR, ".wide-tiles .tile")]
-        self.assertEqual(["RANDOM", "table: q_learning", "other: sarsa", "planner", "clairvoyant"],
+        self.assertEqual(["RANDOM (all actions)", "table: q_learning", "other: sarsa", "planner",
+                          "clairvoyant"],
                          [tile[0] for tile in tiles])
         for tile in tiles:
             self.assertRegex(tile[2], r"^95 %: \[−?[\d.]+, −?[\d.]+\]$")

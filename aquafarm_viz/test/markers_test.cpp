@@ -459,7 +459,7 @@ TEST(SpecMarkers, HaveOneLineOfTheKeyForEachSymbolOfDanger) {
   for (const auto& marker : SpecMarkers(spec, false).markers) {
     if (marker.ns == "sign_legend_text") words += marker.text + "|";
   }
-  EXPECT_EQ(words, "in danger|to the centre|heading|pattern: at risk|north is up|");
+  EXPECT_EQ(words, "device in danger|to the centre|pattern: at risk|north is up|");
   for (const auto& marker : SpecMarkers(spec, false, ParseLayers("none")).markers) {
     EXPECT_NE(marker.ns, "sign_legend_text") << "without risks there are no such symbols";
   }

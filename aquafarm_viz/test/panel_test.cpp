@@ -413,18 +413,20 @@ TEST(CurveWidget, HasRoundTicksInsideTheRange) {
   }
 }
 
-TEST(CurveWidget, LeavesOutTheReturnsOfTheFirstThirdOfTheEpisodes) {
-  std::vector<CurvePoint> curve;
-  for (int i = 0; i < 100; ++i) {
-    for (int copy = 0; copy < (i < 30 ? 30 : 1); ++copy) {  // early episodes have more points
-      curve.push_back({double(i), i < 30 ? -5000.0 : double(i), 0.5});
-    }
-  }
+TEST(CurveWidget, IsLinearAboveZeroAndLogarithmicBelow) {
+  const std::vector<CurvePoint> curve{{0.0, -5000.0, 0.0}, {9.0, 300.0, 1.0}};
   const CurveRange range = RangeOfReturns(curve);
-  EXPECT_GT(range.low, -5000.0);
-  EXPECT_LT(range.low, 33.0);
-  EXPECT_GT(range.low, 25.0);
-  EXPECT_GT(range.high, 99.0);
+  EXPECT_LT(range.low, -5000.0);
+  EXPECT_GT(range.high, 300.0);
+  const ReturnScale scale(range);
+  EXPECT_TRUE(scale.is_bent());
+  EXPECT_EQ(scale.Height(200.0), 200.0);
+  EXPECT_GT(scale.Height(-5000.0), -2.0 * range.high) << "about as much space as above 0";
+  EXPECT_LT(scale.Height(-5000.0), scale.Height(-4000.0));
+  EXPECT_EQ(scale.Ticks(6),
+            (std::vector<double>{0.0, 100.0, 200.0, 300.0, -300.0, -1000.0, -3000.0}));
+  EXPECT_FALSE(ReturnScale({-5000.0, -300.0}).is_bent());
+  EXPECT_EQ(ReturnScale({-5000.0, -300.0}).Height(-400.0), -400.0);
 }
 
 TEST(RanchWidget, ShowsTheSymbolOfEachDeviceNextToItsKind) {

@@ -183,7 +183,7 @@ TEST(RegionWords, AreAboutTheStormThatComesAndNotTheFirst) {
   storms.Add(kAway, 112.0F, 12.0F);
   storms.Add("{step: 0, x: 12, y: -188, radii: [10]}, {step: 25, x: 12, y: 12, radii: [10]}", 12.0F,
              -188.0F);
-  EXPECT_EQ(storms.words().heading, "REACHES THE RANCH");
+  EXPECT_EQ(storms.words().heading, "REACHES THE RANCH IN 1.1 h");
   storms.state.disasters[1].x = 42.0F;  // it has left its track
   storms.state.disasters[1].y = 12.0F;
   storms.state.disasters[1].heading_deg = 270;
@@ -202,7 +202,7 @@ TEST(RegionWords, GiveTheWindAtTheClosestApproach) {
       "{step: 0, x: 112, y: 12, radii: [10], wind_mps: 30}, "
       "{step: 20, x: 12, y: 12, radii: [10], wind_mps: 40}",
       112.0F, 12.0F);
-  EXPECT_EQ(storms.words().heading, "REACHES THE RANCH");
+  EXPECT_EQ(storms.words().heading, "REACHES THE RANCH IN 48 min");
   EXPECT_EQ(storms.words().lines[1], "wind 40 m/s then");
   const Track track = ReadStormTracks(storms.spec.scenario_yaml, 1000.0).tracks[0];
   EXPECT_EQ(WindText(TrackAt(track, 6.0)), "33 m/s") << "interpolated";

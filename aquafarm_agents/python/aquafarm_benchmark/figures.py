@@ -84,6 +84,7 @@ def _draw_returns(path, title, plots):
 
 
 _LOGARITHMIC = "#eef1f4"  # background of the part of a scale that is logarithmic
+_ALIKE = 0.02  # relative difference of references that have one name
 _NAME_GAP = 0.062  # height of a name, as a share of the axes
 
 
@@ -123,8 +124,13 @@ def _plot_references(axes, references, end, digits=0):
     """Draws values to compare with, {name: value}, and returns the ends of their lines."""
     for value in references.values():
         axes.axhline(value, color="black", linestyle="--", linewidth=1.2, label="_reference")
-    return [(end, value, "black", f"{name} {value:.{digits}f}")
-            for name, value in references.items()]
+    ends = []
+    for name, value in sorted(references.items(), key=lambda pair: -pair[1]):
+        words = f"{name} {value:.{digits}f}"
+        if ends and ends[-1][1] - value < _ALIKE * abs(value):  # their lines are one
+            words = f"{ends.pop()[3]}\n{words}"
+        ends.append((end, value, "black", words))
+    return ends
 
 
 def _line_style(one):
@@ -132,18 +138,20 @@ def _line_style(one):
     return {"color": one.colour, "linestyle": one.linestyle}
 
 
+def _count(contestants, runs):
+    """Returns the number of runs of most contestants."""
+    counts = [len(runs[one.name]) for one in contestants]
+    return max(set(counts), key=counts.count)
+
+
 def _runs_text(count):
     return f"{count} {'run' if count == 1 else 'runs'}"
 
 
 def _plot_one_run(axes, one, curve, x):
-    """Plots the 50-episode mean return of a run at x, one for each episode, shaded between the 10th
-    and the 90th percentile of these episodes; returns the last point."""
+    """Plots the 50-episode mean return of a run at x, one for each episode; returns the last
+    point."""
     episodes, means = _smooth(curve["return"])
-    windows = np.lib.stride_tricks.sliding_window_view(curve["return"],
-                                                       len(curve["return"]) - len(means) + 1)
-    low, high = np.quantile(windows, (0.1, 0.9), axis=1)
-    axes.fill_between(x[episodes - 1], low, high, color=one.colour, alpha=0.18, linewidth=0)
     axes.plot(x[episodes - 1], means, **_line_style(one), label=one.label)
     return x[episodes[-1] - 1], means[-1], one.colour, one.label
 
@@ -169,8 +177,7 @@ def plot_rewards_by_episodes(axes, contestants, runs, references):
 def draw_rewards(path, contestants, runs, references):
     """Fig. 12a by time steps, next to the same data by episodes."""
     data = (contestants, runs, references)
-    _draw_returns(path, f"Return of the first run (Fig. 12a): mean of {measures.WINDOW} episodes, and "
-                  "their middle 80 %", [
+    _draw_returns(path, f"Return of the first run (Fig. 12a): mean of {measures.WINDOW} episodes", [
                       (lambda axes: plot_rewards_by_steps(axes, *data),
                        "return of an episode\n(logarithmic below 0)",
                        "time steps so far (logarithmic)"),
@@ -179,31 +186,33 @@ def draw_rewards(path, contestants, runs, references):
 
 def draw_average_rewards(path, contestants, runs, references):
     """Fig. 12b: mean return of all episodes so far, over all runs."""
-    _draw_returns(path, "Mean return of all episodes so far (Fig. 12b), which failures of the first\n"
-                  "episodes lower for long; mean of the runs", [
+    _draw_returns(path, f"Mean return of all episodes so far (Fig. 12b)\n"
+                  f"median of {_runs_text(_count(contestants, runs))}, shaded from the lowest to the "
+                  "highest", [
         (lambda axes: plot_average_rewards(axes, contestants, runs, references),
          "mean return so far\n(logarithmic below 0)", "episode")])
 
 
 def plot_average_rewards(axes, contestants, runs, references):
-    """Mean over the runs of their mean returns of all episodes so far."""
+    """Mean returns of all episodes so far: the median of the runs, shaded between their lowest and
+    highest value."""
     ends = []
     for one in contestants:
-        curve = _curves(runs[one.name], "return").mean(axis=0)
-        curve = np.cumsum(curve) / np.arange(1, len(curve) + 1)
-        axes.plot(np.arange(1, len(curve) + 1), curve, **_line_style(one), label=one.label)
-        ends.append((len(curve), curve[-1], one.colour, one.label))
+        curves = _curves(runs[one.name], "return")
+        episodes = np.arange(1, curves.shape[1] + 1)
+        ends.append(_plot_shaded(axes, episodes, np.cumsum(curves, axis=1) / episodes, one, one.label))
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
 def draw_square_error(path, contestants, runs):
     """Fig. 12c: mean square error of the learners' value estimates, over all runs."""
-    figure, axes = _axes("Mean square error of the value estimates (Fig. 12c)",
+    figure, axes = _axes("Mean square error of the value estimates (Fig. 12c):\nmedian of "
+                         f"{_runs_text(_count(contestants, runs))}, shaded from the lowest to the "
+                         "highest",
                          f"{measures.WINDOW}-episode mean [reward²]\n(logarithmic scale)")
     plot_square_error(axes, contestants, runs)
     axes.text(0.0, -0.17, "Low: the value of a step agrees with its reward and the next value, which "
-              "a policy that fails can reach, too.\nLine: median of the runs; shaded: from the lowest "
-              "run to the highest.", transform=axes.transAxes, fontsize=9, va="top")
+              "a policy that fails can reach, too.", transform=axes.transAxes, fontsize=9, va="top")
     save(figure, path)
 
 
@@ -226,8 +235,7 @@ def plot_square_error(axes, contestants, runs):
         if len(smooth) > 1:
             axes.fill_between(episodes[known], low, high, color=one.colour, alpha=0.18,
                               linewidth=0)
-        ends.append((episodes[known][-1], float(median[-1]), one.colour,
-                     f"{one.label}, {_runs_text(len(smooth))}"))
+        ends.append((episodes[known][-1], float(median[-1]), one.colour, one.label))
     axes.set_yscale("log")
     axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.6g}")
@@ -244,8 +252,9 @@ def draw_mean_score(path, contestants, runs, references):
               ("b", [one for one in contestants if one.algorithm_name == "sarsa"])]
     panels = [(letter, panel) for letter, panel in panels if panel]
     figure = plt.figure(figsize=(9, 8 if panels else 4.5), layout="constrained")
-    figure.suptitle(f"Return per step: {measures.WINDOW}-episode means, the mean of the runs,\n"
-                    "shaded from the lowest run to the highest", fontsize=13)
+    figure.suptitle(f"Return per step, {measures.WINDOW}-episode means: median of "
+                    f"{_runs_text(_count(contestants, runs))},\nshaded from the lowest to the highest",
+                    fontsize=13)
     places = [[letter for letter, _ in panels], ["c"] * len(panels)] if panels else [["c"]]
     all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)
     for letter, panel in [("c", contestants), *panels]:
@@ -256,7 +265,7 @@ def draw_mean_score(path, contestants, runs, references):
 
 
 def plot_mean_score(axes, contestants, runs, references, limits=None):
-    """50-episode mean return per step, mean over the runs, shaded between their lowest and highest
+    """50-episode mean return per step: the median of the runs, shaded between their lowest and highest
     value, with references {name: return per step}, within limits of y if any."""
     ends = []
     for one in contestants:
@@ -265,8 +274,7 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
         scores = np.array([measures.return_per_step(*pair, window)
                            for pair in zip(returns, steps)])
         episodes = np.arange(window, returns.shape[1] + 1)
-        _plot_shaded(axes, episodes, scores, one, one.label)
-        ends.append((episodes[-1], scores.mean(axis=0)[-1], one.colour, one.label))
+        ends.append(_plot_shaded(axes, episodes, scores, one, one.label))
     axes.axhline(0.0, color="black", linewidth=0.5, label="_zero")
     ends += _plot_references(axes, references, max(end[0] for end in ends), digits=2)
     if limits and limits != (0.0, 1.0):
@@ -351,29 +359,30 @@ def plot_loss_by_kind(axes, contestants, rows):
 
 def draw_repeated(path, contestants, runs, references):
     """Fig. 14: 50-episode means over all runs, shaded between their lowest and highest value."""
-    _draw_returns(path, "Repeated trainings (Fig. 14): mean of the runs,\n"
-                  "shaded from the lowest run to the highest", [
+    _draw_returns(path, f"Repeated trainings (Fig. 14): median of "
+                  f"{_runs_text(_count(contestants, runs))},\nshaded from the lowest to the highest", [
         (lambda axes: plot_repeated(axes, contestants, runs, references),
          f"{measures.WINDOW}-episode mean return\n(logarithmic below 0)", "episode")])
 
 
 def plot_repeated(axes, contestants, runs, references):
-    """Mean over the runs of their 50-episode means, shaded between their lowest and highest value."""
+    """50-episode means: the median of the runs, shaded between their lowest and highest value."""
     ends = []
     for one in contestants:
         smooth = [_smooth(curve) for curve in _curves(runs[one.name], "return")]
         values = np.array([curve for _, curve in smooth])
-        name = f"{one.label}, {_runs_text(len(values))}"
-        _plot_shaded(axes, smooth[0][0], values, one, name)
-        ends.append((smooth[0][0][-1], values.mean(axis=0)[-1], one.colour, name))
+        ends.append(_plot_shaded(axes, smooth[0][0], values, one, one.label))
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
 def _plot_shaded(axes, episodes, values, one, label):
-    """Plots the mean of values [runs, episodes], shaded between their lowest and highest value."""
-    axes.plot(episodes, values.mean(axis=0), **_line_style(one), label=label)
+    """Plots the median of values [runs, episodes], shaded between their lowest and highest value;
+    returns the last point."""
+    median = np.median(values, axis=0)
+    axes.plot(episodes, median, **_line_style(one), label=label)
     axes.fill_between(episodes, values.min(axis=0), values.max(axis=0), color=one.colour, alpha=0.2,
                       linewidth=0)
+    return episodes[-1], median[-1], one.colour, label
 
 
 def _curves(of_one, column):

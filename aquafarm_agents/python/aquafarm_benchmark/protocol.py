@@ -114,7 +114,7 @@ CONTESTANTS = (
     _DQN,
     _LSTM_DQN,
     _PPO,
-    Contestant("planner", "receding horizon", "#009e73", learns=False, cost=0.5, episodes=100,
+    Contestant("planner", "planner", "#009e73", learns=False, cost=0.5, episodes=100,
                repeats=False),
 )
 # The references of losses, which take part if the scenario has money.

@@ -4,6 +4,7 @@ episodes that ended with devices at sea."""
 import json
 
 import numpy as np
+from matplotlib.collections import PatchCollection
 from matplotlib.patches import Polygon, Rectangle
 
 from aquafarm_benchmark.figures import plt, save
@@ -19,6 +20,7 @@ _LANE = 0.14  # distance of a leg from the middle of its cells; the next leg has
 _LEGS = {False: ("#0072b2", (0, (4, 1.5)), "route with nothing aboard"),
          True: ("#d55e00", "solid", "route with a device aboard")}
 _SEA = "#eaf3f9"
+_LAND = "#c9b98a"
 _STOPS = {"pickup": ("P", "pickup"), "drop_off": ("X", "drop-off")}
 _STOP_STYLE = {"s": 130, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 7}
 
@@ -60,7 +62,7 @@ def devices_left(route):
             if device["cell"] not in fetched]
 
 
-def draw_unfinished(path, routes):
+def draw_unfinished(path, routes, title):
     """Draws the routes of episodes that ended with devices at sea, with the rings in the last step,
     at the same scale.
 
@@ -79,6 +81,7 @@ def draw_unfinished(path, routes):
         plot_unfinished(axes, name, route, size)
     for empty in all_axes[len(routes):]:
         empty.axis("off")
+    figure.suptitle(title, fontsize=13)
     symbols = _symbols(charts)
     all_axes[-1].legend(symbols.values(), symbols.keys(), loc="center", frameon=False, fontsize=11,
                         labelspacing=0.9)
@@ -102,10 +105,10 @@ def plot_unfinished(axes, name, route, size):
             outline.set_clip_path(sea)
     *before, (loaded, last_leg) = legs(route["steps"])
     for _, cells in before:
-        axes.plot(*np.array(cells, dtype=float).T, color="#8a959e", linewidth=1.3, zorder=4,
+        axes.plot(*np.array(cells, dtype=float).T, color="#8a959e", linewidth=0.9, zorder=4,
                   label="route before")
-    colour, dashes, kind = _LEGS[loaded]
-    axes.plot(*np.array(last_leg, dtype=float).T, color=colour, linewidth=1.8, linestyle=dashes,
+    colour, _, kind = _LEGS[loaded]
+    axes.plot(*np.array(last_leg, dtype=float).T, color=colour, linewidth=1.2, linestyle="solid",
               zorder=5, label=f"last leg: {kind}")
     axes.scatter(*zip(*devices_left(route)), s=260, facecolor="none", edgecolor="black",
                  linewidth=2.2, zorder=8, label="device that was not fetched")
@@ -133,9 +136,13 @@ def _chart(axes, chart, size=None):
     axes.set_ylim(-_RIM, height - 1 + _RIM)
     sea = axes.add_patch(Rectangle((-0.5, -0.5), chart["width"], chart["height"], facecolor=_SEA,
                                    edgecolor="#5b6b78", zorder=0))
+    if chart["islands"]:
+        axes.add_collection(PatchCollection(
+            [Rectangle((x - 0.5, y - 0.5), 1.0, 1.0) for x, y in chart["islands"]],
+            facecolor=_LAND, edgecolor=_LAND, zorder=1))
+        axes.scatter([], [], color=_LAND, marker="s", s=200, label="island")
     area = 4900.0 / max(width, height)  # of a marker that fills a cell
     for cells, colour, marker, share, label in (
-            (chart["islands"], "#c9b98a", "s", 1.0, "island"),
             (chart["rocks"], "#aab4bc", "^", 0.3, "rock"),
             (chart["ports"], "#1a7f37", "s", 0.6, "port"),
             ([device["cell"] for device in chart["devices"]], "#c2185b", "D", 0.6, "device")):

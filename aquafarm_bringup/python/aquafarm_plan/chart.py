@@ -131,12 +131,12 @@ def _route(plan, frame, route):
     ends = [clock.seconds(order["time"]) for order in route["orders"]]
     last = max(route["path"][-1][2], 1) if route["path"] else 1
     first = min(one["path"][0][2] for one in plan["plan"]["routes"] if one["path"])
-    shift = (0.12 + 0.10 * route["ship"]) * frame.scale
+    shift = (0.07 + 0.06 * route["ship"]) * frame.scale
     legs = []
     for begin, end in zip(ends, ends[1:]):
         points = [frame.px(x, y) for x, y, s in route["path"] if begin - 1 <= s <= end + 1]
         if len(points) > 1:
-            line = _offset(points, min(shift, 9))
+            line = _offset(points, min(shift, 6))
             legs.append({
                 "d": svg_path(line), "points": line, "late": round(
                     (begin - first) / max(last - first, 1), 2), "arrow": _arrow(line)

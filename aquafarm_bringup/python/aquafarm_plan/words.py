@@ -32,7 +32,8 @@ def letter(number):
 
 def compass(bearing_deg):
     """The compass point of a bearing."""
-    return ("N", "NE", "E", "SE", "S", "SW", "W", "NW")[round(bearing_deg / 45) % 8]
+    return ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW",
+            "NW", "NNW")[round(bearing_deg / 22.5) % 16]
 
 
 def is_unknown(plan):
@@ -214,7 +215,7 @@ def _lose(plan):
               "worst twentieth. ")
     remark += f"If no ship leaves: {amount(idle['mean'], currency)} on average."
     if not currency:
-        remark += " In units of value, not in money (options --devices and --currency)."
+        remark += " In units of value, not in money."
     return "What do I lose?", answer, remark
 
 
@@ -238,11 +239,12 @@ def _sure(plan):
             f"{percent(best['odds']['home'])} ({best['name']}) of the futures.")
     points = f"{max(100 * sampling_error(worst['odds']['home'], members), 1):.0f}"
     base = plan["what_if"][0]["all_home"] if plan["what_if"] else None
-    every = (f"All {len(devices)} come home in {percent(base)}. "
-             if base is not None and len(planned) == len(devices) else "")
+    each = ""
+    if base is not None and len(planned) == len(devices) > 1:
+        each, answer = answer + " ", f"All {len(devices)} come home in {percent(base)} of the futures."
     return (
         "How sure is it?", answer,
-        f"{every}{members:,} possible storms, sampling error at most {points} "
+        f"{each}{members:,} possible storms, sampling error at most {points} "
         f"point{'' if points == '1' else 's'}.")
 
 

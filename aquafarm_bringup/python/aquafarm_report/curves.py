@@ -94,7 +94,7 @@ def show(labels, columns, notes=(), players=()):
         if name == "return":
             chart.update(lines=lines, marks=marks, bend=bend(rows))
             if marks:
-                chart["title"] += "; mark on the right: greedy play, 95 % interval"
+                chart["title"] += "; grey: greedy play after the training, 95 % interval"
             if chart["bend"]:
                 chart["title"] += " (logarithmic below 0)"
         charts.append(chart)

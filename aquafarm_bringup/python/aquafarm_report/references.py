@@ -10,7 +10,7 @@ from aquafarm_benchmark.measures import wilson_interval
 
 from aquafarm_report import blocks, videos
 
-REFERENCES = (("random", "RANDOM"), ("planner", "planner"), ("clairvoyant", "clairvoyant"))
+REFERENCES = (("random", "RANDOM (all actions)"), ("planner", "planner"), ("clairvoyant", "clairvoyant"))
 EPISODES = 100  # of each reference, the first of those of the runs
 LIMIT_S = 120  # for each reference
 OPTIMUM = "clairvoyant"
@@ -110,9 +110,10 @@ def difference(one, other):
 
 
 def _points(interval):
-    """Returns "24.0 points [21.2, 26.9]" of a difference above 0."""
-    return text(interval).replace(" [", " points [") if "[" in text(interval) else (
-        f"{text(interval)} points")
+    """Returns "24 points [21, 27]" of a difference above 0."""
+    form = "{:.1f}" if interval[0] < 10.0 else "{:.0f}"
+    mean, _, bounds = text(interval, form).partition(" ")
+    return f"{mean} points {bounds}".rstrip()
 
 
 def verdict(players):
@@ -158,7 +159,7 @@ def show_tiles(players):
                  share_text(one, optimum), f"{len(one.rows)} episodes, {one.distinct} distinct"]
         shown.append((one.label, mean, [line for line in lines if line], one.is_run))
     note = ("<p>Return per episode, success and their 95 % intervals in evaluation episodes of "
-            f"seed {videos.SEED}. RANDOM draws among all actions; the planner knows what ships know; "
+            f"seed {videos.SEED}. The planner knows what ships know; "
             "clairvoyant knows the storm's whole track, and its return is the optimum.</p>")
     said = verdict(players)
     return (f"<p><b>{blocks.escape(said)}</b></p>" if said else "") + blocks.players(shown) + note

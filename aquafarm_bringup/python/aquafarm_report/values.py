@@ -92,15 +92,15 @@ def strength(rho):
 
 
 def verdict(layers, results):
-    """One sentence on how well the sea explains the return; empty if nothing is known."""
+    """One sentence on how far the return goes with the sea; empty if nothing is known."""
     known = [(abs(result["spearman_rho"]), sea_words(layer[0]), result["spearman_rho"])
              for layer, result in zip(layers, results) if result["spearman_rho"] is not None]
     if not known:
         return ""
     size, name, rho = max(known)
-    much = "hardly at all" if size < 0.1 else "little" if size < 0.4 else "in part" if size < 0.7 \
-        else "for the most part"
-    return f"The sea explains it {much}: {name} best, rank correlation {signed(rho)}"
+    much = "hardly" if size < 0.1 else "a little" if size < 0.4 else "in part" if size < 0.7 else \
+        "mostly"
+    return f"The return goes {much} with the sea: {name} most, rank correlation {signed(rho)}"
 
 
 def device_distance(values, devices):

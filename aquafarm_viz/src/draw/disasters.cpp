@@ -76,8 +76,8 @@ void DrawCentre(cv::Mat& map, const DisasterState& disaster, const SignPlace& si
 void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, const SignPlace& sign,
                        const Layout& layout) {
   static const std::vector<cv::Point2f> kPointer{{0.0F, 1.0F}, {0.75F, -0.7F}, {-0.75F, -0.7F}};
-  const cv::Point2d centre = layout.view.ToPixel(disaster.x, disaster.y);
-  const double bearing = std::atan2(centre.x - sign.at.x, sign.at.y - centre.y) * 180.0 / CV_PI;
+  const cv::Point2d away = sign.at - cv::Point2d(map.cols / 2.0, map.rows / 2.0);
+  const double bearing = std::atan2(away.x, -away.y) * 180.0 / CV_PI;
   const Pose2 placing{sign.at, 9.0 * layout.unit, bearing};
   StrokeShape(map, kPointer, placing, Bgr(layout.style->halo), layout.Px(5));
   StrokeShape(map, kPointer, placing, Bgr(layout.style->label), layout.Px(3));
@@ -100,10 +100,13 @@ SignPlace PlaceSign(const DisasterState& disaster, const Layout& layout) {
     if (disaster.speed > 0.0F) sign.arrow_to = centre + heading * length;
     return sign;
   }
-  const double shorter = std::min(map.width, map.height);
-  const double margin = std::min(13.0 * layout.unit, shorter / 2.0);
-  sign.at = {std::clamp(centre.x, margin, map.width - margin),
-             std::clamp(centre.y, margin, map.height - margin)};
+  // Where the line from the middle of the map to the centre meets the edge.
+  const cv::Point2d middle(map.width / 2.0, map.height / 2.0);
+  const double margin = std::min(13.0 * layout.unit, std::min(middle.x, middle.y));
+  const cv::Point2d away = centre - middle;
+  const double beyond = std::max(std::abs(away.x) / std::max(1.0, middle.x - margin),
+                                 std::abs(away.y) / std::max(1.0, middle.y - margin));
+  sign.at = middle + away / std::max(1.0, beyond);
   sign.arrow_to = sign.at;
   return sign;
 }

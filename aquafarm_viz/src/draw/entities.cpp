@@ -133,7 +133,7 @@ constexpr double kBetweenHeads = 50.0;  // of the arrowheads of a path [design u
 // @param age  0: now, 1: the oldest part
 Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
   const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.6) : style.good;
-  return Mix(fresh, style.sea_south, 0.55 * age);
+  return Mix(fresh, style.sea_south, 0.8 * age);
 }
 
 // Draws in which direction a ship moved from one point to another.
@@ -206,7 +206,7 @@ void DrawPorts(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const
 }
 
 void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, const Layout& layout) {
-  const double size = std::max(0.9 * layout.view.cell_px(), 18.0 * layout.unit);
+  const double size = std::max(0.75 * layout.view.cell_px(), 16.0 * layout.unit);
   for (const auto& port : ports) {
     const cv::Point2d middle = layout.view.ToPixel(port.cell.x, port.cell.y);
     for (const std::uint8_t action : port.actions) {

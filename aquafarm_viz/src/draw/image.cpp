@@ -105,7 +105,7 @@ struct FarmPainter::Parts {
       marks.insert(marks.end(), here.begin(), here.end());
     }
     DrawDisasterSigns(map, state, layout, fonts);
-    if (has_risk) DrawDangerMarks(map, state, forecasts.outlook, layout);
+    if (has_risk) DrawDangerMarks(map, spec, state, forecasts.outlook, layout);
     return marks;
   }
 
@@ -127,14 +127,14 @@ struct FarmPainter::Parts {
     const Layers& layers = overlays.layers;
     LabelShips(map, spec, state, space, layout, fonts);
     // Before the devices, which have more places around them than a pointer at the edge.
-    LabelPointers(map, spec, state, forecasts.courses, space, layout, fonts);
+    const Trail* trail = layers.trail ? overlays.trail : nullptr;
+    LabelPointers(map, spec, state, trail, forecasts.courses, space, layout, fonts);
     std::set<std::int32_t> labelled;
     if (layers.risk) {
       labelled = LabelDanger(map, spec, state, forecasts.outlook, space, layout, fonts);
     }
     if (layers.labels) {
-      LabelDevices(map, spec, state, layers.trail ? overlays.trail : nullptr, labelled, space,
-                   layout, fonts);
+      LabelDevices(map, spec, state, trail, labelled, space, layout, fonts);
       LabelFetched(map, spec, state, overlays.trail, space, layout, fonts);
     }
     if (layers.risk) LabelRings(map, spec, state, forecasts.courses, space, layout, fonts);

@@ -139,9 +139,10 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlo
   return space;
 }
 
-void DrawDangerMarks(cv::Mat& map, const FarmState& state, const Outlook& outlook,
-                     const Layout& layout) {
-  bool first = true;
+void DrawDangerMarks(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
+                     const Outlook& outlook, const Layout& layout) {
+  const std::string first =
+      outlook.devices.empty() ? "" : DangerText(spec, outlook.devices.front());
   for (const DeviceOutlook& one : outlook.devices) {
     const DeviceState* device = Find(state, one.id);
     const double risk = WorstRisk(one);
@@ -149,12 +150,12 @@ void DrawDangerMarks(cv::Mat& map, const FarmState& state, const Outlook& outloo
     const cv::Point2d at = layout.view.ToPixel(device->x, device->y);
     const double radius = layout.device_radius_px();
     const cv::Scalar color = Bgr(RiskColor(risk, layout));
+    const bool is_first = DangerText(spec, one) == first;
     for (const double times :
-         first ? std::vector<double>{1.5, kDangerRing} : std::vector<double>{1.5}) {
+         is_first ? std::vector<double>{1.5, kDangerRing} : std::vector<double>{1.5}) {
       StrokeCircle(map, at, times * radius, Bgr(layout.style->halo), layout.Px(4));
       StrokeCircle(map, at, times * radius, color, layout.Px(2));
     }
-    first = false;
   }
 }
 
@@ -294,7 +295,7 @@ void LabelRings(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
   }
 }
 
-void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
+void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                    const std::vector<Course>& courses, FreeSpace& space, const Layout& layout,
                    const Fonts& fonts) {
   for (std::size_t i = 0; i < state.disasters.size(); ++i) {
@@ -310,11 +311,15 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     // pointer's label is near.
     FreeSpace water = space;
     BlockLand(spec, water, layout);
+    FreeSpace open = water;
+    if (trail != nullptr) BlockPaths(state, *trail, open, layout);
     const double aside = size.width / 2.0 + 14.0 * layout.unit;
     const cv::Point2d place_aside(
         sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside, sign.at.y);
     const double near = 24.0 * layout.unit;
-    auto place = water.Take(size, place_aside, near);
+    auto place = open.Take(size, place_aside, near);
+    if (!place) place = open.Take(size, sign.at, 0.45 * size.width);
+    if (!place) place = water.Take(size, place_aside, near);
     if (!place) place = space.Take(size, place_aside, near);
     if (!place) place = space.Take(size, sign.at, double(map.cols + map.rows));
     if (!place) continue;

@@ -25,8 +25,10 @@ FreeSpace BlockSymbols(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs:
                        const Outlook& outlook, const Layout& layout);
 
 /// Draws a ring around each device that a ring of a disaster covers or reaches, in the colour of
-/// its worst risk, now or later; the one that is reached first has two.
-void DrawDangerMarks(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Outlook& outlook,
+/// its worst risk, now or later; the one that is reached first has two, and so have those with the
+/// same DangerText.
+void DrawDangerMarks(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
+                     const aquafarm_msgs::FarmState& state, const Outlook& outlook,
                      const Layout& layout);
 
 /// Labels the devices that have a free place nearby, up to 40 and those that are reached first
@@ -44,9 +46,11 @@ void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                 FreeSpace& space, const Layout& layout, const Fonts& fonts);
 
 /// Labels the pointers to disasters outside the map with CentreText and MotionNow.
+/// @param trail  the labels avoid its paths where they can; null: none are drawn
 void LabelPointers(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-                   const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
-                   FreeSpace& space, const Layout& layout, const Fonts& fonts);
+                   const aquafarm_msgs::FarmState& state, const Trail* trail,
+                   const std::vector<Course>& courses, FreeSpace& space, const Layout& layout,
+                   const Fonts& fonts);
 
 /// Writes F and the id next to each device that is neither aboard nor delivered.
 /// @param trail     the labels avoid its paths where they can; null: none are drawn

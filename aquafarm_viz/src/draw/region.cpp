@@ -124,9 +124,10 @@ RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subj
                                 " in " + HoursText(ahead_s);
     const auto then = static_cast<std::time_t>(state.world_time.sec + ahead_s);
     const std::string time = spec.has_start_time ? LocalTimeText(spec, then, "%d %b %H:%M") : "";
-    const std::string heading = is_over                         ? over
-                                : std::isfinite(subject.danger) ? "REACHES THE RANCH"
-                                                                : "COMES NEARER";
+    const std::string heading = is_over ? over
+                                : std::isfinite(subject.danger)
+                                    ? "REACHES THE RANCH IN " + AheadText(spec, subject.danger)
+                                    : "COMES NEARER";
     return {heading, {nearest, time}};
   }
   if (is_over) return {over, {centre, ""}};
@@ -242,8 +243,8 @@ void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout
     const cv::Point2d half(size.width / 2.0, size.height / 2.0);
     return DrawLabel(inset.image, fonts.small, word, middle - half, layout);
   }
-  auto place = space.Take(size, middle - aside, farthest);
-  if (!place) place = space.Take(size, middle + aside, farthest);
+  auto place = space.Take(size, middle + aside, farthest);
+  if (!place) place = space.Take(size, middle - aside, farthest);
   if (place) DrawLabel(inset.image, fonts.small, word, place->tl(), layout);
 }
 

@@ -267,13 +267,15 @@ std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, con
   static const std::vector<cv::Point2f> kPointer{{0.0F, 0.75F}, {-0.4F, -0.5F}, {0.4F, -0.5F}};
   const double middle_x = (spec.width - 1) / 2.0;
   const double middle_y = (spec.height - 1) / 2.0;
+  const double inset = std::min(0.5 + 0.95 * maker.thing_m() / maker.cell_m(),
+                                std::min(spec.width, spec.height) / 2.0 - 0.1);
   std::vector<std::size_t> outside;
   for (std::size_t i = 0; i < state.disasters.size(); ++i) {
     const auto& disaster = state.disasters[i];
     const double east = disaster.x - middle_x;
     const double north = disaster.y - middle_y;
-    const double beyond = std::max(std::abs(east) / (spec.width / 2.0 - 0.8),
-                                   std::abs(north) / (spec.height / 2.0 - 0.8));
+    const double beyond = std::max(std::abs(east) / (spec.width / 2.0 - inset),
+                                   std::abs(north) / (spec.height / 2.0 - inset));
     if (!disaster.known || disaster.steps_left <= 0 || IsCentreInFarm(spec, disaster)) {
       array.markers.push_back(maker.Delete("pointer", disaster.id));
       continue;
@@ -288,7 +290,7 @@ std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, con
     const cv::Point2d at = labels.FirstFree(places, 0.55 * maker.thing_m() / maker.cell_m());
     const double bearing = std::atan2(east, north) * 180.0 / CV_PI;
     Marker pointer = maker.Shape("pointer", disaster.id, kSignLayer, at.x, at.y, kPointer,
-                                 1.5 * maker.thing_m(), GradeColor(disaster.grade));
+                                 1.25 * maker.thing_m(), GradeColor(disaster.grade));
     pointer.pose.orientation = Turned(bearing, 0.0);
     array.markers.push_back(pointer);
     labels.Block(at.x, at.y, 0.8 * maker.thing_m() / maker.cell_m());

@@ -175,11 +175,9 @@ void AddLegend(MarkerArray& array, const FarmSpec& spec) {
 void AddSignLegend(MarkerArray& array, const FarmSpec& spec) {
   Row row(array, spec, 1, "sign_legend");
   row.Ring();
-  row.Text("in danger");
+  row.Text("device in danger");
   row.Pointer();
   row.Text("to the centre");
-  row.Arrow();
-  row.Text("heading");
   row.Text("pattern: at risk");
   row.Text("north is up");
 }

@@ -44,16 +44,31 @@ double DrawName(QPainter& painter, const QPointF& at, const QColor& color, const
 
 CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve) {
   if (curve.empty()) return {0.0, 1.0};
-  // Without the steep rise at the start, which would flatten all that follows.
-  const double from = curve.front().episode + (curve.back().episode - curve.front().episode) / 3.0;
-  double low = curve.back().mean_return;
-  double high = low;
-  for (const CurvePoint& point : curve) {
-    high = std::max(high, point.mean_return);
-    if (point.episode >= from) low = std::min(low, point.mean_return);
+  const auto [low, high] = std::minmax_element(
+      curve.begin(), curve.end(),
+      [](const auto& a, const auto& b) { return a.mean_return < b.mean_return; });
+  const double margin = 0.06 * std::max(high->mean_return - low->mean_return, 1e-6);
+  const bool is_bent = low->mean_return < 0.0 && high->mean_return > 0.0;
+  return {low->mean_return - margin,
+          high->mean_return + (is_bent ? 0.06 * high->mean_return : margin)};
+}
+
+ReturnScale::ReturnScale(const CurveRange& range)
+    : range_(range), unit_(range.low < 0.0 && range.high > 0.0 ? range.high / 3.0 : 0.0) {}
+
+double ReturnScale::Height(double value) const {
+  return is_bent() && value < 0.0 ? -unit_ * std::log1p(-value / unit_) : value;
+}
+
+std::vector<double> ReturnScale::Ticks(int max) const {
+  if (!is_bent()) return RoundTicks(range_, max);
+  std::vector<double> ticks = RoundTicks({0.0, range_.high}, std::max(3, max / 2));
+  for (double power = 1.0; power <= -range_.low; power *= 10.0) {
+    for (const double tick : {-power, -3.0 * power}) {
+      if (tick >= range_.low && tick < -unit_) ticks.push_back(tick);
+    }
   }
-  const double margin = 0.06 * std::max(high - low, 1e-6);
-  return {low - margin, high + margin};
+  return ticks;
 }
 
 std::vector<double> RoundTicks(const CurveRange& range, int max) {
@@ -101,11 +116,14 @@ void CurveWidget::paintEvent(QPaintEvent*) {
   const auto x_of = [&](double episode) {
     return room.left() + (episode - episodes.low) / (episodes.high - episodes.low) * room.width();
   };
+  const ReturnScale scale(returns);
+  const double lowest = scale.Height(returns.low);
   const auto y_of = [&](double value) {
-    return room.bottom() - (value - returns.low) / (returns.high - returns.low) * room.height();
+    return room.bottom() -
+           (scale.Height(value) - lowest) / (scale.Height(returns.high) - lowest) * room.height();
   };
   const int decimals = returns.high - returns.low < 4.0 ? 2 : 0;
-  for (const double tick : RoundTicks(returns, std::max(3, int(room.height()) / (2 * row)))) {
+  for (const double tick : scale.Ticks(std::max(3, int(room.height()) / (2 * row)))) {
     painter.setPen(kGrid);
     painter.drawLine(QPointF(room.left(), y_of(tick)), QPointF(room.right(), y_of(tick)));
     painter.setPen(kReturn);
@@ -128,11 +146,8 @@ void CurveWidget::paintEvent(QPaintEvent*) {
   const double end = DrawName(painter, {right + 16.0, 4.0 + row / 2.0}, kSuccess,
                               Text("success " + Number(100.0 * now.success, 0) + " %"));
   painter.setPen(kWords);
-  const bool is_cut = std::any_of(curve_.begin(), curve_.end(), [&](const CurvePoint& point) {
-    return point.mean_return < returns.low;
-  });
   painter.drawText(QRectF(end, 4.0, width() - 8.0 - end, row), Qt::AlignRight,
-                   is_cut ? "by episode, the start is lower" : "by episode");
+                   scale.is_bent() ? "by episode, logarithmic below 0" : "by episode");
 }
 
 void CurveWidget::DrawCurves(QPainter& painter, const QRectF& room,

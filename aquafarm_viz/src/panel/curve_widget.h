@@ -20,9 +20,26 @@ struct CurveRange {
   double high{};
 };
 
-/// Returns the range of the mean returns after the first third of the episodes, because returns at
-/// the start of a training are far below the rest.
+/// Returns the range of the mean returns, with a margin.
 CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve);
+
+/// A scale that is linear above 0 and, if the returns are on both sides of 0, logarithmic below,
+/// because returns at the start of a training are far below the rest.
+class ReturnScale {
+ public:
+  explicit ReturnScale(const CurveRange& range);
+
+  /// Returns the height of a return on the scale.
+  double Height(double value) const;
+  /// Returns the values of the ticks: at most about `max` above 0, and powers of ten and three
+  /// times these below.
+  std::vector<double> Ticks(int max) const;
+  bool is_bent() const { return unit_ > 0.0; }
+
+ private:
+  CurveRange range_;
+  double unit_{};  // where the logarithmic part bends; 0: linear
+};
 
 /// Returns the multiples of 1, 2 or 5 times a power of ten within a range: as many as fit into
 /// `most`, but at least three.

@@ -350,8 +350,12 @@ std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const ch
   const std::string now = device.risk_now < 0.0 ? Number(device.risk_now, 0) + " now" : "";
   if (device.arrivals.empty()) return now;
   const RingArrival& next = device.arrivals.front();
+  const RingArrival& worst = device.arrivals.back();
+  const std::string then = device.arrivals.size() < 2 ? ""
+                                                      : ", " + Number(worst.risk, 0) + between +
+                                                            AheadText(spec, worst.steps);
   return now + (now.empty() ? "" : ", ") + Number(next.risk, 0) + between +
-         AheadText(spec, next.steps);
+         AheadText(spec, next.steps) + then;
 }
 
 std::pair<std::string, std::string> NameAndDanger(

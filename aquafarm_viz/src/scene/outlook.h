@@ -87,7 +87,8 @@ std::size_t CountInDanger(const Outlook& outlook);
 std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook);
 
 /// Returns the danger to a device in a few characters: "risk -10 in 6.5 h", "risk -5 now" if a ring
-/// covers it, "risk -5 now, -20 in 6.5 h" if a worse one follows; empty if none reaches it. Where
+/// covers it, "risk -5 now, -20 in 6.5 h" if worse ones follow, of which the next and the worst are
+/// named; empty if none reaches it. Where
 /// the winds of the rings are given: "gale now, storm in 6.5 h", and the worst ring to come if it
 /// is another one: ", hurricane in 9 h".
 std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);

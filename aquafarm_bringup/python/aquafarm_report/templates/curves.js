@@ -20,6 +20,7 @@ for (const chart of CURVES.charts) {
     labelsSeparateLines: false,
     connectSeparatedPoints: true,
     strokeWidth: 2,
+    xRangePad: returns && chart.marks.length ? 12 + 14 * chart.marks.length : 0,
     xlabel: "episode",
     gridLineColor: "rgba(128, 128, 128, 0.3)",
     axisLabelColor: "currentColor",
@@ -115,10 +116,14 @@ function reference(canvas, area, dygraph, lines, onScale) {
 // Draws the mean of greedy play of each run with its interval at the right edge.
 function mark(canvas, area, dygraph, marks, onScale) {
   const at = value => dygraph.toDomYCoord(onScale(value));
+  if (!marks.length) return;
   canvas.save();
+  const strip = area.x + area.w - 12 - 14 * marks.length;
+  canvas.fillStyle = "rgba(128, 128, 128, 0.16)";
+  canvas.fillRect(strip + 6, area.y, area.x + area.w - strip - 6, area.h);
   canvas.lineWidth = 2;
   marks.forEach(([mean, low, high], i) => {
-    const x = area.x + area.w - 8 - 12 * (marks.length - 1 - i);
+    const x = area.x + area.w - 10 - 14 * (marks.length - 1 - i);
     canvas.strokeStyle = canvas.fillStyle = CURVES.colours[i];
     canvas.beginPath();
     canvas.arc(x, at(mean), 5, 0, 2 * Math.PI);

@@ -54,7 +54,9 @@ class TestRun(unittest.TestCase):
                                      run_child=run_child, run_children=run_children,
                                      enter_ros=lambda: False, end_session=lambda child: None,
                                      build_core=lambda name: None, bootstrap=lambda *words: None,
-                                     run_bootstrap=lambda *words: codes.get(words[0], 0)), \
+                                     run_bootstrap=lambda *words: codes.get(words[0], 0),
+                                     run_bootstraps=lambda *steps: [codes.get(words[0], 0)
+                                                                    for words in steps]), \
                     contextlib.redirect_stdout(io.StringIO()) as out, \
                     contextlib.redirect_stderr(out):
                 code = tests.run(fast)
@@ -121,6 +123,11 @@ class TestRun(unittest.TestCase):
         self.assertIn("the stage 'aquafarm_sim core' broke off; the end of ", words)
         _, _, results, _ = self.run_with(fast=True, run_ros_tests=1)
         self.assertIn("stage-tests_through_ROS.xml", results)
+
+    def test_a_failed_build_ends_the_whole_at_once(self):
+        with self.assertRaises(SystemExit) as end:
+            self.run_with(fast=True, build=7)
+        self.assertEqual(7, end.exception.code)
 
     def test_what_cannot_be_installed_is_left_out_with_a_word(self):
         code, _, _, words = self.run_with(fast=True, **{"--install": 3})

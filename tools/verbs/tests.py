@@ -2,6 +2,7 @@
 """./aquafarm test: builds and runs every test."""
 import contextlib
 import dataclasses
+import itertools
 import os
 import pathlib
 import shutil
@@ -146,13 +147,22 @@ def is_empty(path):
     return not path.is_file() or path.stat().st_size == 0
 
 
+def run_bootstraps(*steps):
+    """Runs ./aquafarm for some of its own steps at the same time; returns their exit codes."""
+    return run_children([(["bash", ROOT / "aquafarm", *words], {}) for words in steps])
+
+
 def build_workspace(stages):
     extras = {**EXTRAS, **(SLURM if os.environ.get("AQUAFARM_TEST_SLURM") == "1" else {})}
-    for left_out, packages in extras.items():
+    stages.begin("installing what is missing")
+    bootstrap("setup")
+    stages.begin("building the workspace, and installing what only tests need")
+    built, _ = run_bootstraps(["build"], ["--install", *itertools.chain(*extras.values())])
+    if built != 0:
+        sys.exit(built)
+    for left_out, packages in extras.items():  # nothing is left to do if all were installed
         if run_bootstrap("--install", *packages) != 0:
             say(f"{', '.join(packages)} cannot be installed: {left_out}")
-    stages.begin("building the workspace")
-    bootstrap("build")
     use_ccache()
     for folder in (RESULTS, WS / "build/test_results", *WS.glob("core/*/test_results")):
         shutil.rmtree(folder, ignore_errors=True)

@@ -87,11 +87,6 @@ function(aquafarm_compile_fast target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# Compiles a test without optimisation, which takes two thirds of the time of aquafarm_compile_fast.
-function(aquafarm_compile_test target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O0>)
-endfunction()
-
 # aquafarm_add_core_tests(PATHS LIBRARY… [TOGETHER FOLDER…]): adds test/<folder>/<name>.cpp as the ctest
 # test <name>, for each path <folder>/<name>. The tests of a folder share the program <folder>_tests,
 # which links the libraries; those of all FOLDERs share that of the first one. The result of each is
@@ -104,7 +99,7 @@ function(aquafarm_add_core_tests paths)
       ${AQUAFARM_CORE_CMAKE_DIR}/../test/support/main.cpp)
     target_link_libraries(aquafarm_tests_main PRIVATE GTest::gtest)
     aquafarm_set_warnings(aquafarm_tests_main)
-    aquafarm_compile_test(aquafarm_tests_main)
+    aquafarm_compile_fast(aquafarm_tests_main)
   endif()
   set(programs)
   foreach(path IN LISTS paths)
@@ -128,7 +123,7 @@ function(aquafarm_add_core_tests paths)
     target_link_libraries(${program} PRIVATE ${arg_UNPARSED_ARGUMENTS} GTest::gtest)
     target_compile_definitions(${program} PRIVATE AQUAFARM_CORE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
     aquafarm_set_warnings(${program})
-    aquafarm_compile_test(${program})
+    aquafarm_compile_fast(${program})
     aquafarm_compile_by_folder(${program} ${together})
   endforeach()
   set(AQUAFARM_TEST_PROGRAMS ${programs} PARENT_SCOPE)

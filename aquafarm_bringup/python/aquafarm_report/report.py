@@ -94,17 +94,14 @@ def report_run(run, folder, episodes):
                                       (run / "scenario.yaml").read_text(encoding="utf-8"))))
 
 
+_RUNS = "median of the runs, shaded from the lowest to the highest"
 CAPTIONS = {
-    "rewards": "Return of each training episode of the first run and its 50-episode mean, by time "
-               "steps and by episodes (Fig. 12a of the paper); higher is better",
-    "average_rewards": "Mean return of all episodes so far, over all runs (Fig. 12b); higher is "
-                       "better",
-    "mean_square_error": "50-episode mean square error of the value estimates (Fig. 12c): median of "
-                         "the runs, shaded their middle half, thin each run",
-    "repeated_trainings": "50-episode mean return over the runs of each learner (Fig. 14): their mean, "
-                          "shaded between their lowest and highest value",
-    "mean_score": "Return per step during the training (Fig. 13): mean of the runs, shaded between "
-                  "their lowest and highest value",
+    "rewards": "50-episode mean return of the first run, by time steps and by episodes (Fig. 12a of the "
+               "paper); higher is better",
+    "average_rewards": f"Mean return of all episodes so far (Fig. 12b): {_RUNS}; higher is better",
+    "mean_square_error": f"50-episode mean square error of the value estimates (Fig. 12c): {_RUNS}",
+    "repeated_trainings": f"50-episode mean return of each learner (Fig. 14): {_RUNS}",
+    "mean_score": f"Return per step during the training (Fig. 13): {_RUNS}",
     "evaluation": "Return in the evaluation episodes, with 95 % intervals",
     "losses": "Losses of the trained policies in money",
 }

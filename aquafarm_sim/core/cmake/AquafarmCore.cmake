@@ -12,9 +12,10 @@ if(AQUAFARM_FUZZ)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
-# aquafarm_compile_by_folder(TARGET [FOLDER…]): compiles the sources of a folder as one, which takes a
-# third of the time (docs/decisions/compile_by_folder.md), and those of all FOLDERs, whose paths are
-# relative to the current one, as one, too. CMake 3.18 has groups.
+# aquafarm_compile_by_folder(TARGET [ALL | FOLDER…]): compiles the sources of a folder as one, which
+# takes a third of the time (docs/decisions/compile_by_folder.md), and those of all FOLDERs, whose paths
+# are relative to the current one, as one, too. ALL: all sources, for nodes, where the headers of ROS
+# take most of the time of each folder. CMake 3.18 has groups.
 option(AQUAFARM_UNITY "Compile the sources of each folder as one" ON)
 function(aquafarm_compile_by_folder target)
   if(NOT AQUAFARM_UNITY OR CMAKE_VERSION VERSION_LESS 3.18)
@@ -27,25 +28,16 @@ function(aquafarm_compile_by_folder target)
     # The same in every build that compiles the folder, so that ccache knows it again.
     string(REGEX REPLACE "^.*/src/" "src/" group "${folder}")
     string(MAKE_C_IDENTIFIER "${group}" group)
-    if(NOT group)
-      set(group here)
-    elseif(folder IN_LIST ARGN)
+    if("ALL" IN_LIST ARGN OR folder IN_LIST ARGN)
       set(group together)
+    elseif(NOT group)
+      set(group here)
     endif()
     set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${group})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   # g++ warns of local types outside the file that it was given.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
-endfunction()
-
-# aquafarm_compile_as_one(TARGET): compiles all sources of a target as one: for nodes, where the headers
-# of ROS take most of the time of each folder.
-function(aquafarm_compile_as_one target)
-  if(AQUAFARM_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
-    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
-  endif()
 endfunction()
 
 function(aquafarm_set_warnings target)

@@ -4,6 +4,9 @@ window.charts = [];
 // Runs differ by their dashes too, so that they can be told apart in a print without colours.
 const LINES = [[2, 3], [8, 4], [1, 0]];  // of references
 const DASHES = [null, [9, 4], [2, 3], [12, 4, 2, 4], [5, 5], [1, 6], [14, 6]];
+// Room for the marks of greedy play at the right edge [pixels]; all charts have the same episodes.
+const MARKS = Math.max(...CURVES.charts.map(chart => (chart.marks || []).length));
+const PAD = MARKS ? 12 + 14 * MARKS : 0;
 let moving = false;
 for (const chart of CURVES.charts) {
   const unit = chart.bend;
@@ -20,7 +23,7 @@ for (const chart of CURVES.charts) {
     labelsSeparateLines: false,
     connectSeparatedPoints: true,
     strokeWidth: 2,
-    xRangePad: returns && chart.marks.length ? 12 + 14 * chart.marks.length : 0,
+    xRangePad: PAD,
     xlabel: "episode",
     gridLineColor: "rgba(128, 128, 128, 0.3)",
     axisLabelColor: "currentColor",

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sources that need no libtorch: planners, rescue plans, and policies that are already trained. The
-# Python module of aquafarm_gym contains them, too.
-set(AQUAFARM_PLAIN_SOURCES
+# The objects aquafarm_agents_plain, which need no libtorch: planners, rescue plans, and policies that
+# are already trained. The Python module of aquafarm_gym contains them, too, and adds them under the
+# same name where aquafarm_agents is not built, so that ccache knows them again. It needs the target
+# aquafarm::core, nlohmann_json and AquafarmCore.cmake; without AQUAFARM_BLAS_INCLUDE the policies of
+# PPO multiply by Eigen.
+set(plain_sources
   src/base/options.cpp
   src/base/schedule.cpp
   src/base/storage.cpp
@@ -50,7 +53,7 @@ set(AQUAFARM_PLAIN_SOURCES
   src/rescue/what_if.cpp)
 
 # They need BLAS, for processors without AVX2.
-set(AQUAFARM_PPO_POLICY_SOURCES
+set(ppo_policy_sources
   src/networks/gemm.cpp
   src/networks/lstm_cell.cpp
   src/networks/repetition_penalty.cpp
@@ -68,3 +71,22 @@ set(AQUAFARM_PPO_POLICY_SOURCES
   src/ppo/token_layout.cpp
   src/ppo/token_symmetry.cpp
   src/training/token_policy.cpp)
+list(TRANSFORM plain_sources PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
+list(TRANSFORM ppo_policy_sources PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
+
+add_library(aquafarm_agents_plain OBJECT ${plain_sources} ${ppo_policy_sources})
+target_compile_features(aquafarm_agents_plain PUBLIC cxx_std_17)
+set_target_properties(aquafarm_agents_plain PROPERTIES
+  CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+target_include_directories(aquafarm_agents_plain
+  PUBLIC ${CMAKE_CURRENT_LIST_DIR}/include PRIVATE ${CMAKE_CURRENT_LIST_DIR}/src)
+target_link_libraries(aquafarm_agents_plain
+  PUBLIC aquafarm::core PRIVATE nlohmann_json::nlohmann_json)
+if(AQUAFARM_BLAS_INCLUDE)
+  target_include_directories(aquafarm_agents_plain SYSTEM PRIVATE ${AQUAFARM_BLAS_INCLUDE})
+else()
+  set_source_files_properties(${ppo_policy_sources} PROPERTIES
+    COMPILE_DEFINITIONS AQUAFARM_GEMM_BY_EIGEN)
+endif()
+aquafarm_set_warnings(aquafarm_agents_plain)
+aquafarm_compile_by_folder(aquafarm_agents_plain)

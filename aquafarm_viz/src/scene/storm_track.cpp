@@ -117,7 +117,7 @@ Course Extrapolated(const DisasterState& disaster, const TrackPoint& present, do
 // Continues a forecast after its last point, as the farm does (aquafarm/farm/forecast.h): along its
 // last two points, or with the present motion if it has one point, until the true track ends.
 void Continue(Track& ahead, const Track& forecast, const DisasterState& disaster, double until) {
-  const TrackPoint last = forecast.back();
+  const TrackPoint& last = forecast.back();
   const double steps = until - last.step;
   if (!(steps > 0.0)) return;
   if (forecast.size() == 1) return ahead.push_back(Moved(last, disaster, steps));

@@ -256,6 +256,16 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual({"1": (1, 0), "2": (0, 0)},
                          {text.get_text(): text.xy for text in self.axes.texts})
 
+    def test_rings_are_labelled_away_from_the_stops_also_if_there_are_none(self):
+        self.axes.set_xlim(-1.0, 10.0)
+        self.axes.set_ylim(-1.0, 10.0)
+        step = {"cell": [2, 5], "aboard": 0, "disasters": [{"x": 5.0, "y": 5.0, "radii": [3.0]}]}
+        route_figure._disasters(self.axes, [{**step, "action": "east"}])
+        route_figure._disasters(self.axes, [{**step, "action": "pickup"}])
+        alone, away = (text.xy for text in self.axes.texts[:1] + self.axes.texts[-1:])
+        self.assertAlmostEqual(3.0, float(np.hypot(alone[0] - 5.0, alone[1] - 5.0)))
+        np.testing.assert_allclose([8.0, 5.0], away, atol=1e-9)
+
     def test_devices_that_were_not_fetched_are_marked(self):
         chart = {"width": 4, "height": 3, "islands": [], "rocks": [], "ports": [[0, 0]],
                  "devices": [{"cell": [1, 0]}, {"cell": [3, 2]}]}

@@ -94,7 +94,8 @@ TEST(DangerMarkers, NameSeveralDisastersOutsideAboveTheNextDanger) {
   scene.state.disasters.push_back(test::MakeDisaster(1, 60.0F, 12.0F));
   scene.state.disasters[1].kind = aquafarm_msgs::DisasterState::RED_TIDE;
   const auto markers = scene.Draw();
-  EXPECT_EQ(markers.at({"outside", 0}).text, "typhoon, centre 20 km W, red tide, centre 48 km E");
+  EXPECT_EQ(markers.at({"outside", 0}).text,
+            "typhoon, centre 20 km W, stands still\nred tide, centre 48 km E, E at 10 km/h");
   EXPECT_GT(markers.at({"outside", 0}).pose.position.y, markers.at({"alarm", 0}).pose.position.y);
 }
 
@@ -256,7 +257,7 @@ TEST(DangerMarkers, FollowTheTrackOfTheScenario) {
                                    "    ring_winds_kt: [64, 34]\n");
   const auto named = scene.Draw();
   EXPECT_EQ(named.at({"alarm", 0}).text, "typhoon: gale over F0 now, hurricane force in 30 min");
-  EXPECT_EQ(named.at({"danger_label", 0}).text, "F0: hurricane force in 30 min");
+  EXPECT_EQ(named.at({"danger_label", 0}).text, "F0: gale now, hurricane in 30 min");
 }
 
 TEST(DangerMarkers, PutAHeadlineThatIsWiderThanTheFarmInTwoLines) {

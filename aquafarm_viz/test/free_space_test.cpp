@@ -43,5 +43,22 @@ TEST(FreeSpace, KnowsWhatIsFreeAndWhichLabelALineCrosses) {
   EXPECT_FALSE(space.IsFree({10, 90, 20, 10}));
 }
 
+TEST(FreeSpace, TakesTheNearestPlaceThatCoversNothing) {
+  FreeSpace space({300, 200});
+  const cv::Rect symbol(100, 80, 40, 40);
+  space.Block(symbol);
+  const auto first = space.Take({30, 12}, {120.0, 100.0}, 100.0);
+  ASSERT_TRUE(first);
+  EXPECT_EQ((*first & symbol).area(), 0);
+  const auto second = space.Take({30, 12}, {120.0, 100.0}, 100.0);
+  ASSERT_TRUE(second);
+  EXPECT_EQ((*second & symbol).area(), 0);
+  EXPECT_EQ((*second & *first).area(), 0);
+  EXPECT_FALSE(space.Take({30, 12}, {120.0, 100.0}, 5.0)) << "out of reach";
+  EXPECT_FALSE(space.Take({400, 12}, {120.0, 100.0}, 1e4)) << "wider than the map";
+  space.Block({-50, -50, 1000, 1000});
+  EXPECT_FALSE(space.Take({3, 3}, {120.0, 100.0}, 1e4));
+}
+
 }  // namespace
 }  // namespace aquafarm_viz

@@ -427,6 +427,11 @@ TEST(CurveWidget, IsLinearAboveZeroAndLogarithmicBelow) {
             (std::vector<double>{0.0, 100.0, 200.0, 300.0, -300.0, -1000.0, -3000.0}));
   EXPECT_FALSE(ReturnScale({-5000.0, -300.0}).is_bent());
   EXPECT_EQ(ReturnScale({-5000.0, -300.0}).Height(-400.0), -400.0);
+  for (const double sign : {1.0, -1.0}) {
+    const CurveRange one = RangeOfReturns({{0.0, sign * 5.0, 0.0}, {9.0, sign * 300.0, 1.0}});
+    EXPECT_FALSE(ReturnScale(one).is_bent()) << "returns of one sign";
+    EXPECT_LT(one.low, one.high);
+  }
 }
 
 TEST(RanchWidget, ShowsTheSymbolOfEachDeviceNextToItsKind) {

@@ -260,7 +260,8 @@ def draw_mean_score(path, contestants, runs, references):
     for letter, panel in [("c", contestants), *panels]:
         whose = panel[0].label if len(panel) == 1 else "All learners"
         _label(all_axes[letter], f"{whose} (Fig. 13{letter})", "return per step")
-        plot_mean_score(all_axes[letter], panel, runs, references, all_axes["c"].get_ylim())
+        limits = None if letter == "c" else all_axes["c"].get_ylim()
+        plot_mean_score(all_axes[letter], panel, runs, references, limits)
     save(figure, path)
 
 
@@ -277,7 +278,7 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
         ends.append(_plot_shaded(axes, episodes, scores, one, one.label))
     axes.axhline(0.0, color="black", linewidth=0.5, label="_zero")
     ends += _plot_references(axes, references, max(end[0] for end in ends), digits=2)
-    if limits and limits != (0.0, 1.0):
+    if limits:
         axes.set_ylim(limits)
     _name_ends(axes, ends)
 

@@ -67,6 +67,7 @@ def draw_unfinished(path, routes, title):
     at the same scale.
 
     routes: {name of the ranch: route file}
+    title: what they have in common
     """
     columns = 3
     rows = -(-(len(routes) + 1) // columns)  # the last place is for the explanation
@@ -240,7 +241,8 @@ def _rings(disaster):
 
 def _disasters(axes, steps):
     """Draws the rings at the start strongly and the outermost ones of some later steps faintly."""
-    stops = np.array([step["cell"] for step in steps if step.get("action") in _STOPS], dtype=float)
+    stops = np.array([step["cell"] for step in steps if step.get("action") in _STOPS],
+                     dtype=float).reshape(-1, 2)
     inside = axes.viewLim.padded(-1.5)
     for at in np.linspace(0, len(steps) - 1, _SHOWN_STEPS).astype(int):
         style = {"linewidth": 1.6, "alpha": 0.9} if at == 0 else {"linewidth": 0.9, "alpha": 0.6}

@@ -77,7 +77,8 @@ def storm_pointer(plan, frame):
     name = plan["storm"]["name"] or plan["storm"]["kind"]
     return {"xy": (frame.width / 2 + east * frame.scale / reach,
                    frame.height / 2 - north * frame.scale / reach), "bearing": bearing,
-            "words": f"{name}: centre {km:,.0f} km {compass(bearing)} ({bearing:03.0f}°) at {clock.time(clock.at(0))}"}
+            "words": f"{name}: centre {km:,.0f} km {compass(bearing)} "
+                     f"({round(bearing) % 360:03d}°) at {clock.time(clock.at(0))}"}
 
 
 def _coast(ranch, frame):

@@ -195,7 +195,7 @@ def _latest(plan, clock):
         for one in plan["devices"][first]["deadlines"] if first is not None else []:
             if one["probability"] == 0.8 and one["leave"] and not one.get("open"):
                 parts.append(f"{clock.time(one['leave'])} ({plan['devices'][first]['name']})")
-    return f"The chance stays at 80 % until {some(parts, ', ')}. " if parts else ""
+    return f"For a chance of at least 80 %, leave by {some(parts, ', ')}. " if parts else ""
 
 
 def _lose(plan):

@@ -65,11 +65,13 @@ def _library(name):
                           "libjs-dygraphs; run ./aquafarm setup") from None
 
 
-def bend(rows):
+def bend(rows, lines, marks):
     """Returns the unit of a scale that is linear above 0 and logarithmic below, where the returns of
-    first episodes are far away; None if the means are not on both sides of 0."""
+    first episodes and of RANDOM are far away; None if no mean is above 0, or nothing below."""
     means = [mean for row in rows for mean in row[1:] if mean is not None]
-    return max(means) / 3.0 if min(means) < 0.0 < max(means) else None
+    shown = [*means, *(line["value"] for line in lines),
+             *(value for mark in marks for value in mark if value is not None)]
+    return max(means) / 3.0 if min(shown) < 0.0 < max(means) else None
 
 
 def show(labels, columns, notes=(), players=()):
@@ -79,12 +81,11 @@ def show(labels, columns, notes=(), players=()):
     players: the runs in the order of labels, whose mean returns in greedy play and 95 % intervals
         are marks, and references, whose mean returns are lines
     """
-    shown = [one for one in players if one.rows]
     lines = [{"label": one.label, "value": round(float(np.mean(references.column(one, "return"))), 1)}
-             for one in shown if not one.is_run]
+             for one in players if one.rows and not one.is_run]
     marks = [[round(value, 1) if math.isfinite(value) else None for value in
               references.mean_interval(references.column(one, "return"), one.distinct)]
-             for one in shown if one.is_run]
+             if one.rows else [None] * 3 for one in players if one.is_run]
     charts = []
     for name, title in CURVES:
         rows = rows_of(columns, name)
@@ -92,7 +93,7 @@ def show(labels, columns, notes=(), players=()):
             continue
         chart = {"id": f"curve_{name}", "title": title, "rows": rows}
         if name == "return":
-            chart.update(lines=lines, marks=marks, bend=bend(rows))
+            chart.update(lines=lines, marks=marks, bend=bend(rows, lines, marks))
             if marks:
                 chart["title"] += "; grey: greedy play after the training, 95 % interval"
             if chart["bend"]:

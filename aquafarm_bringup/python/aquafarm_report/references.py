@@ -126,10 +126,14 @@ def verdict(players):
     share = share_text(best, optimum_of(players))
     facts = [] if share == "–" else ["its returns sum up to less than 0" if share == "below 0" else
                                      f"it reaches {share}"]
-    planner = next((one for one in players if one.label == "planner" and one.rows), None)
+    planner = next((one for one in players if one.label == "planner" and one.rows
+                    and not one.is_run), None)
     for other in [*runs[1:2], *([planner] if planner else [])]:
         gap = difference(best, other)
         if gap is None:
+            continue
+        if gap[1] <= 0.0 <= gap[2]:
+            facts.append(f"not distinct from {other.label}")
             continue
         side = "above" if gap[0] >= 0.0 else "below"
         mean, *bounds = gap if gap[0] >= 0.0 else (-gap[0], -gap[2], -gap[1])
@@ -138,7 +142,7 @@ def verdict(players):
         return ""
     if len(runs) == 1:
         return f"{best.label}: {', '.join(facts)}."
-    return (f"{best.label} is the best run: {', '.join(facts)}. One training each does not rank their "
+    return (f"{best.label} has the highest return: {', '.join(facts)}. One training each does not rank their "
             "algorithms.")
 
 

@@ -92,7 +92,7 @@ def strength(rho):
 
 
 def verdict(layers, results):
-    """One sentence on how far the return goes with the sea; empty if nothing is known."""
+    """Words on the layer of the sea that the return goes with most; empty if nothing is known."""
     known = [(abs(result["spearman_rho"]), sea_words(layer[0]), result["spearman_rho"])
              for layer, result in zip(layers, results) if result["spearman_rho"] is not None]
     if not known:
@@ -100,7 +100,7 @@ def verdict(layers, results):
     size, name, rho = max(known)
     much = "hardly" if size < 0.1 else "a little" if size < 0.4 else "in part" if size < 0.7 else \
         "mostly"
-    return f"The return goes {much} with the sea: {name} most, rank correlation {signed(rho)}"
+    return f"It depends {much} on the {name} of the sea, rank correlation {signed(rho)}"
 
 
 def device_distance(values, devices):

@@ -131,9 +131,11 @@ int MoveBearingDeg(std::uint8_t action) {
 }
 
 std::string CompassPoint(int bearing_deg) {
-  static constexpr std::array<const char*, 8> kPoints{"N", "NE", "E", "SE", "S", "SW", "W", "NW"};
+  static constexpr std::array<const char*, 16> kPoints{"N",  "NNE", "NE", "ENE", "E",  "ESE",
+                                                       "SE", "SSE", "S",  "SSW", "SW", "WSW",
+                                                       "W",  "WNW", "NW", "NNW"};
   const int in_circle = ((bearing_deg % 360) + 360) % 360;
-  return kPoints[static_cast<std::size_t>(((in_circle + 22) / 45) % 8)];
+  return kPoints[static_cast<std::size_t>(((4 * in_circle + 45) / 90) % 16)];
 }
 
 std::string PortLetter(std::int32_t id) {

@@ -117,8 +117,8 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlo
       space.Block(Around(at, 30.0 * layout.unit));  // the delivered devices stand there in rows
     }
   }
-  for (const auto& device : spec.devices) {
-    if (!InGrid(spec, device.x, device.y)) continue;
+  for (const auto& device : spec.devices) {  // where some were fetched
+    if (device.self_propelled || !InGrid(spec, device.x, device.y)) continue;
     space.Block(Around(layout.view.ToPixel(device.x, device.y), layout.device_radius_px()));
   }
   for (const auto& ship : state.ships) {
@@ -163,13 +163,14 @@ std::set<std::int32_t> LabelDanger(cv::Mat& map, const FarmSpec& spec, const Far
                                    const Outlook& outlook, FreeSpace& space, const Layout& layout,
                                    const Fonts& fonts) {
   std::set<std::int32_t> labelled;
+  std::size_t tries = 0;
   FreeSpace water = space;
   BlockLand(spec, water, layout);
   for (const DeviceOutlook& one : outlook.devices) {
     const DeviceState* device = Find(state, one.id);
     const std::string danger = DangerText(spec, one);
     if (device == nullptr || danger.empty()) continue;
-    if (labelled.size() == kMaxDangerLabels) break;
+    if (tries++ == kMaxDangerLabels) break;
     const std::string text = DeviceLabel(one.id) + ": " + danger;
     const cv::Point2d at = layout.view.ToPixel(device->x, device->y);
     const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins),

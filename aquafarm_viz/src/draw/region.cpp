@@ -25,7 +25,7 @@ using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr double kSmallestSide = 62.0;  // [design units]
+constexpr double kSmallestSide = 58.0;  // [design units]
 
 bool IsOutside(const FarmSpec& spec, const DisasterState& disaster) {
   return IsDrawn(disaster) && !IsCentreInFarm(spec, disaster);
@@ -124,10 +124,16 @@ RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subj
                                 " in " + HoursText(ahead_s);
     const auto then = static_cast<std::time_t>(state.world_time.sec + ahead_s);
     const std::string time = spec.has_start_time ? LocalTimeText(spec, then, "%d %b %H:%M") : "";
-    const std::string heading = is_over ? over
-                                : std::isfinite(subject.danger)
-                                    ? "REACHES THE RANCH IN " + AheadText(spec, subject.danger)
-                                    : "COMES NEARER";
+    const std::string heading =
+        is_over ? over
+        : std::isfinite(subject.danger)
+            ? (now.step + subject.danger > course.known_until ? "REACHES THE RANCH IN ABOUT "
+                                                              : "REACHES THE RANCH IN ") +
+                  AheadText(spec, subject.danger)
+            : "COMES NEARER";
+    if (subject.nearest.step > course.known_until) {
+      return {heading, {nearest, SourceText(spec, state.disasters[subject.disaster], course)}};
+    }
     return {heading, {nearest, time}};
   }
   if (is_over) return {over, {centre, ""}};

@@ -105,8 +105,8 @@ class Labels {
   // Returns nullopt if there is none, or the last place tried if the text must be shown.
   std::optional<Plate> Place(const std::string& text, double x, double y, bool must_show) {
     const auto lines = 1 + std::count(text.begin(), text.end(), '\n');
-    const double half_width =
-        std::min(0.5 * (TextWidth(text) + 0.8) * word_, 0.5 * spec_.width - 0.5 - kRim);
+    const double half_width = std::min(0.5 * (TextWidth(text) + 0.8) * word_,
+                                       std::max(0.1, 0.5 * spec_.width - 0.5 - kRim));
     const double half_height = (0.1 + 0.5 * double(lines)) * word_;
     const double row = std::max(1.5, 1.5 * word_) + half_height - 0.6 * word_;
     Plate plate{x, y, half_width, half_height};
@@ -117,10 +117,10 @@ class Labels {
     for (const auto& [is_near, avoids_land] : kTries) {
       for (const cv::Point2d& offset : OffsetsOf(half_width, row, must_show)) {
         if ((cv::norm(offset) <= near) != is_near) continue;
-        plate.x = std::clamp(x + offset.x, half_width - 0.5 + kRim,
-                             spec_.width - 0.5 - kRim - half_width);
-        plate.y = std::clamp(y + offset.y, half_height - 0.5 + kRim,
-                             spec_.height - 0.5 - kRim - half_height);
+        plate.x = std::max(half_width - 0.5 + kRim,
+                           std::min(spec_.width - 0.5 - kRim - half_width, x + offset.x));
+        plate.y = std::max(half_height - 0.5 + kRim,
+                           std::min(spec_.height - 0.5 - kRim - half_height, y + offset.y));
         if (Covers(plate, used_) || (avoids_land && Covers(plate, land_))) continue;
         used_.push_back(plate);
         labels_.push_back(plate);
@@ -213,7 +213,7 @@ void AddLeader(MarkerArray& array, const Maker& maker, const std::string& space,
 // Returns a text in two lines if one is too wide [heights of a letter]. The first takes all parts
 // that fit, because a time belongs to the part before it.
 std::string InLines(std::string text, double max_width) {
-  if (TextWidth(text) <= max_width) return text;
+  if (TextWidth(text) <= max_width || text.find('\n') != std::string::npos) return text;
   std::size_t end = std::string::npos;
   for (std::size_t at = text.find(", "); at != std::string::npos; at = text.find(", ", at + 1)) {
     if (end == std::string::npos || TextWidth(text.substr(0, at + 1)) <= max_width) end = at;
@@ -247,7 +247,7 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     AddCircle(array, maker, device, WorstRisk(one));
     circled.insert(one.id);
     if (labelled.size() == kMaxLabels) continue;
-    const std::string text = DeviceLabel(one.id) + ": " + WorstText(spec, one);
+    const std::string text = DeviceLabel(one.id) + ": " + NowAndWorstText(spec, one);
     const auto plate = labels.Place(text, device.x, device.y, /*must_show=*/labelled.empty());
     if (!plate) continue;
     AddText(array, maker, "danger_label", one.id, *plate, text);
@@ -312,18 +312,21 @@ void AddLines(MarkerArray& array, const Maker& maker, const FarmSpec& spec, cons
                                      lines, maker.line_m(), color));
 }
 
-// Returns what the pointers point to: for one its strength, place and course, for several the
-// places.
+// Returns what the pointers point to: strength, place and course, of several disasters in a line
+// each.
 std::string OutsideText(const FarmSpec& spec, const FarmState& state,
                         const std::vector<Course>& courses,
                         const std::vector<std::size_t>& outside) {
+  constexpr std::size_t kMaxLines = 2;
   std::string text;
-  for (const std::size_t i : outside) {
-    text += (text.empty() ? "" : ", ") + CentreText(spec, state.disasters[i], courses[i]);
+  for (std::size_t i = 0; i < std::min(outside.size(), kMaxLines); ++i) {
+    const DisasterState& disaster = state.disasters[outside[i]];
+    const Course& course = courses[outside[i]];
+    text += (i == 0 ? "" : "\n") + CentreText(spec, disaster, course) + ", " +
+            ApproachText(spec, disaster, course);
   }
-  if (outside.size() != 1) return text;
-  const std::size_t only = outside.front();
-  return text + ", " + ApproachText(spec, state.disasters[only], courses[only]);
+  const std::size_t others = outside.size() - std::min(outside.size(), kMaxLines);
+  return others == 0 ? text : text + ", and " + std::to_string(others) + " more";
 }
 
 }  // namespace

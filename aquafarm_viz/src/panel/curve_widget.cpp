@@ -48,9 +48,14 @@ CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve) {
       curve.begin(), curve.end(),
       [](const auto& a, const auto& b) { return a.mean_return < b.mean_return; });
   const double margin = 0.06 * std::max(high->mean_return - low->mean_return, 1e-6);
-  const bool is_bent = low->mean_return < 0.0 && high->mean_return > 0.0;
-  return {low->mean_return - margin,
-          high->mean_return + (is_bent ? 0.06 * high->mean_return : margin)};
+  if (low->mean_return < 0.0 && high->mean_return > 0.0) {
+    return {low->mean_return - margin, 1.06 * high->mean_return};
+  }
+  // A margin across 0 would make the scale of one sign look like one of both.
+  return {low->mean_return >= 0.0 ? std::max(0.0, low->mean_return - margin)
+                                  : low->mean_return - margin,
+          high->mean_return <= 0.0 ? std::min(0.0, high->mean_return + margin)
+                                   : high->mean_return + margin};
 }
 
 ReturnScale::ReturnScale(const CurveRange& range)

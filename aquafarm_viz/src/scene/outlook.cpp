@@ -241,31 +241,45 @@ std::string RingText(double risk, std::int32_t wind_kt) {
   return wind_kt > 0 ? aquafarm::WindName(wind_kt) : "risk " + Number(risk, 0);
 }
 
-// Returns "gale over F0 and F1 now": the devices in the same ring as the first one.
-std::string NowText(const Outlook& outlook) {
+// Returns "F0", "F0 and F1" or "3 devices": those to which something applies.
+std::string Names(const Outlook& outlook,
+                  const std::function<bool(const DeviceOutlook& device)>& applies) {
   constexpr std::size_t kMaxNames = 2;
-  const DeviceOutlook& first = outlook.devices.front();
   std::vector<std::string> names;
   for (const DeviceOutlook& one : outlook.devices) {
-    const bool is_same = one.disaster_now == first.disaster_now && one.risk_now == first.risk_now;
-    if (is_same) names.push_back(DeviceLabel(one.id));
+    if (applies(one)) names.push_back(DeviceLabel(one.id));
   }
-  const std::string over = names.size() > kMaxNames    ? std::to_string(names.size()) + " devices"
-                           : names.size() == kMaxNames ? names[0] + " and " + names[1]
-                                                       : names[0];
-  return RingText(first.risk_now, first.wind_now_kt) + " over " + over + " now";
+  return names.size() > kMaxNames    ? std::to_string(names.size()) + " devices"
+         : names.size() == kMaxNames ? names[0] + " and " + names[1]
+                                     : names[0];
+}
+
+// Returns the first or the worst arrival at any device; null if no ring comes.
+const RingArrival* Extreme(
+    const Outlook& outlook,
+    const std::function<bool(const RingArrival&, const RingArrival&)>& is_before) {
+  const RingArrival* best = nullptr;
+  for (const DeviceOutlook& one : outlook.devices) {
+    for (const RingArrival& ring : one.arrivals) {
+      if (best == nullptr || is_before(ring, *best)) best = &ring;
+    }
+  }
+  return best;
+}
+
+// Returns the devices that a ring reaches at a time, as far as it is shown: "F0 and F1".
+std::string WhomText(const FarmSpec& spec, const Outlook& outlook, const RingArrival& ring) {
+  return Names(outlook, [&](const DeviceOutlook& one) {
+    return std::any_of(one.arrivals.begin(), one.arrivals.end(), [&](const RingArrival& other) {
+      return other.disaster == ring.disaster && other.risk == ring.risk &&
+             AheadText(spec, other.steps) == AheadText(spec, ring.steps);
+    });
+  });
 }
 
 // Returns "gale in 2 h"; the wind must be given.
 std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
   return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
-}
-
-// Returns ", hurricane force in 9 h": the worst ring to come, if it is not the next one.
-std::string WorstToCome(const FarmSpec& spec, const DeviceOutlook& device) {
-  if (device.arrivals.size() < 2) return "";
-  const RingArrival& worst = device.arrivals.back();
-  return ", " + RingText(worst.risk, worst.wind_kt) + " in " + AheadText(spec, worst.steps);
 }
 
 // Returns ", Sun 06:24 UTC+8", the local time in some steps; empty without a start time.
@@ -300,19 +314,45 @@ std::size_t CountInDanger(const Outlook& outlook) {
 }
 
 std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outlook& outlook) {
-  if (outlook.devices.empty()) return "";
+  if (outlook.devices.empty()) {
+    return outlook.is_known && !state.devices.empty() ? "no device is deployed" : "";
+  }
   const DeviceOutlook& first = outlook.devices.front();
   const bool is_now = first.risk_now < 0.0;
-  const std::string now = is_now ? outlook.names[first.disaster_now] + ": " + NowText(outlook) : "";
-  if (first.arrivals.empty()) return is_now ? now : KnownText(spec, outlook);
-  const RingArrival& next = first.arrivals.front();
-  const std::string when = std::string(" in ") + (outlook.is_extrapolated ? "about " : "") +
-                           AheadText(spec, next.steps) + ClockAhead(spec, state, next.steps);
-  const std::string risk = RingText(next.risk, next.wind_kt);
-  const std::string worst = WorstToCome(spec, first);
-  if (is_now) return now + ", " + risk + when + worst;
-  return outlook.names[next.disaster] + ", " + risk + ", reaches " + DeviceLabel(first.id) + when +
-         worst;
+  std::string text;
+  std::string whom;  // named last
+  std::size_t disaster = first.disaster_now;
+  if (is_now) {
+    whom = Names(outlook, [&first](const DeviceOutlook& one) {
+      return one.disaster_now == first.disaster_now && one.risk_now == first.risk_now;
+    });
+    text = outlook.names[disaster] + ": " + RingText(first.risk_now, first.wind_now_kt) + " over " +
+           whom + " now";
+  }
+  const RingArrival* next =
+      Extreme(outlook, [](const auto& a, const auto& b) { return a.steps < b.steps; });
+  if (next == nullptr) return is_now ? text : KnownText(spec, outlook);
+  const RingArrival* worst = Extreme(outlook, [](const auto& a, const auto& b) {
+    return a.risk < b.risk || (a.risk == b.risk && a.steps < b.steps);
+  });
+  // The parts name a disaster and devices where these are others than in the part before.
+  const auto add = [&](const RingArrival& ring, const std::string& when) {
+    const std::string these = WhomText(spec, outlook, ring);
+    if (text.empty()) {
+      text = outlook.names[ring.disaster] + ", " + RingText(ring.risk, ring.wind_kt) +
+             ", reaches " + these;
+    } else {
+      text += ", " + (ring.disaster == disaster ? "" : outlook.names[ring.disaster] + " ") +
+              RingText(ring.risk, ring.wind_kt) + (these == whom ? "" : " reaches " + these);
+    }
+    text += " in " + when;
+    whom = these;
+    disaster = ring.disaster;
+  };
+  add(*next, (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next->steps) +
+                 ClockAhead(spec, state, next->steps));
+  if (worst->risk < next->risk) add(*worst, AheadText(spec, worst->steps));
+  return text;
 }
 
 std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
@@ -344,6 +384,13 @@ std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
 std::string WorstText(const FarmSpec& spec, const DeviceOutlook& device) {
   const bool is_named = !device.arrivals.empty() && device.arrivals.back().wind_kt > 0;
   return is_named ? NamedArrival(spec, device.arrivals.back()) : DangerText(spec, device);
+}
+
+std::string NowAndWorstText(const FarmSpec& spec, const DeviceOutlook& device) {
+  const std::string worst = WorstText(spec, device);
+  const bool is_named = device.risk_now < 0.0 && device.wind_now_kt > 0 &&
+                        !device.arrivals.empty() && device.arrivals.back().wind_kt > 0;
+  return is_named ? NameOf(device.wind_now_kt) + (" now, " + WithoutForce(worst)) : worst;
 }
 
 std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {

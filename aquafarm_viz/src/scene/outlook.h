@@ -66,11 +66,13 @@ std::string RiskOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& cour
 /// Returns a time ahead: "6.5 h" in a farm with a start time, else "12 steps".
 std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 
-/// Returns the outlook in one sentence, such as "typhoon, risk -10, reaches F3 in 6.5 h" or
-/// "typhoon: risk -5 over F2 now, risk -20 in 6.5 h"; where the winds of the rings are given
-/// "typhoon In-Fa: gale over F0 and F1 now, storm in 6.5 h". If a worse ring than this one follows,
-/// it is named too: ", hurricane force in 9 h". Without such a danger "no danger to devices known
-/// until +12 h" if a course ends before its disaster; else empty, also if the outlook is not known.
+/// Returns the outlook in one sentence: the ring over the first device and others, the next ring
+/// that reaches any device, and the worst one, such as "typhoon, risk -10, reaches F3 in 6.5 h",
+/// "typhoon: risk -5 over F2 now, risk -20 in 6.5 h", or where the winds of the rings are given
+/// "typhoon In-Fa: gale over F0 and F1 now, gale reaches F5 in 8 min, storm reaches F0 in 6.5 h".
+/// "no device is deployed" if all are aboard or delivered. Without a danger "no danger to devices
+/// known until +12 h" if a course ends before its disaster; else empty, also if the outlook is not
+/// known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
 
@@ -95,6 +97,9 @@ std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook&
 
 /// Returns the worst ring to come: "hurricane force in 9 h"; DangerText if its wind is not given.
 std::string WorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
+
+/// Returns WorstText after the ring that covers the device now: "gale now, hurricane in 9 h".
+std::string NowAndWorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
 
 /// Returns DangerText without names of winds and without the word "risk".
 /// @param between  text between risk and time

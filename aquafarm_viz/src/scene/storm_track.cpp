@@ -11,6 +11,7 @@
 
 #include "aquafarm/scenario/limits.h"
 #include "aquafarm/tracks/wind_name.h"
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/rings.h"
 
@@ -160,6 +161,7 @@ StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m
         }
       }
       storms.growths.push_back(disaster["radius_growth"].as<double>(0.0));
+      storms.kinds.push_back(disaster["kind"].as<std::string>(""));
       storms.names.push_back(disaster["name"].as<std::string>(""));
       storms.ring_winds_kt.emplace_back();
       for (const YAML::Node& wind : disaster["ring_winds_kt"]) {
@@ -263,7 +265,9 @@ Course CourseOf(const FarmSpec& spec, const FarmState& state, std::size_t index,
                 {},
                 forecast != nullptr ? std::min(end, source.back().step) : end,
                 {}};
-  course.name = tracks.names[index];
+  std::string kind = DisasterName(disaster.kind);
+  std::replace(kind.begin(), kind.end(), ' ', '_');
+  if (kind == tracks.kinds[index]) course.name = tracks.names[index];
   // A bulletin may have replaced the rings by those of other winds.
   const std::vector<std::int32_t>& winds = tracks.ring_winds_kt[index];
   if (winds.size() == present.radii.size()) course.ring_winds_kt = winds;
@@ -285,8 +289,9 @@ Course CourseOf(const FarmSpec& spec, const FarmState& state, std::size_t index,
 }
 
 std::vector<Course> CourseReader::Read(const FarmSpec& spec, const FarmState& state) {
-  if (scenario_yaml_ != spec.scenario_yaml) {
+  if (scenario_yaml_ != spec.scenario_yaml || cell_size_m_ != spec.cell_size_m) {
     scenario_yaml_ = spec.scenario_yaml;
+    cell_size_m_ = spec.cell_size_m;
     tracks_ = ReadStormTracks(spec.scenario_yaml, spec.cell_size_m);
   }
   std::vector<Course> courses;

@@ -44,6 +44,7 @@ struct StormTracks {
   std::vector<double> growths;  ///< of every radius [cells/step], one per disaster
   /// Wind within each ring [kn], one list per disaster; empty: not given.
   std::vector<std::vector<std::int32_t>> ring_winds_kt;
+  std::vector<std::string> kinds;   ///< one per disaster, as in a scenario: "storm_surge"
   std::vector<std::string> names;   ///< one per disaster; empty: it has no name
   std::vector<double> error_cells;  ///< mean error after 24, 48, … hours; empty: not given
 };
@@ -96,6 +97,7 @@ class CourseReader {
 
  private:
   std::string scenario_yaml_;  // of the tracks
+  double cell_size_m_{};
   StormTracks tracks_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws the charts of CURVES; an enlarged part applies to all of them.
+// Draws the charts of CURVES; a zoom applies to all of them.
 window.charts = [];
 // Runs differ by their dashes too, so that they can be told apart in a print without colours.
 const LINES = [[2, 3], [8, 4], [1, 0]];  // of references
@@ -126,6 +126,7 @@ function mark(canvas, area, dygraph, marks, onScale) {
   canvas.fillRect(strip + 6, area.y, area.x + area.w - strip - 6, area.h);
   canvas.lineWidth = 2;
   marks.forEach(([mean, low, high], i) => {
+    if (mean === null) return;
     const x = area.x + area.w - 10 - 14 * (marks.length - 1 - i);
     canvas.strokeStyle = canvas.fillStyle = CURVES.colours[i];
     canvas.beginPath();

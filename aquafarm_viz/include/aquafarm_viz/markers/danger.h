@@ -8,7 +8,7 @@
 ///     | outside          | 0        | above the clock: strength, place and motion of the     |
 ///     |                  |          | disasters whose centres lie outside the farm           |
 ///     | danger           | device   | circle around a device that a ring covers or reaches   |
-///     | danger_label (1) | device   | the worst ring and the time of its arrival             |
+///     | danger_label (1) | device   | the ring over it, the worst one and its arrival        |
 ///     | pointer          | disaster | where a centre outside the farm lies                   |
 ///
 /// A label has a plate below it, in the namespace of the label with _plate, and a line to its

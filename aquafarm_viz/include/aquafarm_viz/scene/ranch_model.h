@@ -63,7 +63,7 @@ class RanchModel {
   static const Row& ShipColumns();
   static const Row& DeviceColumns();
   std::vector<Row> Ships() const;
-  /// The status of a device in danger is the worst ring to come: "storm in 6.4 h".
+  /// The status of a device in danger is its danger: "gale now, hurricane in 6.4 h".
   std::vector<Row> Devices() const;
 
   /// Returns the last rescue plan; null before the first one.

@@ -282,9 +282,10 @@ std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
   return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
 }
 
-// Returns ", Sun 06:24 UTC+8", the local time in some steps; empty without a start time.
+// Returns ", Sun 06:24 UTC+8", the local time in some steps; empty within the hour, and without a
+// start time.
 std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double steps) {
-  if (!spec.has_start_time) return "";
+  if (!spec.has_start_time || steps * spec.step_duration_s < 3600.0) return "";
   const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
   return ", " + LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
 }

@@ -100,7 +100,7 @@ def verdict(layers, results):
     size, name, rho = max(known)
     much = "hardly" if size < 0.1 else "a little" if size < 0.4 else "in part" if size < 0.7 else \
         "mostly"
-    return f"It depends {much} on the {name} of the sea, rank correlation {signed(rho)}"
+    return f"The return varies {much} with the {name} of the sea, rank correlation {signed(rho)}"
 
 
 def device_distance(values, devices):

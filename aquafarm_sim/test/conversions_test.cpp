@@ -349,7 +349,7 @@ TEST(Conversions, SummaryGivesTheMeanHealthOfWhatWasDelivered) {
   record.delivered = 2;
   record.delivered_health = 1.5F;
   record.reason = aquafarm::EndReason::kStepLimit;
-  const auto summary = ToMsg(record, 3, Context());
+  const auto summary = ToMsg(record, std::nullopt, 3, Context());
   EXPECT_EQ(3, summary.farm);
   EXPECT_FLOAT_EQ(0.75F, summary.delivered_health);
   EXPECT_TRUE(summary.truncated);
@@ -364,9 +364,7 @@ TEST(Conversions, SummaryGivesTheMoneyOfEachKindOfDevice) {
                                                                                    50};
   accounts.ship_cost = 1234;
   accounts.energy_cost = 56;
-  aquafarm::EpisodeRecord record;
-  record.accounts = accounts;
-  const auto summary = ToMsg(record, 0, Context());
+  const auto summary = ToMsg(aquafarm::EpisodeRecord{}, accounts, 0, Context());
   ASSERT_EQ(static_cast<std::size_t>(aquafarm::kDeviceKindCount), summary.ledgers.size());
   const aquafarm_msgs::Ledger& buoys = summary.ledgers[aquafarm_msgs::DeviceState::MONITORING];
   EXPECT_EQ(450, buoys.insured);

@@ -131,13 +131,13 @@ Evaluation Play(const Arguments& arguments, Environment& environment, Policy& po
   if (const auto* const local = dynamic_cast<const LocalEnvironment*>(&environment)) {
     accounts = [local, &devices](std::int32_t farm) {
       devices.Add(local->batch().farm(farm).devices());
-      return local->batch().farm(farm).record().accounts;
+      return local->batch().farm(farm).SettleAccounts();
     };
   } else if (const auto* const family = dynamic_cast<const FamilyEnvironment*>(&environment)) {
     devices.are_same = false;
     accounts = [family, &devices](std::int32_t farm) {
       devices.Add(family->farm(farm).devices());
-      return family->farm(farm).record().accounts;
+      return family->farm(farm).SettleAccounts();
     };
   }
   Evaluation evaluation = Evaluate(

@@ -7,7 +7,7 @@ import matplotlib
 
 matplotlib.use("Agg")  # needs no display
 import numpy as np  # noqa: E402
-from matplotlib import pyplot as plt, ticker  # noqa: E402
+from matplotlib import colors, pyplot as plt, ticker  # noqa: E402
 
 from aquafarm_benchmark import losses, measures  # noqa: E402
 
@@ -65,27 +65,28 @@ def _scale_returns(axes):
     axes.axhspan(1.15 * low, 0.0, color=_LOGARITHMIC, linewidth=0, zorder=0)
 
 
-def _draw_returns(path, title, plots):
+def _draw_returns(path, title, ylabel, plots):
     """Draws returns on the scale of _scale_returns. Lines are named at their right end.
 
-    plots: (function that plots on axes and returns the ends of the lines, ylabel, xlabel), one for
-        each column; the names are those of the last one
+    plots: (function that plots on axes and returns the ends of the lines, xlabel) of charts below
+        each other
     """
-    figure, columns = plt.subplots(1, len(plots), figsize=(5.5 + 3.2 * len(plots), 5.4),
-                                   squeeze=False, layout="constrained", sharey="row")
+    figure, rows = plt.subplots(len(plots), 1, figsize=(8.7, 1.0 + 4.4 * len(plots)),
+                                squeeze=False, layout="constrained")
     figure.suptitle(title, fontsize=13)
-    for (plot, ylabel, xlabel), axes in zip(plots, columns[0]):
+    for (plot, xlabel), axes in zip(plots, rows[:, 0]):
         ends = plot(axes)
-        _label(axes, "", ylabel, xlabel)
+        _label(axes, "", f"{ylabel}\n(logarithmic below 0)", xlabel)
         _scale_returns(axes)
         axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
-    _name_ends(axes, ends)
+        _name_ends(axes, ends)
     save(figure, path)
 
 
 _LOGARITHMIC = "#eef1f4"  # background of the part of a scale that is logarithmic
-_ALIKE = 0.02  # relative difference of references that have one name
-_NAME_GAP = 0.062  # height of a name, as a share of the axes
+_ALIKE = 0.02  # relative difference of references that have one line
+_NAME_PT = 15.0  # height of a name
+_TEXT = 4.5  # contrast of names to white, at least (WCAG 2.1, 1.4.3)
 
 
 def spread(places, gap, low=0.0, high=1.0):
@@ -112,23 +113,36 @@ def _name_ends(axes, ends):
     axes.set_ylim(axes.get_ylim())  # stays as it is
     to_axes = axes.transData + axes.transAxes.inverted()
     ends = sorted(ends, key=lambda end: end[1])
-    places = spread([float(to_axes.transform((x, y))[1]) for x, y, _, _ in ends], _NAME_GAP)
+    axes.figure.draw_without_rendering()  # sets the size of the axes
+    height_pt = 72.0 * axes.get_window_extent().height / axes.figure.dpi
+    places = spread([float(to_axes.transform((x, y))[1]) for x, y, _, _ in ends],
+                    _NAME_PT / height_pt, high=1.0 + 0.3 * _NAME_PT / height_pt)
     for (x, y, colour, name), place in zip(ends, places):
-        axes.annotate(name, (x, y), xytext=(1.05, place), textcoords=axes.transAxes,
-                      color=colour, va="center", fontsize=10, annotation_clip=False,
+        axes.annotate(name, (x, y), xytext=(1.04, place), textcoords=axes.transAxes,
+                      color=_legible(colour), va="center", fontsize=10, annotation_clip=False,
                       arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8,
                                   "relpos": (0.0, 0.5), "shrinkA": 1.0, "shrinkB": 0.0})
 
 
+def _legible(colour):
+    """Returns a colour, darkened until it is legible on white."""
+    rgb = np.array(colors.to_rgb(colour))
+    while True:
+        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+        if 1.05 / (float(linear @ (0.2126, 0.7152, 0.0722)) + 0.05) >= _TEXT:
+            return tuple(rgb)
+        rgb = 0.95 * rgb
+
+
 def _plot_references(axes, references, end, digits=0):
     """Draws values to compare with, {name: value}, and returns the ends of their lines."""
-    for value in references.values():
-        axes.axhline(value, color="black", linestyle="--", linewidth=1.2, label="_reference")
     ends = []
     for name, value in sorted(references.items(), key=lambda pair: -pair[1]):
         words = f"{name} {value:.{digits}f}"
-        if ends and ends[-1][1] - value < _ALIKE * abs(value):  # their lines are one
-            words = f"{ends.pop()[3]}\n{words}"
+        if ends and ends[-1][1] - value < _ALIKE * abs(value):
+            ends[-1] = (*ends[-1][:3], f"{ends[-1][3]}, {words}")
+            continue
+        axes.axhline(value, color="black", linestyle="--", linewidth=1.2, label="_reference")
         ends.append((end, value, "black", words))
     return ends
 
@@ -152,17 +166,18 @@ def _plot_one_run(axes, one, curve, x):
     """Plots the 50-episode mean return of a run at x, one for each episode; returns the last
     point."""
     episodes, means = _smooth(curve["return"])
-    axes.plot(x[episodes - 1], means, **_line_style(one), label=one.label)
+    axes.plot(x[episodes - 1], means, linewidth=1.2, **_line_style(one), label=one.label)
     return x[episodes[-1] - 1], means[-1], one.colour, one.label
 
 
 def plot_rewards_by_steps(axes, contestants, runs, references):
     """Fig. 12a: 50-episode mean return of the first run by time steps taken so far."""
+    ends = []
     for one in contestants:
         curve = runs[one.name][0]["curve"]
-        _plot_one_run(axes, one, curve, np.cumsum(curve["steps"]))
+        ends.append(_plot_one_run(axes, one, curve, np.cumsum(curve["steps"])))
     axes.set_xscale("log")
-    return _plot_references(axes, references, axes.get_xlim()[1])
+    return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
 def plot_rewards_by_episodes(axes, contestants, runs, references):
@@ -177,20 +192,19 @@ def plot_rewards_by_episodes(axes, contestants, runs, references):
 def draw_rewards(path, contestants, runs, references):
     """Fig. 12a by time steps, next to the same data by episodes."""
     data = (contestants, runs, references)
-    _draw_returns(path, f"Return of the first run (Fig. 12a): mean of {measures.WINDOW} episodes", [
+    _draw_returns(path, f"Return of one run each, the first one (Fig. 12a): mean of "
+                  f"{measures.WINDOW} episodes", "return of an episode", [
                       (lambda axes: plot_rewards_by_steps(axes, *data),
-                       "return of an episode\n(logarithmic below 0)",
                        "time steps so far (logarithmic)"),
-                      (lambda axes: plot_rewards_by_episodes(axes, *data), "", "episode")])
+                      (lambda axes: plot_rewards_by_episodes(axes, *data), "episode")])
 
 
 def draw_average_rewards(path, contestants, runs, references):
     """Fig. 12b: mean return of all episodes so far, over all runs."""
     _draw_returns(path, f"Mean return of all episodes so far (Fig. 12b)\n"
                   f"median of {_runs_text(_count(contestants, runs))}, shaded from the lowest to the "
-                  "highest", [
-        (lambda axes: plot_average_rewards(axes, contestants, runs, references),
-         "mean return so far\n(logarithmic below 0)", "episode")])
+                  "highest", "mean return so far", [
+        (lambda axes: plot_average_rewards(axes, contestants, runs, references), "episode")])
 
 
 def plot_average_rewards(axes, contestants, runs, references):
@@ -211,8 +225,9 @@ def draw_square_error(path, contestants, runs):
                          "highest",
                          f"{measures.WINDOW}-episode mean [reward²]\n(logarithmic scale)")
     plot_square_error(axes, contestants, runs)
-    axes.text(0.0, -0.17, "Low: the value of a step agrees with its reward and the next value, which "
-              "a policy that fails can reach, too.", transform=axes.transAxes, fontsize=9, va="top")
+    axes.text(0.0, -0.17, "Each learner's own targets: errors of different learners do not compare. A "
+              "low error means\nconsistent estimates, which a policy that fails can have, too.",
+              transform=axes.transAxes, fontsize=9, va="top")
     save(figure, path)
 
 
@@ -233,8 +248,7 @@ def plot_square_error(axes, contestants, runs):
         low, median, high = np.exp(np.quantile(logs, (0.0, 0.5, 1.0), axis=0))
         axes.plot(episodes[known], median, **_line_style(one), linewidth=2.2, label=one.label)
         if len(smooth) > 1:
-            axes.fill_between(episodes[known], low, high, color=one.colour, alpha=0.18,
-                              linewidth=0)
+            _shade(axes, episodes[known], low, high, one.colour)
         ends.append((episodes[known][-1], float(median[-1]), one.colour, one.label))
     axes.set_yscale("log")
     axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -261,13 +275,16 @@ def draw_mean_score(path, contestants, runs, references):
         whose = panel[0].label if len(panel) == 1 else "All learners"
         _label(all_axes[letter], f"{whose} (Fig. 13{letter})", "return per step")
         limits = None if letter == "c" else all_axes["c"].get_ylim()
-        plot_mean_score(all_axes[letter], panel, runs, references, limits)
+        ends = plot_mean_score(all_axes[letter], panel, runs, references, limits)
+        if letter == "c":  # the titles of the others name their lines
+            _name_ends(all_axes[letter], ends)
     save(figure, path)
 
 
 def plot_mean_score(axes, contestants, runs, references, limits=None):
     """50-episode mean return per step: the median of the runs, shaded between their lowest and highest
-    value, with references {name: return per step}, within limits of y if any."""
+    value, with references {name: return per step}, within limits of y if any; returns the ends of the
+    lines."""
     ends = []
     for one in contestants:
         returns, steps = _curves(runs[one.name], "return"), _curves(runs[one.name], "steps")
@@ -280,7 +297,7 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
     ends += _plot_references(axes, references, max(end[0] for end in ends), digits=2)
     if limits:
         axes.set_ylim(limits)
-    _name_ends(axes, ends)
+    return ends
 
 
 def draw_evaluation(path, contestants, rows):
@@ -361,9 +378,9 @@ def plot_loss_by_kind(axes, contestants, rows):
 def draw_repeated(path, contestants, runs, references):
     """Fig. 14: 50-episode means over all runs, shaded between their lowest and highest value."""
     _draw_returns(path, f"Repeated trainings (Fig. 14): median of "
-                  f"{_runs_text(_count(contestants, runs))},\nshaded from the lowest to the highest", [
-        (lambda axes: plot_repeated(axes, contestants, runs, references),
-         f"{measures.WINDOW}-episode mean return\n(logarithmic below 0)", "episode")])
+                  f"{_runs_text(_count(contestants, runs))},\nshaded from the lowest to the highest",
+                  f"{measures.WINDOW}-episode mean return", [
+        (lambda axes: plot_repeated(axes, contestants, runs, references), "episode")])
 
 
 def plot_repeated(axes, contestants, runs, references):
@@ -376,13 +393,18 @@ def plot_repeated(axes, contestants, runs, references):
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
+def _shade(axes, x, low, high, colour):
+    """Shades a range, with thin edges: shades of several ranges mix."""
+    axes.fill_between(x, low, high, facecolor=(*colors.to_rgb(colour), 0.16),
+                      edgecolor=(*colors.to_rgb(colour), 0.45), linewidth=0.5)
+
+
 def _plot_shaded(axes, episodes, values, one, label):
     """Plots the median of values [runs, episodes], shaded between their lowest and highest value;
     returns the last point."""
     median = np.median(values, axis=0)
     axes.plot(episodes, median, **_line_style(one), label=label)
-    axes.fill_between(episodes, values.min(axis=0), values.max(axis=0), color=one.colour, alpha=0.2,
-                      linewidth=0)
+    _shade(axes, episodes, values.min(axis=0), values.max(axis=0), one.colour)
     return episodes[-1], median[-1], one.colour, label
 
 

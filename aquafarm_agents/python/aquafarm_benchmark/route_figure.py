@@ -4,7 +4,7 @@ episodes that ended with devices at sea."""
 import json
 
 import numpy as np
-from matplotlib.collections import PatchCollection
+from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Polygon, Rectangle
 
 from aquafarm_benchmark.figures import plt, save
@@ -14,11 +14,14 @@ _DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0
                "south_east": (1, -1)}
 _EVERY = 2  # an arrow stands in each second column and row, so that it can be long enough to see
 _SHOWN_STEPS = 4  # number of steps whose rings are drawn
-_RIM = 1.0  # from the middle of the outermost cells to the edge of the axes [cells]
+_ARROW = 0.48  # length of an arrow, as a share of the distance to the next one
+_RIM = 0.7  # from the middle of the outermost cells to the edge of the axes [cells]
 _LANE = 0.14  # distance of a leg from the middle of its cells; the next leg has the other side
 # Legs by whether something is aboard; colours of Okabe and Ito (2008).
 _LEGS = {False: ("#0072b2", (0, (4, 1.5)), "route with nothing aboard"),
          True: ("#d55e00", "solid", "route with a device aboard")}
+_REPEATED = 0.35  # opacity of a line that may lie on itself
+_DEVICE = "#c2185b"
 _SEA = "#eaf3f9"
 _LAND = "#c9b98a"
 _STOPS = {"pickup": ("P", "pickup"), "drop_off": ("X", "drop-off")}
@@ -37,14 +40,14 @@ def draw_route(path, label, route_file):
     all_axes = list(all_axes.flat)
     for axes, (key, words) in zip(all_axes, panels):
         _chart(axes, route["chart"])
-        plot_moves(axes, route[key])
+        plot_moves(axes, route[key], route["chart"])
         axes.set_title(f"{label}: best move {words}")
     axes = all_axes[len(panels)]
     for empty in all_axes[len(panels) + 1:]:
         empty.axis("off")
-    _chart(axes, route["chart"])
+    sea = _chart(axes, route["chart"])
     stops = plot_route(axes, route["steps"])
-    _disasters(axes, route["steps"])
+    _disasters(axes, route["steps"], sea)
     for shown in all_axes[:len(panels) + 1]:
         shown.set_xlabel("cells to the east")
         shown.set_ylabel("cells to the north")
@@ -92,11 +95,10 @@ def draw_unfinished(path, routes, title):
 def plot_unfinished(axes, name, route, size):
     """Draws one of these routes on axes for ranches of at most this size (columns, rows)."""
     chart, last = route["chart"], route["steps"][-1]
-    sea = _chart(axes, chart, size)
+    left = devices_left(route)
+    sea = _chart(axes, chart, size, left)
     axes.set_xlabel("cells to the east")
     axes.set_ylabel("cells to the north")
-    for spine in axes.spines.values():  # the axes are larger than most ranches
-        spine.set_visible(False)
     for disaster in route["steps"][-2]["disasters"]:  # they are over in the last state
         for ring in _rings(disaster):
             inside = axes.add_patch(Polygon(ring, color="#b22222", alpha=0.12, zorder=1))
@@ -106,16 +108,18 @@ def plot_unfinished(axes, name, route, size):
             outline.set_clip_path(sea)
     *before, (loaded, last_leg) = legs(route["steps"])
     for _, cells in before:
-        axes.plot(*np.array(cells, dtype=float).T, color="#8a959e", linewidth=0.9, zorder=4,
-                  label="route before")
+        axes.plot(*np.array(cells, dtype=float).T, color="#5b6b78", linewidth=0.8, zorder=4,
+                  alpha=_REPEATED, label="route before")
     colour, _, kind = _LEGS[loaded]
-    axes.plot(*np.array(last_leg, dtype=float).T, color=colour, linewidth=1.2, linestyle="solid",
-              zorder=5, label=f"last leg: {kind}")
-    axes.scatter(*zip(*devices_left(route)), s=260, facecolor="none", edgecolor="black",
+    axes.add_collection(LineCollection(  # each step for itself: what the ship repeats is darker
+        [np.array(pair, dtype=float) for pair in zip(last_leg, last_leg[1:])], color=colour,
+        linewidth=1.4, zorder=5, alpha=_REPEATED, label=f"last leg: {kind}, darker if repeated"))
+    axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black",
                  linewidth=2.2, zorder=8, label="device that was not fetched")
     axes.scatter(*last["cell"], s=150, marker="*", color="#f0e442", edgecolor="black", zorder=9,
                  label="ship at the end")
-    axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port\n"
+    axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
+                   f"return {route['return']:.0f}\n"
                    f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps\n"
                    f"the last {len(last_leg) - 1} steps without a stop", fontsize=11)
 
@@ -128,11 +132,18 @@ def _symbols(charts):
     return symbols
 
 
-def _chart(axes, chart, size=None):
+def _chart(axes, chart, size=None, left=None):
     """Draws a ranch on axes for ranches of at most this size; by default, its own. Returns the patch
-    of its sea."""
+    of its sea.
+
+    left: the cells of the devices that were not fetched; the others are hollow. None: all filled
+    """
     width, height = size or (chart["width"], chart["height"])
     axes.set_aspect("equal")
+    for spine in axes.spines.values():  # the sea has an edge
+        spine.set_visible(False)
+    for axis, count in ((axes.xaxis, chart["width"]), (axes.yaxis, chart["height"])):
+        axis.set_ticks(range(0, count, 5 if count <= 30 else 10))
     axes.set_xlim(-_RIM, width - 1 + _RIM)
     axes.set_ylim(-_RIM, height - 1 + _RIM)
     sea = axes.add_patch(Rectangle((-0.5, -0.5), chart["width"], chart["height"], facecolor=_SEA,
@@ -143,23 +154,31 @@ def _chart(axes, chart, size=None):
             facecolor=_LAND, edgecolor=_LAND, zorder=1))
         axes.scatter([], [], color=_LAND, marker="s", s=200, label="island")
     area = 4900.0 / max(width, height)  # of a marker that fills a cell
-    for cells, colour, marker, share, label in (
-            (chart["rocks"], "#aab4bc", "^", 0.3, "rock"),
-            (chart["ports"], "#1a7f37", "s", 0.6, "port"),
-            ([device["cell"] for device in chart["devices"]], "#c2185b", "D", 0.6, "device")):
+    devices = [device["cell"] for device in chart["devices"]]
+    fetched = [] if left is None else [cell for cell in devices if cell not in left]
+    for cells, style, share, label in (
+            (chart["rocks"], {"color": "#aab4bc", "marker": "^"}, 0.3, "rock"),
+            (chart["ports"], {"color": "#1a7f37", "marker": "s"}, 0.6, "port"),
+            (fetched, {"facecolor": "white", "edgecolor": _DEVICE, "marker": "D"}, 0.5,
+             "device that was fetched"),
+            ([cell for cell in devices if cell not in fetched], {"color": _DEVICE, "marker": "D"},
+             0.6, "device" if left is None else "_device")):
         if cells:
-            x, y = zip(*cells)
-            axes.scatter(x, y, color=colour, marker=marker, label=label, zorder=3, s=area * share)
+            axes.scatter(*zip(*cells), label=label, zorder=6 if cells is fetched else 3,
+                         s=area * share, **style)
     return sea
 
 
-def plot_moves(axes, moves):
-    """The move preferred in each _EVERY-th column and row as an arrow; each preferred stop."""
+def plot_moves(axes, moves, chart):
+    """The move preferred in each _EVERY-th column and row of open water as an arrow; each preferred
+    stop."""
+    taken = [*chart["ports"], *(device["cell"] for device in chart["devices"])]
     pointed = [(x, y, *_DIRECTIONS[action]) for x, y, action in moves
-               if action in _DIRECTIONS and x % _EVERY == 0 and y % _EVERY == 0]
+               if action in _DIRECTIONS and x % _EVERY == 0 and y % _EVERY == 0
+               and [x, y] not in taken]
     if pointed:
         x, y, dx, dy = np.array(pointed, dtype=float).T
-        share = 0.62 * _EVERY / np.hypot(dx, dy)
+        share = _ARROW * _EVERY / np.hypot(dx, dy)
         axes.quiver(x, y, dx * share, dy * share, pivot="mid", angles="xy", scale_units="xy",
                     scale=1, width=0.006, headwidth=4.5, color="#34506b", zorder=4)
     for action, (marker, name) in _STOPS.items():
@@ -182,8 +201,10 @@ def legs(steps):
 def _plot_legs(axes, steps):
     for i, (loaded, cells) in enumerate(legs(steps)):
         colour, dashes, name = _LEGS[loaded]
-        lane = _LANE if i % 2 else -_LANE
         x, y = np.array(cells, dtype=float).T
+        lane = np.full(len(x), _LANE if i % 2 else -_LANE)
+        for end in (cells[0], cells[-1]):  # legs meet in the middle of a cell
+            lane[[cell == end for cell in cells]] = 0.0
         axes.plot(x + lane, y - lane, color=colour, linestyle=dashes, linewidth=2.2, zorder=5,
                   label=name if i < len(_LEGS) else "_leg")
         _point_along(axes, x + lane, y - lane, colour)
@@ -199,22 +220,21 @@ def _point_along(axes, x, y, colour):
 
 
 def plot_route(axes, steps):
-    """Draws the legs and numbers the stops of a route; returns a line of text for each stop."""
+    """Draws the legs and numbers the stops of a route; returns (number, stop, step) of each."""
     _plot_legs(axes, steps)
     axes.scatter(*steps[0]["cell"], s=170, facecolor="none", edgecolor="black", linewidth=1.8,
                  zorder=6, label="start")
-    lines, here = [], {}
+    stops, here = [], {}
     for at, step in enumerate(steps):
         if step.get("action") in _STOPS:
-            x, y = step["cell"]
-            shift = here.setdefault((x, y), 0)  # a cell may be the place of several stops
-            here[x, y] += 1
-            lines.append(f"{len(lines) + 1}  {_STOPS[step['action']][1]}, step {at}")
-            axes.annotate(str(len(lines)), (x, y), xytext=(-10 - 17 * shift, -9), zorder=8,
-                          textcoords="offset points", ha="center", va="center", fontsize=10,
-                          weight="bold", bbox={"boxstyle": "circle,pad=0.15", "facecolor": "white",
-                                               "edgecolor": "black"})
-    return lines
+            stops.append((len(stops) + 1, _STOPS[step["action"]][1], at))
+            here.setdefault(tuple(step["cell"]), []).append(len(stops))
+    for cell, numbers in here.items():  # a cell may be the place of several stops
+        axes.annotate(", ".join(map(str, numbers)), cell, xytext=(-10, 0), zorder=8,
+                      textcoords="offset points", ha="right", va="center", fontsize=10,
+                      weight="bold", bbox={"boxstyle": "round,pad=0.15,rounding_size=0.5",
+                                           "facecolor": "white", "edgecolor": "black"})
+    return stops
 
 
 def _explain(empty, charts, stops, has_moves):
@@ -222,11 +242,16 @@ def _explain(empty, charts, stops, has_moves):
     symbols = _symbols(charts)
     empty.legend(symbols.values(), symbols.keys(), loc="upper left", frameon=False, fontsize=11,
                  bbox_to_anchor=(0.0, 1.0), labelspacing=0.7, ncols=2)
-    lines = [*stops, "", "red: the disaster's rings in some steps"]
+    lines = ["red: the disaster's rings in some steps"]
     if has_moves:
-        lines = [f"arrow: the preferred move, in every {_EVERY}nd column and row", "", *lines]
-    empty.text(0.03, 0.68, "\n".join(lines), transform=empty.transAxes, va="top", fontsize=11,
+        lines.insert(0, f"arrow: the preferred move, in every {_EVERY}nd column and row")
+    empty.text(0.02, 0.66, "\n".join(lines), transform=empty.transAxes, va="top", fontsize=11,
                linespacing=1.4)
+    if stops:
+        table = empty.table(stops, colLabels=["stop", "action", "step"], cellLoc="left",
+                            colLoc="left", edges="horizontal", bbox=(0.02, 0.08, 0.6, 0.42))
+        table.auto_set_font_size(False)
+        table.set_fontsize(11)
 
 
 def _rings(disaster):
@@ -239,7 +264,7 @@ def _rings(disaster):
                                disaster["y"] + radii * np.cos(bearings)])
 
 
-def _disasters(axes, steps):
+def _disasters(axes, steps, sea):
     """Draws the rings at the start strongly and the outermost ones of some later steps faintly."""
     stops = np.array([step["cell"] for step in steps if step.get("action") in _STOPS],
                      dtype=float).reshape(-1, 2)
@@ -249,7 +274,8 @@ def _disasters(axes, steps):
         for disaster in steps[at]["disasters"]:
             *inner, outer = _rings(disaster)
             for ring in [*inner, outer] if at == 0 else [outer]:
-                axes.add_patch(Polygon(ring, fill=False, color="#b22222", zorder=2, **style))
+                axes.add_patch(Polygon(ring, fill=False, color="#b22222", zorder=2,
+                                       **style)).set_clip_path(sea)
             seen = [point for point in outer[::15] if inside.contains(*point)]
             if not seen:
                 continue

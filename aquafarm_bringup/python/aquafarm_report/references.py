@@ -97,7 +97,7 @@ def share_text(player, optimum):
     if not pairs or total <= 0.0:
         return "–"
     share = sum(one for one, _ in pairs) / total
-    return "below 0" if share < 0.0 else f"{share:.1%} of the optimum"
+    return "below 0% of the optimum" if share < 0.0 else f"{share:.1%} of the optimum"
 
 
 def difference(one, other):
@@ -124,7 +124,7 @@ def verdict(players):
         return ""
     best = runs[0]
     share = share_text(best, optimum_of(players))
-    facts = [] if share == "–" else ["its returns sum up to less than 0" if share == "below 0" else
+    facts = [] if share == "–" else ["its returns sum up to less than 0" if share.startswith("below") else
                                      f"it reaches {share}"]
     planner = next((one for one in players if one.label == "planner" and one.rows
                     and not one.is_run), None)

@@ -118,7 +118,7 @@ class Simulation {
   }
 
   std::string Check(const EpisodeSummary& summary) const {
-    EpisodeSummary simulated = ToMsg(farm_.record(), summary.farm, {});
+    EpisodeSummary simulated = ToMsg(farm_.record(), farm_.SettleAccounts(), summary.farm, {});
     simulated.header = summary.header;
     const std::string difference = Difference(summary, simulated);
     return difference.empty() ? "" : "episode." + difference;

@@ -95,7 +95,9 @@ class Messages {
     Write(names::kRisk, risk_);
   }
 
-  void End(const EpisodeLog& log) { Write(names::kEpisode, ToMsg(log.record, log.farm, context_)); }
+  void End(const EpisodeLog& log, const Farm& farm) {
+    Write(names::kEpisode, ToMsg(log.record, farm.SettleAccounts(), log.farm, context_));
+  }
 
  private:
   // A bag cannot contain time 0, so an episode starts one period after it.
@@ -192,7 +194,7 @@ void EpisodeBagWriter::Write(const EpisodeLog& log, const std::string& path) {
     farm_.Reset(log.seed, log.episode);
     messages.Start(farm_, encoder_, yaml_);
     Play(farm_, log, messages);
-    messages.End(log);
+    messages.End(log, farm_);
     bag.Close();
   } catch (const std::system_error& fault) {
     std::filesystem::remove(active, error);

@@ -378,8 +378,9 @@ void ToMsg(const aquafarm::Farm& farm, const aquafarm::Encoder& encoder, std::in
   message.plane_names = aquafarm::Encoder::plane_names();
 }
 
-aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record, std::int32_t farm,
-                                    const MessageContext& context) {
+aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record,
+                                    const std::optional<aquafarm::Accounts>& accounts,
+                                    std::int32_t farm, const MessageContext& context) {
   aquafarm_msgs::EpisodeSummary message;
   FillHeader(context, message.header);
   message.farm = farm;
@@ -387,7 +388,7 @@ aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record, std::
   message.terminated = aquafarm::IsTerminated(record.reason);
   message.truncated = aquafarm::IsTruncated(record.reason);
   message.success = record.Success();
-  if (record.accounts) FillAccounts(*record.accounts, message);
+  if (accounts) FillAccounts(*accounts, message);
   return message;
 }
 

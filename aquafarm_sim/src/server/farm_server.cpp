@@ -262,7 +262,8 @@ void FarmServer::StepPublishedFarm() {
   }
   Changed();
   if (farm.over()) {
-    const aquafarm_msgs::EpisodeSummary summary = ToMsg(farm.record(), 0, clock_.context());
+    const aquafarm_msgs::EpisodeSummary summary =
+        ToMsg(farm.record(), farm.SettleAccounts(), 0, clock_.context());
     Notify([&](FarmListener& listener) { listener.OnEpisodeEnd(summary); });
   }
   barrier_.Wake();  // last: a woken thread needs the lock

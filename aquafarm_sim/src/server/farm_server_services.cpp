@@ -182,8 +182,10 @@ void FarmServer::Complete(const std::uint8_t* actions, StepResult& result) {
   for (std::size_t i = 0; i < result.end_reasons.size(); ++i) {
     counters_.farm_steps += result.is_first[i] == 0 ? 1 : 0;
     if (result.end_reasons[i] == 0) continue;
-    const auto farm = static_cast<std::int32_t>(i);
-    result.finished.push_back(ToMsg(batch_->farm(farm).record(), farm, clock_.context()));
+    const auto number = static_cast<std::int32_t>(i);
+    const aquafarm::Farm& farm = batch_->farm(number);
+    result.finished.push_back(
+        ToMsg(farm.record(), farm.SettleAccounts(), number, clock_.context()));
     Notify([&](FarmListener& listener) { listener.OnEpisodeEnd(result.finished.back()); });
   }
 }

@@ -157,7 +157,7 @@ Evaluation EvaluationOf(const char* name, std::shared_ptr<const Scenario> scenar
   LocalEnvironment environment(std::move(scenario), {4, saved.observation_types, false, 1});
   return Evaluate(environment, *MakePolicy(saved, environment.spec()), 3, 40, nullptr, {}, {},
                   [&environment](std::int32_t farm) {
-                    return environment.batch().farm(farm).record().accounts;
+                    return environment.batch().farm(farm).SettleAccounts();
                   });
 }
 

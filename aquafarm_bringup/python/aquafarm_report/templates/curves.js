@@ -36,6 +36,7 @@ for (const chart of CURVES.charts) {
     }} : {},
     valueRange: returns ? visible(chart).map(onScale) : null,
     underlayCallback: (canvas, area, dygraph) => {
+      if (unit) shade(canvas, area, dygraph);
       reference(canvas, area, dygraph, chart.lines || [], onScale);
       mark(canvas, area, dygraph, chart.marks || [], onScale);
     },
@@ -51,6 +52,12 @@ for (const chart of CURVES.charts) {
       moving = false;
     },
   }));
+}
+
+// The tile of a run has the colour of its curve.
+for (const tile of document.querySelectorAll(".tile.own")) {
+  const run = CURVES.labels.indexOf(tile.firstElementChild.textContent) - 1;
+  if (run >= 0) tile.style.setProperty("--own", CURVES.colours[run]);
 }
 
 // A scale that is linear above 0 and logarithmic below; `unit` is null where it is linear.
@@ -85,6 +92,35 @@ function steps(low, high) {
   return found;
 }
 
+// Shades the logarithmic part of a scale.
+function shade(canvas, area, dygraph) {
+  const zero = Math.min(Math.max(dygraph.toDomYCoord(0), area.y), area.y + area.h);
+  const height = area.y + area.h - zero;
+  canvas.save();
+  canvas.fillStyle = "rgba(128, 128, 128, 0.09)";
+  canvas.fillRect(area.x, zero, area.w, height);
+  canvas.font = `12px ${getComputedStyle(document.body).fontFamily}`;
+  canvas.fillStyle = "rgba(128, 128, 128, 1)";
+  canvas.textAlign = "right";
+  if (height > 40) canvas.fillText("logarithmic below 0", area.x + area.w - PAD - 8, zero + 18);
+  canvas.restore();
+}
+
+// Returns how many points of the curves lie in a box.
+function pointsIn(dygraph, left, right, top, bottom) {
+  let count = 0;
+  for (let row = 0; row < dygraph.numRows(); ++row) {
+    const x = dygraph.toDomXCoord(dygraph.getValue(row, 0));
+    if (x < left || x > right) continue;
+    for (let run = 1; run < dygraph.numColumns(); ++run) {
+      const value = dygraph.getValue(row, run);
+      const y = value === null ? NaN : dygraph.toDomYCoord(value);
+      if (y > top && y < bottom) ++count;
+    }
+  }
+  return count;
+}
+
 // Draws a line with a name for each reference in the range of a chart; names above each other are
 // written once, with commas.
 function reference(canvas, area, dygraph, lines, onScale) {
@@ -96,7 +132,6 @@ function reference(canvas, area, dygraph, lines, onScale) {
   canvas.save();
   canvas.strokeStyle = canvas.fillStyle = style.color;
   canvas.font = `13px ${style.fontFamily}`;
-  canvas.textAlign = "left";
   const names = [];
   for (const line of seen) {
     canvas.setLineDash(line.dash);
@@ -110,13 +145,22 @@ function reference(canvas, area, dygraph, lines, onScale) {
     else names.push({y: line.y, text: name});
   }
   for (const name of names) {
-    const above = name.y - area.y > 18;
-    canvas.fillText(name.text, area.x + 6, name.y + (above ? -5 : 16));
+    // Where the fewest points are in its way: at the left or the right, above or below its line.
+    const width = canvas.measureText(name.text).width + 12;
+    const end = area.x + area.w - PAD;
+    const places = [[area.x, -5], [end - width, -5], [area.x, 16], [end - width, 16]]
+      .filter(([, by]) => name.y + by - 14 > area.y && name.y + by + 4 < area.y + area.h)
+      .map(([x, by]) => ({x, by, points: pointsIn(dygraph, x, x + width, name.y + by - 14,
+        name.y + by + 4)}));
+    if (!places.length) continue;
+    const best = places.reduce((a, b) => b.points < a.points ? b : a);
+    canvas.fillText(name.text, best.x + 6, name.y + best.by);
   }
   canvas.restore();
 }
 
-// Draws the mean of greedy play of each run with its interval at the right edge.
+// Draws the mean of greedy play of each run with its interval at the right edge, in a strip with its
+// name.
 function mark(canvas, area, dygraph, marks, onScale) {
   const at = value => dygraph.toDomYCoord(onScale(value));
   if (!marks.length) return;
@@ -124,18 +168,30 @@ function mark(canvas, area, dygraph, marks, onScale) {
   const strip = area.x + area.w - 12 - 14 * marks.length;
   canvas.fillStyle = "rgba(128, 128, 128, 0.16)";
   canvas.fillRect(strip + 6, area.y, area.x + area.w - strip - 6, area.h);
+  const style = getComputedStyle(document.body);
+  canvas.save();
+  canvas.translate(strip + 18 + 7 * (marks.length - 1), area.y + area.h - 8);
+  canvas.rotate(-Math.PI / 2);
+  canvas.font = `12px ${style.fontFamily}`;
+  canvas.fillStyle = style.color;
+  canvas.fillText("greedy play", 0, 5);
+  canvas.restore();
   canvas.lineWidth = 2;
   marks.forEach(([mean, low, high], i) => {
     if (mean === null) return;
     const x = area.x + area.w - 10 - 14 * (marks.length - 1 - i);
     canvas.strokeStyle = canvas.fillStyle = CURVES.colours[i];
     canvas.beginPath();
-    canvas.arc(x, at(mean), 5, 0, 2 * Math.PI);
+    canvas.arc(x, at(mean), 3, 0, 2 * Math.PI);
     canvas.fill();
     if (low === null) return;
     canvas.beginPath();
     canvas.moveTo(x, at(low));
     canvas.lineTo(x, at(high));
+    for (const end of [low, high]) {
+      canvas.moveTo(x - 5, at(end));
+      canvas.lineTo(x + 5, at(end));
+    }
     canvas.stroke();
   });
   canvas.restore();

@@ -58,10 +58,11 @@ Farm::Farm(std::shared_ptr<const Scenario> scenario, std::shared_ptr<const Layou
   ship_index_.reserve(ships_.capacity());
   devices_.reserve(static_cast<std::size_t>(scenario_->devices.Total()));
   disasters_.reserve(scenario_->disasters.size());
-  drawn_.resize(scenario_->disasters.size());
-  storms_.resize(scenario_->disasters.size());
-  for (const DisasterSpec& spec : scenario_->disasters) {
-    draws_storms_ = draws_storms_ || spec.storms.has_value();
+  const std::vector<DisasterSpec>& specs = scenario_->disasters;
+  if (std::any_of(specs.begin(), specs.end(), [](const auto& spec) { return spec.storms; })) {
+    drawn_ = std::make_unique<DrawnStorms>();
+    drawn_->tracks.resize(specs.size());
+    drawn_->storms.resize(specs.size());
   }
   move_km_ = {MoveLength(Action::kNorth) * scenario_->cell_size_m / 1000.0,
               MoveLength(Action::kNorthEast) * scenario_->cell_size_m / 1000.0};
@@ -86,26 +87,24 @@ void Farm::DrawStorms() {
     if (!storms) continue;
     const DrawnStorm drawn =
         DrawStorm(*storms, record_.seed, record_.episode, static_cast<std::int32_t>(id), x, y);
-    storms_[id] = drawn.storm;
-    storm_errors_.assign(1, drawn.errors);
-    placer_.Place(drawn.storm->path, storm_errors_, storms->risks, DrawnTrack(id));
+    drawn_->storms[id] = drawn.storm;
+    drawn_->errors.assign(1, drawn.errors);
+    drawn_->placer.Place(drawn.storm->path, drawn_->errors, storms->risks, DrawnTrack(id));
   }
 }
 
 // Makes the track of a drawn storm one that only this farm owns, and returns it.
 std::vector<Waypoint>& Farm::DrawnTrack(std::size_t id) {
   tracks_[id].reset();
-  if (drawn_[id] == nullptr || drawn_[id].use_count() > 1) {
-    drawn_[id] = std::make_shared<std::vector<Waypoint>>();
-  }
-  tracks_[id] = drawn_[id];
-  return *drawn_[id];
+  std::shared_ptr<std::vector<Waypoint>>& track = drawn_->tracks[id];
+  if (track == nullptr || track.use_count() > 1) track = std::make_shared<std::vector<Waypoint>>();
+  tracks_[id] = track;
+  return *track;
 }
 
 const ArchivedStorm* Farm::DrawnStormOf(std::int32_t disaster) const {
-  return disaster < static_cast<std::int32_t>(storms_.size())
-             ? storms_[static_cast<std::size_t>(disaster)]
-             : nullptr;
+  const auto id = static_cast<std::size_t>(disaster);
+  return drawn_ != nullptr && id < drawn_->storms.size() ? drawn_->storms[id] : nullptr;
 }
 
 void Farm::Reset(std::uint64_t seed, std::uint64_t episode) {
@@ -116,7 +115,7 @@ void Farm::Reset(std::uint64_t seed, std::uint64_t episode) {
   record_.seed = seed;
   record_.episode = episode;
   if (tracks_changed_) ResetTracks();
-  if (draws_storms_) DrawStorms();
+  if (drawn_ != nullptr) DrawStorms();
   forecasts_.assign(scenario_->disasters.size(), nullptr);
 
   devices_.clear();
@@ -444,7 +443,6 @@ void Farm::Finish() {
   } else if (record_.steps >= scenario_->step_limit) {
     record_.reason = EndReason::kStepLimit;
   }
-  if (over() && scenario_->money) record_.accounts = SettleAccounts();
 }
 
 // A ship is moored if it is in a port at the end of a step in which it did not move.
@@ -456,7 +454,8 @@ void Farm::CountShipSteps() {
   }
 }
 
-Accounts Farm::SettleAccounts() const {
+std::optional<Accounts> Farm::SettleAccounts() const {
+  if (!over() || !scenario_->money) return std::nullopt;
   const MoneySpec& money = *scenario_->money;
   Accounts accounts;
   for (std::size_t id = 0; id < devices_.size(); ++id) {

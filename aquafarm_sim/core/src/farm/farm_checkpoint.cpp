@@ -177,7 +177,7 @@ void Farm::HashState(Hasher& hasher) const {
   }
   for (const Disaster& disaster : disasters_) HashDisaster(disaster, hasher);
   // Else the tracks are those of the scenario.
-  if (tracks_changed_ || draws_storms_) {
+  if (tracks_changed_ || drawn_ != nullptr) {
     for (const Track& track : tracks_) HashTrack(*track, hasher);
   }
   HashForecasts(forecasts_, hasher);
@@ -193,7 +193,7 @@ std::string Farm::Save() const {
              {"devices", Written(devices_)},
              {"disasters", Written(disasters_)},
              {"hash", Hash()}};
-  if (tracks_changed_ || draws_storms_) {
+  if (tracks_changed_ || drawn_ != nullptr) {
     for (const Track& track : tracks_) state["tracks"].push_back(TrackToJson(*track));
   }
   const auto issued = [](const Forecasts& forecasts) { return forecasts != nullptr; };
@@ -250,7 +250,6 @@ void Farm::Load(const std::string& bytes) {
     loaded.CheckConsistent();
     loaded.IndexShips();
     RequireSame("hash", loaded.Hash(), state.at("hash").get<std::uint64_t>());
-    if (loaded.over() && scenario_->money) loaded.record_.accounts = loaded.SettleAccounts();
   } catch (const json::exception& error) {
     throw InputError(std::string("state: damaged bytes: ") + error.what());
   }
@@ -288,9 +287,10 @@ void Farm::CopyTracksFrom(const Farm& from) {
     if (from.tracks_[id].get() == &theirs.track) tracks_[id] = {scenario_, &specs[id].track};
     if (!specs[id].storms) continue;
     const ArchivedStorm* const first = StormsOf(*theirs.storms, from.seed()).data();
-    storms_[id] = &StormsOf(*specs[id].storms,
-                            from.seed())[static_cast<std::size_t>(from.storms_[id] - first)];
-    if (from.tracks_[id] == from.drawn_[id]) DrawnTrack(id) = *from.drawn_[id];
+    const auto index = static_cast<std::size_t>(from.drawn_->storms[id] - first);
+    drawn_->storms[id] = &StormsOf(*specs[id].storms, from.seed())[index];
+    const auto& track = from.drawn_->tracks[id];
+    if (from.tracks_[id] == track) DrawnTrack(id) = *track;
   }
 }
 
@@ -345,7 +345,7 @@ void Farm::CheckConsistent() const {
 Track Farm::Owned(std::size_t id, std::vector<Waypoint> track) const {
   const auto& specs = scenario_->disasters;
   const bool drawn = id < specs.size() && specs[id].storms;
-  if (drawn && IsSame(*drawn_[id], track)) return drawn_[id];
+  if (drawn && IsSame(*drawn_->tracks[id], track)) return drawn_->tracks[id];
   if (!drawn && id < specs.size() && IsSame(specs[id].track, track)) {
     return {scenario_, &specs[id].track};
   }

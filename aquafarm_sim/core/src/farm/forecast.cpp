@@ -269,7 +269,7 @@ Waypoint RingsOf(const ObservableDisaster& disaster) {
   return now;
 }
 
-bool HasForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
+bool HasForecastOfTrack(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
   if (NewestForecast(farm, disaster, issued) != nullptr) return true;
   return !TrackOf(farm, disaster).empty() && !farm.scenario().view.forecast_error_km.empty();
 }

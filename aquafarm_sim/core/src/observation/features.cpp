@@ -2,6 +2,7 @@
 #include "aquafarm/observation/features.h"
 
 #include <algorithm>
+#include <array>
 #include <initializer_list>
 
 #include "aquafarm/farm/energy.h"
@@ -37,7 +38,7 @@ std::vector<std::string> ForEachMove(const std::string& what) {
 
 // The writers copy the scales first, because `out` might alias them.
 
-void WriteSelf(const FeatureScales& scales, const View& view, float* out) {
+float* WriteSelf(const FeatureScales& scales, const View& view, float* out) {
   const float scale = scales.length;
   const float horizon = scales.time;
   out[0] = 2.0F * static_cast<float>(view.self.x) * scale - 1.0F;
@@ -46,30 +47,29 @@ void WriteSelf(const FeatureScales& scales, const View& view, float* out) {
   out[2] = std::max(0.0F, 1.0F - static_cast<float>(view.step) / horizon);
   out[3] = static_cast<float>(view.capacity - view.aboard) / static_cast<float>(view.capacity);
   out[4] = KnownRiskAt(view, view.self) * kRiskScale;
+  return out + 5;
 }
 
 // Writes whether each move leads off the map or into a rock or island.
-void WriteBlocked(const FeatureScales&, const View& view, float* out) {
+float* WriteBlocked(const View& view, float* out) {
   const std::int32_t width = view.scenario->width;
   const std::int32_t height = view.scenario->height;
   const Cell self = view.self;
   const std::uint8_t* const here = view.layout->cells.data() + LinearIndex(self, width);
-  const auto is_blocked = [=](Cell move) {
-    return (here[LinearIndex(move, width)] & kBlockedBits) != 0;
-  };
-  const bool inside = self.x > 0 && self.x < width - 1 && self.y > 0 && self.y < height - 1;
-  if (inside) {  // the common case, without a branch per move
-    for (const Cell move : kMoves) *out++ = static_cast<float>(is_blocked(move));
-    return;
-  }
+  // Without branches, because ships are often at the edge, where ports are. A move off the map
+  // reads the ship's own cell instead.
+  const std::array<bool, 3> off_x{self.x == 0, false, self.x == width - 1};
+  const std::array<bool, 3> off_y{self.y == 0, false, self.y == height - 1};
   for (const Cell move : kMoves) {
-    const Cell to{self.x + move.x, self.y + move.y};
-    const bool off = to.x < 0 || to.x >= width || to.y < 0 || to.y >= height;
-    *out++ = static_cast<float>(off || is_blocked(move));
+    const bool off =
+        off_x[static_cast<std::size_t>(move.x + 1)] | off_y[static_cast<std::size_t>(move.y + 1)];
+    const std::uint8_t bits = here[off ? 0 : LinearIndex(move, width)];
+    *out++ = static_cast<float>(off | ((bits & kBlockedBits) != 0));
   }
+  return out;
 }
 
-void WriteDevices(const FeatureScales& scales, const View& view, float* out) {
+float* WriteDevices(const FeatureScales& scales, const View& view, float* out) {
   const float scale = scales.length;
   for (const KnownDevice& device : view.devices) {
     *out++ = static_cast<float>(device.cell.x - view.self.x) * scale;
@@ -78,6 +78,7 @@ void WriteDevices(const FeatureScales& scales, const View& view, float* out) {
     *out++ = device.aboard_self ? 1.0F : 0.0F;
     *out++ = device.health * device.value * kValueScale;
   }
+  return out;
 }
 
 void WritePorts(const FeatureScales& scales, const View& view, float* out) {
@@ -86,6 +87,25 @@ void WritePorts(const FeatureScales& scales, const View& view, float* out) {
     *out++ = static_cast<float>(port.x - view.self.x) * scale;
     *out++ = static_cast<float>(port.y - view.self.y) * scale;
   }
+}
+
+// Writes what every scenario has, in one call: a call through a pointer takes as long as a group.
+void WriteBase(const FeatureScales& scales, const View& view, float* out) {
+  out = WriteSelf(scales, view, out);
+  out = WriteBlocked(view, out);
+  WritePorts(scales, view, WriteDevices(scales, view, out));
+}
+
+std::vector<std::string> BaseNames(const Scenario& scenario) {
+  std::vector<std::string> names{"self.x", "self.y", "time_left", "free_capacity", "risk_here"};
+  for (const std::vector<std::string>& more :
+       {ForEachMove("blocked."),
+        Numbered("device", scenario.devices.Total(),
+                 {"east", "north", "deployed", "aboard", "worth"}),
+        Numbered("port", scenario.PortCount(), {"east", "north"})}) {
+    names.insert(names.end(), more.begin(), more.end());
+  }
+  return names;
 }
 
 // Writes the disasters of the scenario by id.
@@ -265,13 +285,7 @@ std::vector<FeatureGroup> FeatureGroups(const Scenario& scenario) {
   if (scenario.view.tokens) return TokenFeatureGroups();
   const std::int32_t agents = scenario.AgentCount();
   std::vector<FeatureGroup> groups{
-      {"self", {"self.x", "self.y", "time_left", "free_capacity", "risk_here"}, WriteSelf},
-      {"blocked", ForEachMove("blocked."), WriteBlocked},
-      {"devices",
-       Numbered("device", scenario.devices.Total(),
-                {"east", "north", "deployed", "aboard", "worth"}),
-       WriteDevices},
-      {"ports", Numbered("port", scenario.PortCount(), {"east", "north"}), WritePorts},
+      {"base", BaseNames(scenario), WriteBase},
       DisasterGroup(scenario),
       {"others", Numbered("other", agents - 1, {"visible", "east", "north", "aboard"}),
        WriteOthers},

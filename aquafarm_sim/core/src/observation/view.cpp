@@ -193,24 +193,28 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
   view.layout = &farm.layout();
   CollectSensors(farm, view.self, view.sensors);
 
+  // Iterators instead of indices: the number of elements costs more than what a loop does.
   view.others.resize(ships.size() - 1);
-  for (std::size_t id = 0, k = 0; id < ships.size(); ++id) {
-    if (static_cast<std::int32_t>(id) == ship) continue;
-    KnownShip& known = view.others[k++];
-    known.id = static_cast<std::int32_t>(id);
-    known.cell = ships[id].cell;
-    known.aboard = ships[id].aboard;
-    known.visible = ships[id].active && (full || IsSeen(view.sensors, known.cell));
+  auto other = view.others.begin();
+  for (const Ship& one : ships) {
+    if (&one == &self) continue;
+    KnownShip& known = *other++;
+    known.id = static_cast<std::int32_t>(&one - ships.data());
+    known.cell = one.cell;
+    known.aboard = one.aboard;
+    known.visible = one.active && (full || IsSeen(view.sensors, known.cell));
   }
 
   view.devices.resize(farm.devices().size());
-  for (std::size_t id = 0; id < view.devices.size(); ++id) {
-    const Device& device = farm.devices()[id];
-    KnownDevice& known = view.devices[id];
-    const Cell cell = farm.CellOf(static_cast<std::int32_t>(id));
+  auto placed = view.layout->devices.begin();
+  auto next = view.devices.begin();
+  for (const Device& device : farm.devices()) {
+    KnownDevice& known = *next++;
+    const Cell cell = farm.CellOf(device);
     const bool visible = full || IsSeen(view.sensors, cell);
     // Out of sight only the cell where the device was deployed is known.
-    known.cell = visible ? cell : view.layout->devices[id].cell;
+    known.cell = visible ? cell : placed->cell;
+    ++placed;
     known.kind = device.kind;
     known.status = device.status;
     known.aboard_self = device.carrier == ship;
@@ -221,9 +225,10 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
   }
 
   view.disasters.resize(farm.disasters().size());
-  for (std::size_t id = 0; id < view.disasters.size(); ++id) {
-    ObserveDisaster(farm, id, full, view.sensors, view.disasters[id]);
-    KnownDisaster& known = view.disasters[id];
+  std::size_t next_id = 0;
+  for (KnownDisaster& known : view.disasters) {
+    const std::size_t id = next_id++;
+    ObserveDisaster(farm, id, full, view.sensors, known);
     if (!known.known) continue;
     if (scenario.view.disaster_slots > 0) ApplyLeads(farm, id, known);
     ApplyForecast(farm, id, known);

@@ -20,7 +20,7 @@ Scenario InsuredTiny(double at_sea_loss = 1.0) {
 }
 
 Ledger MonitoringOf(const Farm& farm) {
-  return farm.record().accounts.value().by_kind[static_cast<std::size_t>(DeviceKind::kMonitoring)];
+  return farm.SettleAccounts().value().by_kind[static_cast<std::size_t>(DeviceKind::kMonitoring)];
 }
 
 void Expect(const Ledger& ledger, Cents insured, Cents saved, Cents damaged, Cents lost) {
@@ -34,14 +34,14 @@ TEST(Accounts, ADeliveredDeviceIsSaved) {
   Farm farm = MakeFarm(InsuredTiny());
   for (const Action action : {Action::kNorth, Action::kNorth, Action::kPickup, Action::kSouth,
                               Action::kSouth, Action::kDropOff}) {
-    EXPECT_FALSE(farm.record().accounts);
+    EXPECT_FALSE(farm.SettleAccounts());
     StepOne(farm, action);
   }
   Expect(MonitoringOf(farm), 100001, 100001, 0, 0);
-  Expect(farm.record().accounts->Total(), 100001, 100001, 0, 0);
+  Expect(farm.SettleAccounts()->Total(), 100001, 100001, 0, 0);
   // Five steps of ten minutes at sea or moving; the drop-off is in the port.
   EXPECT_EQ(farm.record().ship_steps, 5);
-  EXPECT_EQ(farm.record().accounts->OperatingCost(), 7500);
+  EXPECT_EQ(farm.SettleAccounts()->OperatingCost(), 7500);
 }
 
 TEST(Accounts, ACrashDamagesAShareOfTheValue) {
@@ -77,7 +77,7 @@ TEST(Accounts, AtSeaLossIsTheShareOfTheRemainingValue) {
   // Ten steps at a risk of 5 take half of the health; of the rest a quarter is lost.
   Expect(MonitoringOf(farm), 100000, 37500, 50000, 12500);
   EXPECT_EQ(farm.record().ship_steps, 0) << "the ship stayed in the port";
-  EXPECT_EQ(farm.record().accounts->OperatingCost(), 0);
+  EXPECT_EQ(farm.SettleAccounts()->OperatingCost(), 0);
 }
 
 TEST(Accounts, DamageIsAShareOfTheInitialHealth) {
@@ -95,8 +95,8 @@ TEST(Accounts, EnergyHasItsPrice) {
   Farm farm = MakeFarm(scenario);
   StepOne(farm, Action::kNorth);
   while (!farm.over()) StepOne(farm, Action::kHold);
-  EXPECT_EQ(farm.record().accounts->energy_cost, 450);
-  EXPECT_EQ(farm.record().accounts->OperatingCost(), 450 + 10 * 1500);
+  EXPECT_EQ(farm.SettleAccounts()->energy_cost, 450);
+  EXPECT_EQ(farm.SettleAccounts()->OperatingCost(), 450 + 10 * 1500);
 }
 
 TEST(Accounts, ASiteMayHaveItsOwnValue) {
@@ -112,7 +112,7 @@ TEST(Accounts, WithoutMoneyThereAreNone) {
   Farm farm = MakeFarm(test::CrowdedScenario(2));
   test::RandomSteps(farm, 1000, 1);
   ASSERT_TRUE(farm.over());
-  EXPECT_FALSE(farm.record().accounts);
+  EXPECT_FALSE(farm.SettleAccounts());
   EXPECT_EQ(farm.record().ship_steps, 0);
 }
 
@@ -153,7 +153,7 @@ Scenario RandomInsured(RandomStream& rng) {
 // Slow oracle: books every device again from the farm's state, by kind and in integers.
 void ExpectBalanced(const Farm& farm, std::int64_t ship_steps) {
   const Scenario& scenario = farm.scenario();
-  const Accounts& accounts = farm.record().accounts.value();
+  const Accounts accounts = farm.SettleAccounts().value();
   Cents insured = 0;
   for (std::size_t kind = 0; kind < accounts.by_kind.size(); ++kind) {
     Ledger expected;
@@ -207,8 +207,8 @@ TEST(Accounts, BalanceToTheCentInRandomEpisodes) {
         }
       }
       ExpectBalanced(farm, ship_steps);
-      with_loss += farm.record().accounts->Total().Loss() > 0 ? 1 : 0;
-      with_savings += farm.record().accounts->Total().saved > 0 ? 1 : 0;
+      with_loss += farm.SettleAccounts()->Total().Loss() > 0 ? 1 : 0;
+      with_savings += farm.SettleAccounts()->Total().saved > 0 ? 1 : 0;
     }
   }
   EXPECT_GT(with_loss, 600);
@@ -227,9 +227,9 @@ TEST(Accounts, ALoadedEpisodeHasTheSameAccounts) {
   test::RandomSteps(farm, 1000, 4);
   copy.Load(farm.Save());
   ASSERT_TRUE(copy.over());
-  EXPECT_TRUE(copy.record().accounts->by_kind == farm.record().accounts->by_kind);
-  EXPECT_EQ(copy.record().accounts->ship_cost, farm.record().accounts->ship_cost);
-  EXPECT_GT(copy.record().accounts->Total().insured, 0);
+  EXPECT_TRUE(copy.SettleAccounts()->by_kind == farm.SettleAccounts()->by_kind);
+  EXPECT_EQ(copy.SettleAccounts()->ship_cost, farm.SettleAccounts()->ship_cost);
+  EXPECT_GT(copy.SettleAccounts()->Total().insured, 0);
 }
 
 }  // namespace

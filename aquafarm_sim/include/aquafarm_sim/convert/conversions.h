@@ -20,6 +20,7 @@
 #include <std_msgs/Float32MultiArray.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,8 +60,10 @@ void ToMsg(const aquafarm::Farm& farm, const aquafarm::View& view, const Message
 void ToMsg(const aquafarm::Farm& farm, const aquafarm::Encoder& encoder, std::int32_t farms,
            const std::string& yaml, const MessageContext& context,
            aquafarm_msgs::FarmSpec& message);
-aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record, std::int32_t farm,
-                                    const MessageContext& context);
+/// @param accounts of the episode; nullopt without money
+aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record,
+                                    const std::optional<aquafarm::Accounts>& accounts,
+                                    std::int32_t farm, const MessageContext& context);
 
 /// Converts islands and rocks to a grid: 100 blocked, 0 water. The grid's origin is the south-west
 /// corner of cell (0, 0), whose centre is the origin of the map frame.

@@ -6,6 +6,7 @@
 ///   the scenario has energy) → Reward → Finish. Step never allocates. Reset allocates only after
 ///   SetDisaster or Load has set a track, or if another owner still holds the drawn storm's track.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -60,11 +61,18 @@ struct Device {
 /// Statistics of an episode, updated every step.
 struct EpisodeRecord : EpisodeStatistics {
   std::int32_t ship_steps{};  ///< steps of rescue ships not moored in a port; 0 without money
-  std::optional<Accounts> accounts;  ///< set when an episode with money ends
 };
 
 /// Returns the summary of an episode that the farm with index `farm` played.
 EpisodeSummary SummaryOf(const EpisodeRecord& record, std::int32_t farm);
+
+/// The storms that the disasters of a farm drew in the present episode.
+struct DrawnStorms {
+  std::vector<std::shared_ptr<std::vector<Waypoint>>> tracks;  ///< by disaster; null: no storms
+  std::vector<const ArchivedStorm*> storms;                    ///< by disaster; null: no storms
+  StormPlacer placer;
+  std::vector<StormErrors> errors;  ///< of the storm that is placed
+};
 
 /// One farm. Calling Step after the end of an episode is a programming error.
 class Farm {
@@ -117,6 +125,8 @@ class Farm {
   EndReason reason() const { return record_.reason; }
   /// Whether the episode has ended; call Reset or Load to continue.
   bool over() const { return record_.reason != EndReason::kNone; }
+  /// Returns the money of an episode that has ended; nullopt before its end and without `money`.
+  std::optional<Accounts> SettleAccounts() const;
 
   /// Returns the current worst risk of disasters and sea at a cell of the map; 0 or negative.
   float RiskAt(Cell cell) const;
@@ -126,9 +136,15 @@ class Farm {
 
   /// Returns the current cell of a device: its own cell, or the cell of its carrier.
   Cell CellOf(std::int32_t device) const {
-    const Device& one = devices_[static_cast<std::size_t>(device)];
-    if (one.carrier != kNone) return ships_[static_cast<std::size_t>(one.carrier)].cell;
-    return one.cell;
+    return CellOf(devices_[static_cast<std::size_t>(device)]);
+  }
+  /// The same for a device of this farm.
+  Cell CellOf(const Device& device) const {
+    // Without a branch, because farms differ in it.
+    const std::size_t is_aboard = device.carrier == kNone ? 0 : 1;
+    const Cell aboard = ships_[is_aboard * static_cast<std::size_t>(device.carrier)].cell;
+    const Cell cells[] = {device.cell, aboard};
+    return cells[is_aboard];
   }
 
   /// Returns the legal actions of a ship in the current state; all moves if it is out of play.
@@ -192,7 +208,6 @@ class Farm {
   void Reward();
   void Finish();
   void CountShipSteps();
-  Accounts SettleAccounts() const;
   void CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits);
   void ResetTracks();
   void DrawStorms();
@@ -215,17 +230,13 @@ class Farm {
   std::vector<Track> tracks_;
   std::array<double, 2> move_km_{};  // length of a straight and of a diagonal move
   std::int32_t remaining_{};         // devices not yet delivered
-  bool draws_storms_{};
-  bool tracks_changed_{};  // by SetDisaster or Load during this episode
+  bool tracks_changed_{};            // by SetDisaster or Load during this episode
   EpisodeRecord record_;
 
   std::shared_ptr<Layout> own_layout_;  // null when the layout is shared
   std::unique_ptr<LayoutGenerator> generator_;
   std::vector<Forecasts> forecasts_;
-  std::vector<std::shared_ptr<std::vector<Waypoint>>> drawn_;  // by disaster; null: no storms
-  std::vector<const ArchivedStorm*> storms_;                   // by disaster
-  StormPlacer placer_;
-  std::vector<StormErrors> storm_errors_;  // of the storm that is placed
+  std::unique_ptr<DrawnStorms> drawn_;  // null: no disaster has storms
 };
 
 /// Returns the fraction of its health that a device aboard loses in a crash into a rock or island.

@@ -14,6 +14,7 @@ set(AQUAFARM_DRAWING_SOURCES
   src/draw/entities.cpp
   src/draw/free_space.cpp
   src/draw/image.cpp
+  src/draw/label_space.cpp
   src/draw/layout.cpp
   src/draw/legend.cpp
   src/draw/map_labels.cpp
@@ -28,7 +29,7 @@ set(AQUAFARM_DRAWING_SOURCES
   src/scene/layers.cpp
   src/scene/nautical.cpp
   src/scene/outlook.cpp
-  src/scene/port_shift.cpp
+  src/scene/ship_place.cpp
   src/scene/shown_actions.cpp
   src/scene/storm_track.cpp
   src/scene/trail.cpp)

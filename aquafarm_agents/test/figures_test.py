@@ -303,10 +303,10 @@ class FiguresTest(unittest.TestCase):
         lines = self.lines()
         self.assertIn("ring of a disaster in the last step", lines)
         last, = (one for one in self.axes.collections if isinstance(one, LineCollection))
-        self.assertIn("last leg: route with a device aboard", last.get_label())
+        self.assertIn("last leg, a device aboard", last.get_label())
         np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
         np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
-        self.assertEqual("ranch 7: 0 of 2 devices in port, return -12\n"
+        self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
                          "time limit after 3 steps\nthe last 2 steps without a stop",
                          self.axes.get_title())
         self.assertEqual((8.7, 4.7), (self.axes.get_xlim()[1], self.axes.get_ylim()[1]),

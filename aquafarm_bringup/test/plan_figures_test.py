@@ -56,6 +56,10 @@ class PlanFiguresTest(unittest.TestCase):
         fixes = [label for label in region["labels"] if label.name in ("recorded", "forecast")]
         self.assertLessEqual(2, len(fixes))
         self.assertLessEqual(len(fixes), figures.REGION_LABELS)
+        now, = (label for label in fixes if label.lines[0].startswith("now: "))
+        marked, = (point for point in region["points"] if point["is_now"])
+        self.assertEqual(marked["xy"], now.anchor)
+        self.assertIn(marked["time"].split(" ", 1)[1], now.lines[0])
 
     def test_the_region_ends_soon_after_the_last_event(self):
         plan = plan_sample.sample(members=100)

@@ -24,7 +24,7 @@ from aquafarm_report import values_topics  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 
 from aquafarm_report.values import (ValuesError, compare, draw_key, draw_map,  # noqa: E402
-                                    draw_places, draw_relation, make, read, strength)
+                                    draw_places, draw_relation, make, read, verdict)
 
 
 def slope(height=12, width=14):
@@ -105,20 +105,28 @@ class ValuesTest(unittest.TestCase):
         self.assertEqual([], make(written(self.folder.name, slope(), {}), output))
         self.assertEqual(b"\x89PNG", pathlib.Path(output + ".png").read_bytes()[:4])
 
-    def test_a_correlation_has_words(self):
-        self.assertEqual("falls strongly", strength(-0.9))
-        self.assertEqual("rises weakly", strength(0.2))
-        self.assertEqual("hardly changes", strength(0.05))
-        self.assertEqual("", strength(None))
+    def test_the_title_says_where_to_start(self):
+        values = slope()
+        values[1:3, 2:4] = -50.0
+        values[9, 10] = 99.0
+        text = {"cell_size_m": 500.0, "ports": [[0, 0]], "devices": [[10, 8]]}
+        said = verdict(values, text)
+        self.assertIn("Best start: next to a device, 5 km east, 5 km north (99 points)", said)
+        self.assertIn("is around 1 km east, 1 km north", said)
+        text["devices"] = [[10, 9]]
+        self.assertIn("Best start: at a device,", verdict(values, text))
+        self.assertIn("Best start: 5 km east", verdict(values, {"cell_size_m": 500.0}))
+        self.assertEqual("", verdict(np.ones((3, 4)), text))
+        self.assertEqual("", verdict(np.full((3, 4), np.nan), text))
 
     def test_the_figure_uses_words_and_units_that_people_know(self):
         values = slope()
         layer = ("warmth", "degC", slope())
         _, axis = pyplot.subplots()
         self.addCleanup(pyplot.close, "all")
-        draw_relation(axis, values, layer, compare(values, layer[2]))
-        self.assertIn("The return rises strongly with temperature\nrank correlation +1.00",
-                      axis.get_title())
+        draw_relation(axis, values, layer, compare(values, layer[2]), "d")
+        self.assertEqual("(d) Return against temperature", axis.get_title())
+        self.assertIn("rank correlation +1.00", axis.texts[0].get_text())
         self.assertEqual("temperature [°C]", axis.get_xlabel())
         draw_key(axis, {"policy": "planner"}, None)
         for words in (axis.get_title(), *(text.get_text() for text in axis.texts)):

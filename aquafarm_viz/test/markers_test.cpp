@@ -160,7 +160,7 @@ TEST(StateMarkers, ShowEveryShipDeviceAndDisaster) {
   EXPECT_EQ(markers.at({"heading", 0}).type, Marker::ARROW);
 }
 
-TEST(StateMarkers, ShowEachPortNextToAShipInItsCell) {
+TEST(StateMarkers, ShowAShipNextToThePortInItsCell) {
   const auto spec = test::MakeSpec();
   auto state = test::MakeState();
   for (int port = 0; port < 4; ++port) {
@@ -173,8 +173,11 @@ TEST(StateMarkers, ShowEachPortNextToAShipInItsCell) {
       const Marker& letter = markers.at({"port_letter", port});
       EXPECT_EQ(letter.text, std::string(1, char('A' + port)));
       EXPECT_EQ(letter.pose.position.x, disc.pose.position.x);
-      const double away = std::hypot(disc.pose.position.x / spec.cell_size_m - cell.x,
-                                     disc.pose.position.y / spec.cell_size_m - cell.y);
+      EXPECT_EQ(disc.pose.position.x, cell.x * spec.cell_size_m);
+      EXPECT_EQ(disc.pose.position.y, cell.y * spec.cell_size_m);
+      const Marker& ship = markers.at({"ship", 0});
+      const double away = std::hypot(ship.pose.position.x / spec.cell_size_m - state.ships[0].x,
+                                     ship.pose.position.y / spec.cell_size_m - state.ships[0].y);
       if (has_ship) {
         EXPECT_GT(away, 1.0) << "port " << port << " is covered";
         EXPECT_LT(away, 1.5);

@@ -465,7 +465,8 @@ TEST(LabelDanger, NamesEveryDeviceThatHasAFreePlaceNearby) {
   }
   const Layout layout = MakeLayout(25, 25, {960, 960});
   const Fonts fonts(layout.unit);
-  const auto count = [&](FreeSpace space) {
+  const auto count = [&](const FreeSpace& symbols) {
+    LabelSpace space(symbols, scene.spec, layout);
     return CountParts(layout, [&](cv::Mat& map) {
       LabelDanger(map, scene.spec, scene.state, scene.outlook(), space, layout, fonts);
     });

@@ -92,7 +92,7 @@ TEST(Layout, HasAPanelOfAQuarterOfAWidePicture) {
   }
 }
 
-TEST(Signs, OfAPortStandNextToAShipInIt) {
+TEST(Signs, OfAShipStandNextToThePortInItsCell) {
   auto spec = test::MakeSpec();
   spec.ports[2].cell = test::MakeCell(12, 15);  // next to each other
   spec.ports[3].cell = test::MakeCell(11, 15);
@@ -101,14 +101,11 @@ TEST(Signs, OfAPortStandNextToAShipInIt) {
   for (const auto& port : spec.ports) {
     state.ships.front().x = port.cell.x;
     state.ships.front().y = port.cell.y;
-    const cv::Point2d at = PortPlace(spec, state, port, layout);
-    const cv::Point2d ship = layout.view.ToPixel(port.cell.x, port.cell.y);
-    EXPECT_GE(cv::norm(at - ship), layout.ship_radius_px() + layout.port_radius_px());
+    const cv::Point2d at = ShipPlace(spec, state, state.ships.front(), layout);
     for (const auto& other : spec.ports) {
-      if (other.id == port.id) continue;
-      const cv::Point2d there = PortPlace(spec, state, other, layout);
-      EXPECT_EQ(there, layout.view.ToPixel(other.cell.x, other.cell.y)) << "without a ship";
-      EXPECT_GE(cv::norm(at - there), 2.0 * layout.port_radius_px()) << PortLetter(port.id);
+      const cv::Point2d there = layout.view.ToPixel(other.cell.x, other.cell.y);
+      EXPECT_GE(cv::norm(at - there), layout.ship_radius_px() + layout.port_radius_px())
+          << PortLetter(port.id) << PortLetter(other.id);
     }
     EXPECT_FALSE(BlockSymbols(spec, state, {}, layout).IsFree({cv::Point(at), cv::Size(1, 1)}))
         << "labels keep off";
@@ -183,9 +180,9 @@ TEST(Signs, OfRingsAreLabelledOnTheirOwnLineAndOffTheLand) {
     disaster.x = x;
     disaster.y = 8.0F;
     std::vector<Course> courses{CourseOf(spec, state, 0, {})};
-    FreeSpace space = BlockSymbols(spec, state, {}, layout);
+    LabelSpace space(BlockSymbols(spec, state, {}, layout), spec, layout);
     cv::Mat map(layout.map.size(), CV_8UC3, cv::Scalar::all(90));
-    LabelRings(map, spec, state, courses, space, layout, fonts);
+    LabelRings(map, state, courses, space, layout, fonts);
     cv::Mat1b written;
     cv::inRange(map, Bgr(layout.style->words), Bgr(layout.style->words), written);
     cv::Mat1b joined;  // one part for each label
@@ -228,9 +225,9 @@ TEST(Signs, OfDevicesStandNextToTheirDeviceAndNotNearerToARock) {
   for (const cv::Point side : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, -1)}) {
     spec.rocks.front().cell.x = cell.x + side.x;
     spec.rocks.front().cell.y = cell.y + side.y;
-    FreeSpace space = BlockSymbols(spec, state, {}, layout);
+    LabelSpace space(BlockSymbols(spec, state, {}, layout), spec, layout);
     cv::Mat map(layout.map.size(), CV_8UC3, cv::Scalar::all(90));
-    LabelDevices(map, spec, state, nullptr, {}, space, layout, fonts);
+    LabelDevices(map, spec, state, {}, space, layout, fonts);
     cv::Mat1b written;
     cv::inRange(map, Bgr(layout.style->label), Bgr(layout.style->label), written);
     const cv::Moments moments = cv::moments(written, true);

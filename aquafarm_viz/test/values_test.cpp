@@ -37,7 +37,7 @@ TEST(Values, FarFromZeroHaveTheColoursOfTheirDifferences) {
     values.highest = lowest + 4.0F;
     values.values = {lowest, lowest + 1.0F, lowest + 4.0F};
     cv::Mat map(10, 30, CV_8UC3, cv::Scalar::all(0));
-    DrawValues(map, values);
+    DrawValues(map, {}, values, MakeLayout(3, 1, {64, 64}));
     return map;
   };
   EXPECT_EQ(cv::norm(drawn(0.0F), drawn(-1.0e7F), cv::NORM_INF), 0.0);

@@ -108,20 +108,21 @@ def plot_unfinished(axes, name, route, size):
             outline.set_clip_path(sea)
     *before, (loaded, last_leg) = legs(route["steps"])
     for _, cells in before:
-        axes.plot(*np.array(cells, dtype=float).T, color="#5b6b78", linewidth=0.8, zorder=4,
-                  alpha=_REPEATED, label="route before")
-    colour, _, kind = _LEGS[loaded]
+        axes.plot(*np.array(cells, dtype=float).T, color="#5b6b78", linewidth=1.0, zorder=4,
+                  alpha=0.7, label="route before")
+    colour, kind = _LEGS[loaded][0], f"{'a device' if loaded else 'nothing'} aboard"
     axes.add_collection(LineCollection(  # each step for itself: what the ship repeats is darker
         [np.array(pair, dtype=float) for pair in zip(last_leg, last_leg[1:])], color=colour,
-        linewidth=1.4, zorder=5, alpha=_REPEATED, label=f"last leg: {kind}, darker if repeated"))
+        linewidth=1.4, zorder=5, alpha=_REPEATED, label=f"last leg, {kind}; darker: repeated"))
     axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black",
                  linewidth=2.2, zorder=8, label="device that was not fetched")
     axes.scatter(*last["cell"], s=150, marker="*", color="#f0e442", edgecolor="black", zorder=9,
                  label="ship at the end")
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
-                   f"return {route['return']:.0f}\n"
+                   f"return {route['return']:.0f}".replace("-", "−") + "\n"
                    f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps\n"
-                   f"the last {len(last_leg) - 1} steps without a stop", fontsize=11)
+                   f"the last {len(last_leg) - 1} steps without a stop", fontsize=11,
+                   y=(chart["height"] - 1 + 2 * _RIM) / (size[1] - 1 + 2 * _RIM))
 
 
 def _symbols(charts):

@@ -41,10 +41,11 @@ def region(plan):
         left = 0.25 * (side - east + west)
         return (x - west + left) * scale, ((south + north + side) / 2 - y) * scale
 
+    now = min(range(len(points)), key=lambda i: abs(clock.seconds(points[i]["time"])))
     drawn = [{
         "xy": px(*p["at"]), "source": p["source"], "time": clock.day_time(p["time"]),
-        "wind": p["wind_mps"]
-    } for p in points]
+        "wind": p["wind_mps"], "is_now": i == now
+    } for i, p in enumerate(points)]
     rings, caption = _region_rings(plan, points, middle, px, scale / cell_km, clock)
     bar = [{"px": n * km / cell_km * scale, "text": f"{n:g} {unit}"}
            for unit, km in (("km", 1), ("nmi", 1.852)) for n in [nice(side * cell_km * 0.25 / km)]]
@@ -68,7 +69,8 @@ def _apart(drawn, least):
     """The points of a dense track that are at least a distance apart [px], and the last one."""
     kept = []
     for one in drawn:
-        if not kept or math.dist(one["xy"], kept[-1]["xy"]) >= least or one is drawn[-1]:
+        if (not kept or math.dist(one["xy"], kept[-1]["xy"]) >= least or one["is_now"]
+                or one is drawn[-1]):
             kept.append(one)
     return kept
 
@@ -77,14 +79,21 @@ def _region_labels(plan, drawn, rings, box):
     """The ranch's name, times and winds at the fixes, and names at the rings."""
     centre = (box["x"] + box["w"] / 2, box["y"] + box["h"] / 2)
     labels = [Label(["ranch"], centre, box["w"] / 2 + 2, 14, name="ranch-name")]
-    for one in drawn[::max(1, math.ceil(len(drawn) / REGION_LABELS))]:
-        wind = "" if one["wind"] is None else f", {one['wind']:.0f} m/s"
-        labels.append(
-            Label([one["time"].split(" ", 1)[1] + wind], one["xy"], 6, 12, name=one["source"]))
+    now = next(one for one in drawn if one["is_now"])
+    others = [one for one in drawn[::math.ceil(len(drawn) / (REGION_LABELS - 1))]
+              if math.dist(one["xy"], now["xy"]) > 40.0]
+    for one in [now, *others]:
+        words = one["time"].split(" ", 1)[1]
+        words += "" if one["wind"] is None else f", {one['wind']:.0f} m/s"
+        labels.append(Label([f"now: {words}" if one is now else words], one["xy"], 6, 12,
+                            name=one["source"]))
     for ring in rings:
         x, y = ring["xy"][0], ring["xy"][1] + ring["r"]
-        labels.append(Label([plan["rings"][ring["ring"]]["name"]], (x, y), 1, 12, name="ring"))
+        labels.append(Label([plan["rings"][ring["ring"]]["name"]], (x, y), 3, 12, name="ring"))
     points = [(*one["xy"], 30.0) for one in drawn] + [(*centre, 90.0)]
+    points += [(ring["xy"][0] + ring["r"] * math.cos(math.tau * i / 90),
+                ring["xy"][1] + ring["r"] * math.sin(math.tau * i / 90), 2.0)
+               for ring in rings for i in range(90)]
     points += [(x, y, 3.0) for a, b in zip(drawn, drawn[1:])
                for x, y in samples([a["xy"], b["xy"]])]
     return place(labels, points, REGION, REGION - 36)

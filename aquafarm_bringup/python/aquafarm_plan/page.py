@@ -2,6 +2,7 @@
 """Renders a plan file as one self-contained HTML page."""
 import json
 import pathlib
+import re
 
 import jinja2
 import markupsafe
@@ -11,6 +12,7 @@ from .document import Clock, amount, percent
 
 # Not a PackageLoader: in a devel space the package is a stub that extends its path.
 TEMPLATES = pathlib.Path(__file__).with_name("templates")
+UNIT = re.compile(r"(?<=\d) (?=%)")  # the space of "92 %", where no line may end
 BASIS = {
     "recorded": "recorded", "forecast": "forecast", "published": "published",
     "estimated": "estimated", "assumed": "assumed", "given": "given by you"
@@ -33,7 +35,8 @@ def render(plan):
                                dt=clock.day_time,
                                utc=clock.utc,
                                utc_full=clock.utc_full,
-                               kind=words.kind_name)
+                               kind=words.kind_name,
+                               keep_units=lambda text: UNIT.sub("\u00a0", text))
     drawing, line = chart.chart(plan), figures.timeline(plan)
     departures = _departures(plan)
     first = min(

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """V_π next to the sea (Fig. 10): heat maps on the same cells, with their similarity."""
 import json
+import math
 import pathlib
 
 import matplotlib
 
 matplotlib.use("Agg")
 import numpy as np  # noqa: E402
-from matplotlib import pyplot  # noqa: E402
+from matplotlib import pyplot, ticker  # noqa: E402
 from scipy import ndimage, stats  # noqa: E402
 from skimage.metrics import structural_similarity  # noqa: E402
 
@@ -15,6 +16,7 @@ from aquafarm_bringup.files import open_atomically  # noqa: E402
 
 MOST_WINDOW = 7  # cells on a side, as in scikit-image
 FEWEST_CELLS = 10
+NEXT_TO = 2.0  # distance of a cell from a device or port next to it [cells]
 _COLUMN = 3.3  # width of a map in the figure [inch]
 _LOW_COLOUR = "#440154"  # the lowest one of viridis
 _SEA_COLOURS = {"depth": "Blues", "warmth": "YlOrRd"}
@@ -81,26 +83,31 @@ def signed(number):
     return "-" if number is None else f"{number:+.2f}".replace("-", "−")
 
 
-def strength(rho):
-    """What the return does where the sea's value is larger, in words; empty if not known."""
-    if rho is None:
-        return ""
-    if abs(rho) < 0.1:
-        return "hardly changes"
-    size = "weakly" if abs(rho) < 0.4 else "clearly" if abs(rho) < 0.7 else "strongly"
-    return f"{'rises' if rho > 0 else 'falls'} {size}"
+def place_words(cells, text):
+    """Where a cell [east, north] is: next to a device or port, else its distance east and north."""
+    east, north = cells
+    near = [(math.hypot(east - x, north - y), words, (x, y))
+            for words, key in (("device", "devices"), ("port", "ports"))
+            for x, y in text.get(key) or []]
+    km = text["cell_size_m"] / 1000.0
+    at = f"{(east + 0.5) * km:.0f} km east, {(north + 0.5) * km:.0f} km north"
+    if near and min(near)[0] <= NEXT_TO:
+        distance, words, _ = min(near)
+        return f"{'at' if distance < 1.0 else 'next to'} a {words}, {at}"
+    return at
 
 
-def verdict(layers, results):
-    """Words on the layer of the sea that the return goes with most; empty if nothing is known."""
-    known = [(abs(result["spearman_rho"]), sea_words(layer[0]), result["spearman_rho"])
-             for layer, result in zip(layers, results) if result["spearman_rho"] is not None]
-    if not known:
+def verdict(values, text):
+    """Words on the best start and on the lowest twentieth of the cells; empty if all are alike."""
+    known = np.isfinite(values)
+    if not known.any() or np.ptp(values[known]) == 0.0:
         return ""
-    size, name, rho = max(known)
-    much = "hardly" if size < 0.1 else "a little" if size < 0.4 else "in part" if size < 0.7 else \
-        "mostly"
-    return f"The return varies {much} with the {name} of the sea, rank correlation {signed(rho)}"
+    north, east = np.unravel_index(np.nanargmax(values), values.shape)
+    best = place_words((int(east), int(north)), text)
+    low = lowest_cells(values)
+    middle = place_words([float(np.median(axis)) for axis in reversed(np.nonzero(low))], text)
+    return (f"Best start: {best} ({np.nanmax(values):.0f} points). The lowest twentieth, below "
+            f"{np.quantile(values[known], _LOWEST):.0f} points,\nis around {middle}")
 
 
 def device_distance(values, devices):
@@ -153,7 +160,7 @@ def draw_places(axis, text, km):
                          **shape)
 
 
-def draw_relation(axis, values, layer, result):
+def draw_relation(axis, values, layer, result, letter):
     """Return against the sea's value, a dot for each cell, with medians of tenths of the cells."""
     name, units, field = layer
     known = np.isfinite(values) & np.isfinite(field)
@@ -170,12 +177,14 @@ def draw_relation(axis, values, layer, result):
     words = sea_words(name)
     axis.set_xlabel(f"{words} [{unit_text(units)}]")
     axis.set_ylabel("return if the ship starts there")
-    change = strength(result["spearman_rho"])
     rest = compare(np.where(low, np.nan, values), field)["spearman_rho"]
-    axis.set_title((f"The return {change} with {words}\nrank correlation "
-                    f"{signed(result['spearman_rho'])} of {result['cells']} cells\n"
-                    f"{signed(rest)} without the lowest twentieth") if change else
-                   f"{result['cells']} cells: too few or too alike to compare", fontsize=11)
+    axis.set_title(f"({letter}) Return against {words}", fontsize=11)
+    said = (f"rank correlation {signed(result['spearman_rho'])}, {result['cells']} cells\n"
+            f"{signed(rest)} without the lowest twentieth" if result["spearman_rho"] is not None else
+            f"{result['cells']} cells: too few or too alike to compare")
+    axis.text(0.03, 0.04, said, transform=axis.transAxes, fontsize=9, va="bottom",
+              bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 2.0})
+    axis.xaxis.set_major_locator(ticker.MaxNLocator(5))
     axis.grid(alpha=0.3)
 
 
@@ -190,7 +199,8 @@ def draw(text, values, layers, results, path):
                                             0.84 * _COLUMN * tall + (3.8 if layers else 1.2)),
                                    height_ratios=[0.84 * _COLUMN * tall, 2.6][:rows])
     draw_map(axes[0][0], values, km, "viridis", "return [points]", _LOWEST)
-    axes[0][0].set_title("Return if the ship starts here")
+    letters = iter("abcdefghijklmnopqrstuvwxyz")
+    axes[0][0].set_title(f"({next(letters)}) Return if the ship starts here", fontsize=11)
     draw_places(axes[0][0], text, km)
     axes[0][0].set_ylabel("north [km]")
     for column, (layer, result) in enumerate(zip(layers, results), start=1):
@@ -198,33 +208,33 @@ def draw(text, values, layers, results, path):
         draw_map(axes[0][column], np.where(np.isfinite(values), field, np.nan), km,
                  _SEA_COLOURS.get(name, "cividis"), f"{sea_words(name)} [{unit_text(units)}]")
         words = sea_words(name)
-        axes[0][column].set_title(f"{words[:1].upper()}{words[1:]} of the sea")
+        axes[0][column].set_title(f"({next(letters)}) {words[:1].upper()}{words[1:]} of the sea",
+                                  fontsize=11)
         draw_places(axes[0][column], text, km)
-        draw_relation(axes[1][column], values, layer, result)
+    for column, (layer, result) in enumerate(zip(layers, results), start=1):
+        draw_relation(axes[1][column], values, layer, result, next(letters))
     if layers:
         draw_key(axes[1][0], text, device_distance(values, text.get("devices")))
         marks = zip(axes[0][0].get_legend_handles_labels(), axes[1][1].get_legend_handles_labels())
         axes[1][0].legend(*([*one, *other] for one, other in marks), loc="upper left", frameon=False,
-                          bbox_to_anchor=(-0.05, 0.42)).set_in_layout(False)
+                          bbox_to_anchor=(-0.05, 0.62)).set_in_layout(False)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
-    said = verdict(layers, results)
-    figure.suptitle("Where should the ship start?" + (f" {said}\n" if said else "\n") +
-                    f"{text['policy']} on {text['scenario']}, {episodes}")
+    said = verdict(values, text)
+    figure.suptitle("\n".join([*([said] if said else []), f"{text['policy']} on {text['scenario']}, "
+                               f"{episodes}"]), fontsize=12)
     with open_atomically(path, "wb") as file:
-        figure.savefig(file, dpi=110, format="png")
+        figure.savefig(file, dpi=150, format="png")
     pyplot.close(figure)
 
 
 def draw_key(axis, text, distance):
     """What the figure shows, in words."""
     axis.axis("off")
-    lines = ["Return: of the episode if the ship", f"starts there and {text['policy']} steers;",
-             "the lowest twentieth has one colour.", "Hatched: land, rocks or unknown.", "",
-             "Rank correlation: +1 if the return", "always rises with the value, −1 if it", "always falls; it names no cause."]
+    lines = ["The lowest twentieth has one colour.", "Hatched: land, rocks or unknown."]
     if distance is not None:
-        lines += [f"With the distance to a device: {signed(distance)}."]
-    axis.text(0.0, 1.14, "\n".join(lines), va="top", fontsize=10).set_in_layout(False)
+        lines += ["", "Rank correlation of the return with", f"the distance to a device: {signed(distance)}"]
+    axis.text(0.0, 1.0, "\n".join(lines), va="top", fontsize=10).set_in_layout(False)
 
 
 def make(values_file, output):

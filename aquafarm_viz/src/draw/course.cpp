@@ -13,7 +13,7 @@ namespace aquafarm_viz {
 namespace {
 
 constexpr double kFar_px = 1.0e5;  // points farther away are clipped
-constexpr double kMinMark = 22.0;  // distance of two marks [design units]
+constexpr double kMinMark = 30.0;  // distance of two marks [design units]
 
 bool IsNear(cv::Point2d at) { return std::abs(at.x) < kFar_px && std::abs(at.y) < kFar_px; }
 
@@ -115,7 +115,9 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
        ++i) {
     const TrackPoint point = TrackAt(course.ahead, now + double(i) * steps);
     const cv::Point2d at = to_pixel(point.x, point.y);
-    if (!IsNear(at) || !cv::Rect({0, 0}, image.size()).contains(cv::Point(at))) continue;
+    const int rim = layout.Px(6);  // a mark that the edge cuts is not seen as one
+    const cv::Rect inside(rim, rim, image.cols - 2 * rim, image.rows - 2 * rim);
+    if (!IsNear(at) || !inside.contains(cv::Point(at))) continue;
     FillCircle(image, at, 4.2 * layout.unit, Bgr(layout.style->halo));
     FillCircle(image, at, 3.0 * layout.unit, Bgr(layout.style->label));
     const double lead = double(i) * hours;
@@ -137,8 +139,7 @@ namespace {
 
 // Connects a mark with a label that is not next to it.
 void DrawMarkLeader(cv::Mat& image, cv::Point2d mark, cv::Rect label, const Layout& layout) {
-  const cv::Point2d to(std::clamp(mark.x, double(label.x), double(label.br().x)),
-                       std::clamp(mark.y, double(label.y), double(label.br().y)));
+  const cv::Point2d to = NearestIn(label, mark);
   if (cv::norm(to - mark) < 8.0 * layout.unit) return;
   DrawLine(image, mark, to, Bgr(layout.style->label), layout.Px(1));
 }
@@ -148,22 +149,27 @@ void DrawMarkLeader(cv::Mat& image, cv::Point2d mark, cv::Rect label, const Layo
 void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace& space,
                 const Layout& layout, const Fonts& fonts) {
   BlockMarks(marks, space, layout);
+  // Next to the mark rather than above or below it, where the course continues.
+  const auto take_near = [&](FreeSpace& from, const CourseMark& mark, const std::string& text) {
+    const cv::Size size(fonts.small.Width(text), fonts.small.cap_height());
+    const cv::Point2d aside(size.width / 2.0 + 9.0 * layout.unit, 0.0);
+    auto place = from.Take(size, mark.at + aside, 6.0 * layout.unit);
+    if (!place) place = from.Take(size, mark.at - aside, 6.0 * layout.unit);
+    return place;
+  };
+  FreeSpace trial = space;  // all marks have the longer text, or none
+  const bool are_long = std::all_of(marks.begin(), marks.end(), [&](const CourseMark& mark) {
+    return !mark.longer.empty() && take_near(trial, mark, mark.longer);
+  });
   for (const CourseMark& mark : marks) {
-    // Next to the mark rather than above or below it, where the course continues. A label that is
-    // not next to its mark is short, because it covers others.
-    const auto draw = [&](const std::string& text, bool may_be_far) {
+    const std::string& text = are_long ? mark.longer : mark.text;
+    auto place = take_near(space, mark, text);
+    if (!place) {
       const cv::Size size(fonts.small.Width(text), fonts.small.cap_height());
-      const cv::Point2d aside(size.width / 2.0 + 9.0 * layout.unit, 0.0);
-      auto place = space.Take(size, mark.at + aside, 6.0 * layout.unit);
-      if (!place) place = space.Take(size, mark.at - aside, 6.0 * layout.unit);
-      if (!place && may_be_far) {
-        place = space.Take(size, mark.at, 36.0 * layout.unit + size.width / 2.0);
-        if (place) DrawMarkLeader(image, mark.at, *place, layout);
-      }
-      if (place) DrawLabel(image, fonts.small, text, place->tl(), layout);
-      return place.has_value();
-    };
-    if (mark.longer.empty() || !draw(mark.longer, false)) draw(mark.text, true);
+      place = space.Take(size, mark.at, 36.0 * layout.unit + size.width / 2.0);
+      if (place) DrawMarkLeader(image, mark.at, *place, layout);
+    }
+    if (place) DrawLabel(image, fonts.small, text, place->tl(), layout);
   }
 }
 

@@ -125,6 +125,16 @@ Rings InPixels(const DisasterState& disaster, const Layout& layout) {
   return rings;
 }
 
+// Returns whether the outermost ring covers a map.
+bool CoversAll(const Rings& rings, cv::Size map) {
+  if (rings.radii_px.empty()) return false;
+  const auto& radii = rings.radii_px.back();
+  const double least = *std::min_element(radii.begin(), radii.end());
+  const cv::Point2d far(std::max(rings.centre.x, map.width - rings.centre.x),
+                        std::max(rings.centre.y, map.height - rings.centre.y));
+  return cv::norm(far) <= least;
+}
+
 // Adds one disaster to a row: updates the worst shade and the coverage by ring edges of each pixel.
 void ShadeRow(const Rings& rings, int row, RingRow& out) {
   const auto north = static_cast<float>(row - rings.centre.y);
@@ -214,7 +224,8 @@ void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land,
   Patterns patterns(DisasterKindCount());
   for (const Rings& rings : all) {
     auto& pattern = patterns[KindIndex(rings.kind)];
-    if (!pattern) pattern.emplace(rings.kind, layout.Px(13));
+    // Wider where a ring covers all of the map: there the pattern separates nothing.
+    if (!pattern) pattern.emplace(rings.kind, layout.Px(CoversAll(rings, map.size()) ? 30 : 13));
   }
   const ShadeTable table = MakeShadeTable(*layout.style, is_tinted ? layout.style->ring_tint : 0.0);
   RingRow line(static_cast<std::size_t>(map.cols), all.front().kind);

@@ -8,7 +8,7 @@
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "draw/symbols.h"
-#include "scene/port_shift.h"
+#include "scene/ship_place.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -133,7 +133,7 @@ constexpr double kBetweenHeads = 50.0;  // of the arrowheads of a path [design u
 // @param age  0: now, 1: the oldest part
 Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
   const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.6) : style.good;
-  return Mix(fresh, style.sea_south, 0.8 * age);
+  return Mix(fresh, style.sea_south, 0.55 * age);
 }
 
 // Draws in which direction a ship moved from one point to another.
@@ -189,19 +189,17 @@ void DrawSight(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const
   }
 }
 
-cv::Point2d PortPlace(const FarmSpec& spec, const FarmState& state,
-                      const aquafarm_msgs::PortInfo& port, const Layout& layout) {
-  const cv::Point shift = PortShift(spec, state, port);
-  const double side = 0.72 * (layout.ship_radius_px() + layout.port_radius_px());
-  return layout.view.ToPixel(port.cell.x, port.cell.y) +
-         cv::Point2d(side * shift.x, -side * shift.y);
+cv::Point2d ShipPlace(const FarmSpec& spec, const FarmState& state, const ShipState& ship,
+                      const Layout& layout) {
+  const double aside_px = 0.72 * (layout.ship_radius_px() + layout.port_radius_px());
+  const cv::Point2d at = ShipPlace(spec, state, ship.x, ship.y, aside_px / layout.view.cell_px());
+  return layout.view.ToPixel(at.x, at.y);
 }
 
-void DrawPorts(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layout& layout,
-               const Fonts& fonts) {
+void DrawPorts(cv::Mat& map, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
   for (const auto& port : spec.ports) {
     if (!InGrid(spec, port.cell.x, port.cell.y)) continue;
-    DrawPort(map, PortPlace(spec, state, port, layout), port.id, layout, fonts);
+    DrawPort(map, layout.view.ToPixel(port.cell.x, port.cell.y), port.id, layout, fonts);
   }
 }
 
@@ -273,7 +271,7 @@ void DrawShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const
     if (!ship->visible || !ship->active || !InGrid(spec, ship->x, ship->y)) continue;
     const double radius = layout.ship_radius_px();
     const cv::Point2d at =
-        layout.view.ToPixel(ship->x, ship->y) +
+        ShipPlace(spec, state, *ship, layout) +
         crowd.Offset(ship->x, ship->y, per_cell.at({ship->x, ship->y}), 0.75 * radius);
     const Pose2 placing{at, radius, double(ShipBearingDeg(*ship, trail))};
     if (ship->own_device >= 0) {

@@ -47,7 +47,7 @@ bool FreeSpace::CrossesLabel(cv::Point2d from, cv::Point2d to, cv::Rect own) con
   });
 }
 
-std::optional<cv::Rect> FreeSpace::Take(cv::Size size, cv::Point2d near, double farthest) {
+std::optional<cv::Rect> FreeSpace::Find(cv::Size size, cv::Point2d near, double farthest) const {
   const cv::Size blocks((size.width + kBlock - 1) / kBlock + 1,
                         (size.height + kBlock - 1) / kBlock + 1);
   if (blocks.width > used_.cols || blocks.height > used_.rows) return std::nullopt;
@@ -79,10 +79,18 @@ std::optional<cv::Rect> FreeSpace::Take(cv::Size size, cv::Point2d near, double 
     }
   }
   if (!best) return std::nullopt;
-  const cv::Rect place(best->x * kBlock + kBlock / 2, best->y * kBlock + kBlock / 2, size.width,
-                       size.height);
-  Block(place + cv::Size(2 * kBlock, 2 * kBlock) - cv::Point(kBlock, kBlock));
-  labels_.push_back(place);
+  return cv::Rect(best->x * kBlock + kBlock / 2, best->y * kBlock + kBlock / 2, size.width,
+                  size.height);
+}
+
+void FreeSpace::Add(cv::Rect label) {
+  Block(label + cv::Size(2 * kBlock, 2 * kBlock) - cv::Point(kBlock, kBlock));
+  labels_.push_back(label);
+}
+
+std::optional<cv::Rect> FreeSpace::Take(cv::Size size, cv::Point2d near, double farthest) {
+  const auto place = Find(size, near, farthest);
+  if (place) Add(*place);
   return place;
 }
 

@@ -123,22 +123,24 @@ struct FarmPainter::Parts {
 
   /// Writes the labels of the map, the most important first.
   void Label(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Overlays& overlays,
-             const Forecasts& forecasts, const std::vector<CourseMark>& marks, FreeSpace& space) {
+             const Forecasts& forecasts, LabelSpace& space) {
     const Layers& layers = overlays.layers;
+    for (const Trail* paths :
+         {layers.trail ? overlays.trail : nullptr, layers.route ? overlays.route : nullptr}) {
+      if (paths != nullptr) space.BlockPaths(state, *paths, layout);
+    }
     LabelShips(map, spec, state, space, layout, fonts);
     // Before the devices, which have more places around them than a pointer at the edge.
-    const Trail* trail = layers.trail ? overlays.trail : nullptr;
-    LabelPointers(map, spec, state, trail, forecasts.courses, space, layout, fonts);
+    LabelPointers(map, spec, state, forecasts.courses, space, layout, fonts);
     std::set<std::int32_t> labelled;
     if (layers.risk) {
       labelled = LabelDanger(map, spec, state, forecasts.outlook, space, layout, fonts);
     }
     if (layers.labels) {
-      LabelDevices(map, spec, state, trail, labelled, space, layout, fonts);
+      LabelDevices(map, spec, state, labelled, space, layout, fonts);
       LabelFetched(map, spec, state, overlays.trail, space, layout, fonts);
     }
-    if (layers.risk) LabelRings(map, spec, state, forecasts.courses, space, layout, fonts);
-    LabelMarks(map, marks, space, layout, fonts);
+    if (layers.risk) LabelRings(map, state, forecasts.courses, space, layout, fonts);
   }
 };
 
@@ -162,7 +164,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   p.Follow(values, is_new);
   if (layers.values && values != nullptr) {
     if (p.valued.empty()) {
-      DrawValues(map, *values);
+      DrawValues(map, spec, *values, p.layout);
       p.valued = map.clone();
     } else {
       p.valued.copyTo(map);
@@ -181,17 +183,20 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
     if (!p.directions) p.directions = LegalDirections(spec);
     DrawDirections(map, *p.directions, p.layout);
   }
-  DrawPorts(map, spec, state, p.layout, p.fonts);
+  DrawPorts(map, spec, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);
   DrawShips(map, spec, state, overlays.trail, p.layout);
-  if (overlays.choice != nullptr) DrawChoice(map, state, *overlays.choice, p.layout);
+  if (overlays.choice != nullptr) DrawChoice(map, spec, state, *overlays.choice, p.layout);
   if (!DrawPanel(p.image, spec, state, overlays, values, forecasts, p.layout, p.fonts)) {
     p.DrawPolicyKey(map, state, overlays, values, space);
   }
-  p.Label(map, spec, state, overlays, forecasts, marks, space);
+  LabelSpace labels(space, spec, p.layout);
+  p.Label(map, spec, state, overlays, forecasts, labels);
+  FreeSpace left = labels.space(Cover::kPathsAndLand);
+  LabelMarks(map, marks, left, p.layout, p.fonts);
   if (layers.moves && values != nullptr) {  // where the map is free, so that they cover nothing
     if (!p.moves) p.moves.emplace(p.layout);
-    p.moves->Draw(map, *values, &space);
+    p.moves->Draw(map, *values, &left);
   }
   DrawWords(p.image, spec, state, overlays, forecasts.outlook, p.layout, p.fonts);
   return p.image;

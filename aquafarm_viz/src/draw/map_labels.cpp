@@ -28,11 +28,6 @@ constexpr std::size_t kMaxDangerLabels = 40;  // more are not read, and cost tim
 constexpr double kDangerRing = 2.0;           // of the first device in danger [device radii]
 constexpr double kSymbol = 1.2;               // of other devices, with their health
 
-cv::Rect Around(cv::Point2d at, double radius) {
-  return {cvFloor(at.x - radius), cvFloor(at.y - radius), cvCeil(2.0 * radius),
-          cvCeil(2.0 * radius)};
-}
-
 // The part of a symbol with a health bar above it.
 cv::Rect WithBar(cv::Point2d at, double radius, const Layout& layout) {
   const cv::Rect body = Around(at, radius);
@@ -47,17 +42,15 @@ const DeviceState* Find(const FarmState& state, std::int32_t id) {
 }
 
 // Connects a symbol with a label that is not next to it, unless the line would cross another label.
-void DrawLeader(cv::Mat& map, cv::Point2d symbol, double radius, cv::Rect label, FreeSpace& space,
+void DrawLeader(cv::Mat& map, cv::Point2d symbol, double radius, cv::Rect label, LabelSpace& space,
                 const Layout& layout) {
-  const cv::Point2d to(std::clamp(symbol.x, double(label.x), double(label.x + label.width)),
-                       std::clamp(symbol.y, double(label.y), double(label.y + label.height)));
+  const cv::Point2d to = NearestIn(label, symbol);
   const double length = cv::norm(to - symbol);
   if (length < 2.0 * radius + 6.0 * layout.unit) return;
   const cv::Point2d from = symbol + (to - symbol) * (radius / length);
-  if (space.CrossesLabel(from, to, label)) return;
+  if (!space.AddLine(from, to, label, layout.Px(3))) return;
   DrawLine(map, from, to, Bgr(layout.style->halo), layout.Px(3));
   DrawLine(map, from, to, Bgr(layout.style->label), layout.Px(1));
-  space.BlockLine(from, to, layout.Px(3));
 }
 
 constexpr double kPlateMargins = 13.0;  // left and right of a text on a plate [design units]
@@ -79,17 +72,6 @@ void DrawPlate(cv::Mat& map, cv::Rect plate, const std::vector<std::string>& lin
   }
 }
 
-// Marks islands and rocks as used, so that a label on water does not seem to name them.
-void BlockLand(const FarmSpec& spec, FreeSpace& space, const Layout& layout) {
-  const double half_cell = 0.5 * layout.view.cell_px();
-  for (const auto& cell : spec.islands) {
-    space.Block(Around(layout.view.ToPixel(cell.x, cell.y), half_cell));
-  }
-  for (const auto& rock : spec.rocks) {
-    space.Block(Around(layout.view.ToPixel(rock.cell.x, rock.cell.y), 0.8 * half_cell));
-  }
-}
-
 Rgb RiskColor(double risk, const Layout& layout) { return layout.style->Risk(Severity(risk)); }
 
 }  // namespace
@@ -100,7 +82,8 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlo
   const double gap = 2.0 * layout.unit;
   for (const auto& port : spec.ports) {
     if (!InGrid(spec, port.cell.x, port.cell.y)) continue;
-    space.Block(Around(PortPlace(spec, state, port, layout), layout.port_radius_px() + gap));
+    space.Block(
+        Around(layout.view.ToPixel(port.cell.x, port.cell.y), layout.port_radius_px() + gap));
   }
   std::set<std::pair<int, int>> quays;
   for (const auto& device : state.devices) {
@@ -124,7 +107,7 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlo
   for (const auto& ship : state.ships) {
     if (!ship.visible || !ship.active || !InGrid(spec, ship.x, ship.y)) continue;
     space.Block(
-        WithBar(layout.view.ToPixel(ship.x, ship.y), 1.1 * layout.ship_radius_px(), layout));
+        WithBar(ShipPlace(spec, state, ship, layout), 1.1 * layout.ship_radius_px(), layout));
   }
   for (const auto& disaster : state.disasters) {
     if (!IsDrawn(disaster)) continue;
@@ -160,12 +143,10 @@ void DrawDangerMarks(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
 }
 
 std::set<std::int32_t> LabelDanger(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
-                                   const Outlook& outlook, FreeSpace& space, const Layout& layout,
+                                   const Outlook& outlook, LabelSpace& space, const Layout& layout,
                                    const Fonts& fonts) {
   std::set<std::int32_t> labelled;
   std::size_t tries = 0;
-  FreeSpace water = space;
-  BlockLand(spec, water, layout);
   for (const DeviceOutlook& one : outlook.devices) {
     const DeviceState* device = Find(state, one.id);
     const std::string danger = DangerText(spec, one);
@@ -175,11 +156,9 @@ std::set<std::int32_t> LabelDanger(cv::Mat& map, const FarmSpec& spec, const Far
     const cv::Point2d at = layout.view.ToPixel(device->x, device->y);
     const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins),
                         layout.Px(kPlateRow + 2.0));
-    auto plate = water.Take(size, at, 100.0 * layout.unit);
+    auto plate = space.Take(Cover::kNothing, size, at, 110.0 * layout.unit);
     if (!plate) plate = space.Take(size, at, 140.0 * layout.unit);
     if (!plate) continue;
-    water.Block(*plate);
-    space.Block(*plate);
     DrawLeader(map, at, kDangerRing * layout.device_radius_px(), *plate, space, layout);
     DrawPlate(map, *plate, {text}, RiskColor(WorstRisk(one), layout), layout, fonts);
     labelled.insert(one.id);
@@ -188,19 +167,6 @@ std::set<std::int32_t> LabelDanger(cv::Mat& map, const FarmSpec& spec, const Far
 }
 
 namespace {
-
-void BlockPaths(const FarmState& state, const Trail& trail, FreeSpace& space,
-                const Layout& layout) {
-  for (const auto& ship : state.ships) {
-    const ShipTrail* way = ship.visible ? trail.Find(ship.id) : nullptr;
-    for (std::size_t i = 1; way != nullptr && i < way->places.size(); ++i) {
-      const cv::Point from = way->places[i - 1];
-      const cv::Point to = way->places[i];
-      space.BlockLine(layout.view.ToPixel(from.x, from.y), layout.view.ToPixel(to.x, to.y),
-                      layout.Px(4));
-    }
-  }
-}
 
 // A point of a ring on the map, and the direction away from the centre.
 struct RingPoint {
@@ -269,11 +235,8 @@ void BlockOtherRings(const FarmState& state, const DisasterState& own, std::size
 
 }  // namespace
 
-void LabelRings(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
-                const std::vector<Course>& courses, FreeSpace& space, const Layout& layout,
-                const Fonts& fonts) {
-  FreeSpace land = space;
-  BlockLand(spec, land, layout);
+void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>& courses,
+                LabelSpace& space, const Layout& layout, const Fonts& fonts) {
   for (std::size_t index = 0; index < state.disasters.size(); ++index) {
     const DisasterState& disaster = state.disasters[index];
     const std::vector<std::int32_t>& winds = courses[index].ring_winds_kt;
@@ -284,20 +247,33 @@ void LabelRings(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
       const std::string text = name + "risk " + Number(double(disaster.risks[ring]), 0);
       const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins), layout.Px(kPlateRow));
       const auto points = PointsOnMap(disaster, ring, map.size(), layout);
-      FreeSpace water = land;
+      FreeSpace water = space.space(Cover::kPaths);
       BlockOtherRings(state, disaster, ring, map.size(), water, layout);
       const auto place = PlaceBesideRing(points, size, water, layout);
       if (!place) continue;  // the key of risks has to do
-      land.Block(*place);
+      space.Add(*place);
       DrawPlate(map, *place, {text}, RiskColor(double(disaster.risks[ring]), layout), layout,
                 fonts);
-      space.Block(*place);
     }
   }
 }
 
-void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Trail* trail,
-                   const std::vector<Course>& courses, FreeSpace& space, const Layout& layout,
+namespace {
+
+// Finds a place that a line from the symbol reaches without crossing another label.
+std::optional<cv::Rect> TakeInSight(LabelSpace& space, Cover cover, cv::Size size,
+                                    cv::Point2d symbol, double farthest) {
+  const FreeSpace& open = space.space(cover);
+  const auto place = open.Find(size, symbol, farthest);
+  if (!place || open.CrossesLabel(symbol, NearestIn(*place, symbol), *place)) return std::nullopt;
+  space.Add(*place);
+  return place;
+}
+
+}  // namespace
+
+void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
+                   const std::vector<Course>& courses, LabelSpace& space, const Layout& layout,
                    const Fonts& fonts) {
   for (std::size_t i = 0; i < state.disasters.size(); ++i) {
     const DisasterState& disaster = state.disasters[i];
@@ -310,32 +286,23 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state, c
     const cv::Size size(width + layout.Px(kPlateMargins), layout.Px(2.0 * kPlateRow));
     // To the side of the pointer, which lies at the edge, if possible: above or below it, another
     // pointer's label is near.
-    FreeSpace water = space;
-    BlockLand(spec, water, layout);
-    FreeSpace open = water;
-    if (trail != nullptr) BlockPaths(state, *trail, open, layout);
     const double aside = size.width / 2.0 + 14.0 * layout.unit;
     const cv::Point2d place_aside(
         sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside, sign.at.y);
-    const double near = 24.0 * layout.unit;
-    auto place = open.Take(size, place_aside, near);
-    if (!place) place = open.Take(size, sign.at, 0.45 * size.width);
-    if (!place) place = water.Take(size, place_aside, near);
-    if (!place) place = space.Take(size, place_aside, near);
+    auto place = space.Take(Cover::kNothing, size, place_aside, 24.0 * layout.unit);
+    if (!place) place = TakeInSight(space, Cover::kNothing, size, sign.at, 1.1 * size.width);
+    if (!place) place = TakeInSight(space, Cover::kPaths, size, sign.at, 0.7 * size.width);
+    if (!place) place = space.Take(size, place_aside, 24.0 * layout.unit);
     if (!place) place = space.Take(size, sign.at, double(map.cols + map.rows));
     if (!place) continue;
-    space.Block(*place);
     DrawLeader(map, sign.at, 9.0 * layout.unit, *place, space, layout);
     DrawPlate(map, *place, lines, GradeColor(disaster.grade), layout, fonts);
   }
 }
 
-void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Trail* trail,
-                  const std::set<std::int32_t>& labelled, FreeSpace& space, const Layout& layout,
+void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
+                  const std::set<std::int32_t>& labelled, LabelSpace& space, const Layout& layout,
                   const Fonts& fonts) {
-  FreeSpace water = space;
-  BlockLand(spec, water, layout);
-  if (trail != nullptr) BlockPaths(state, *trail, water, layout);
   for (const auto& device : state.devices) {
     if (!IsLabelled(spec, device) || labelled.count(device.id) > 0) continue;
     const std::string text = DeviceLabel(device.id);
@@ -344,17 +311,14 @@ void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, co
     // The free place that is nearest to the symbol, to its right if there are several.
     const cv::Point2d east = layout.view.ToPixel(device.x, device.y) + cv::Point2d(radius, 0.0);
     const double farthest = 3.0 * radius + 20.0 * layout.unit;
-    auto place = water.Take(size, east, farthest);
-    if (!place) place = space.Take(size, east, farthest);
+    const auto place = space.Take(size, east, farthest);
     if (!place) continue;
-    water.Block(*place);
-    space.Block(*place);
     DrawLabel(map, fonts.bold, text, place->tl(), layout);
   }
 }
 
 void LabelFetched(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Trail* trail,
-                  FreeSpace& space, const Layout& layout, const Fonts& fonts) {
+                  LabelSpace& space, const Layout& layout, const Fonts& fonts) {
   for (const DeviceState& device : spec.devices) {
     const DeviceState* now = Find(state, device.id);
     const bool was_fetched = now != nullptr && now->status != DeviceState::DEPLOYED;
@@ -365,20 +329,16 @@ void LabelFetched(cv::Mat& map, const FarmSpec& spec, const FarmState& state, co
     const cv::Size size(fonts.small.Width(text), fonts.small.cap_height());
     const double radius = layout.device_radius_px();
     const cv::Point2d at = layout.view.ToPixel(device.x, device.y);
-    FreeSpace water = space;
-    water.Block(Around(at, 0.8 * radius));
-    BlockLand(spec, water, layout);
-    if (trail != nullptr) BlockPaths(state, *trail, water, layout);
-    const auto place = water.Take(size, at + cv::Point2d(radius + size.width / 2.0, 0.0),
-                                  3.0 * radius + size.width);
+    const auto place =
+        space.Take(Cover::kNothing, size, at + cv::Point2d(radius + size.width / 2.0, 0.0),
+                   3.0 * radius + size.width);
     if (!place) continue;
-    space.Block(*place);
     DrawLabel(map, fonts.small, text, place->tl(), layout,
               Mix(layout.style->label, layout.style->sea_south, 0.25));
   }
 }
 
-void LabelShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, FreeSpace& space,
+void LabelShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, LabelSpace& space,
                 const Layout& layout, const Fonts& fonts) {
   if (state.ships.size() < 2) return;
   for (const auto& ship : state.ships) {
@@ -386,7 +346,7 @@ void LabelShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, Free
     if (!InGrid(spec, ship.x, ship.y)) continue;
     const std::string text = "ship " + std::to_string(ship.id);
     const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
-    const cv::Point2d at = layout.view.ToPixel(ship.x, ship.y);
+    const cv::Point2d at = ShipPlace(spec, state, ship, layout);
     const double farthest = 2.0 * layout.ship_radius_px() + size.width / 2.0 + 10.0 * layout.unit;
     const auto place = space.Take(size, at, farthest);
     if (!place) continue;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "aquafarm_viz/scene/trail.h"
-#include "draw/free_space.h"
+#include "draw/label_space.h"
 #include "scene/outlook.h"
 
 namespace aquafarm_viz {
@@ -35,40 +35,36 @@ void DrawDangerMarks(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
 /// before others: "F3: -10 in 6.5 h". Returns the ids of these devices.
 std::set<std::int32_t> LabelDanger(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                                    const aquafarm_msgs::FarmState& state, const Outlook& outlook,
-                                   FreeSpace& space, const Layout& layout, const Fonts& fonts);
+                                   LabelSpace& space, const Layout& layout, const Fonts& fonts);
 
 /// Labels each ring of a disaster that crosses the map, on its line, else next to it, on water:
 /// "risk -5", or "gale (34 kt), risk -5" where the wind is given. A ring without a free place has
 /// none.
 /// @param courses  one per disaster of the state
-void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-                const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
-                FreeSpace& space, const Layout& layout, const Fonts& fonts);
+void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmState& state,
+                const std::vector<Course>& courses, LabelSpace& space, const Layout& layout,
+                const Fonts& fonts);
 
 /// Labels the pointers to disasters outside the map with CentreText and MotionNow.
-/// @param trail  the labels avoid its paths where they can; null: none are drawn
 void LabelPointers(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-                   const aquafarm_msgs::FarmState& state, const Trail* trail,
-                   const std::vector<Course>& courses, FreeSpace& space, const Layout& layout,
-                   const Fonts& fonts);
+                   const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
+                   LabelSpace& space, const Layout& layout, const Fonts& fonts);
 
 /// Writes F and the id next to each device that is neither aboard nor delivered.
-/// @param trail     the labels avoid its paths where they can; null: none are drawn
 /// @param labelled  ids of devices that have a label
 void LabelDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-                  const aquafarm_msgs::FarmState& state, const Trail* trail,
-                  const std::set<std::int32_t>& labelled, FreeSpace& space, const Layout& layout,
-                  const Fonts& fonts);
+                  const aquafarm_msgs::FarmState& state, const std::set<std::int32_t>& labelled,
+                  LabelSpace& space, const Layout& layout, const Fonts& fonts);
 
 /// Writes F, the id and the time at which it was taken aboard, where that is known, next to the
 /// former place of each device that a ship has fetched.
 void LabelFetched(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-                  const aquafarm_msgs::FarmState& state, const Trail* trail, FreeSpace& space,
+                  const aquafarm_msgs::FarmState& state, const Trail* trail, LabelSpace& space,
                   const Layout& layout, const Fonts& fonts);
 
 /// Writes the id next to each ship if there are several.
 void LabelShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-                const aquafarm_msgs::FarmState& state, FreeSpace& space, const Layout& layout,
+                const aquafarm_msgs::FarmState& state, LabelSpace& space, const Layout& layout,
                 const Fonts& fonts);
 
 }  // namespace aquafarm_viz

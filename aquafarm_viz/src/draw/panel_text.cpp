@@ -184,8 +184,12 @@ class Panel {
     y_ += RowPx();
   }
 
-  /// Two texts at the ends of a row.
-  void Ends(const std::string& left_text, const std::string& right_text) {
+  /// Two texts at the ends of a row, and one in its middle.
+  void Ends(const std::string& left_text, const std::string& right_text,
+            const std::string& middle_text = "") {
+    const int base = y_ + (RowPx() + fonts_.small.cap_height()) / 2;
+    fonts_.small.Draw(image_, middle_text, {Middle() - fonts_.small.Width(middle_text) / 2, base},
+                      Bgr(layout_.style->words));
     Row(left_, left_text, fonts_.small, layout_.style->words, right_text, layout_.style->words);
   }
 
@@ -390,12 +394,15 @@ bool ListPolicy(Panel& panel, const FarmState& state, const Overlays& overlays,
   if (has_scale) {
     panel.Ends("discounted return from each cell", "");
     panel.ValueBar();
-    panel.Ends(Number(double(values->lowest), 1) + " points",
-               Number(double(values->highest), 1) + " points");
+    const auto low = double(values->lowest);
+    const auto high = double(values->highest);
+    panel.Ends(Number(low, 1), Number(high, 1) + " points", Number((low + high) / 2.0, 1));
   }
   if (has_moves) {
     DrawMove(panel.image(), panel.SymbolAt(), 3, 13.0 * layout.unit, layout);
-    panel.Item("best move", "", layout.style->words);
+    const int every = MoveSpacing(layout);
+    panel.Item(every == 1 ? "best move" : "best move, every " + std::to_string(every) + " cells",
+               "", layout.style->words);
     DrawMove(panel.image(), panel.SymbolAt(), 8, 15.0 * layout.unit, layout);
     DrawMove(panel.image(), panel.SecondSymbolAt(), 9, 15.0 * layout.unit, layout);
     panel.Pair("pickup", "drop-off");

@@ -32,7 +32,8 @@ void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px
   DrawLine(map, Place({0.20, 0.12}, placing), tip, color, thickness);
 }
 
-void DrawValues(cv::Mat& map, const Values& values) {
+void DrawValues(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Values& values,
+                const Layout& layout) {
   // A header for the values without a copy; they are only read. Row 0 is the south here.
   const cv::Mat from_south(values.height, values.width, CV_32F,
                            const_cast<float*>(values.values.data()));
@@ -51,6 +52,14 @@ void DrawValues(cv::Mat& map, const Values& values) {
   cv::resize(known, mask, map.size(), 0, 0, cv::INTER_NEAREST);
   cv::addWeighted(large, kValueShare, map, 1.0 - kValueShare, 0.0, large);
   large.copyTo(map, mask);
+  const double cell = layout.view.cell_px();
+  for (const auto& rock : spec.rocks) {
+    if (!InGrid(spec, rock.cell.x, rock.cell.y)) continue;
+    const cv::Point2d at = layout.view.ToPixel(rock.cell.x, rock.cell.y);
+    const cv::Point2d half(cell / 2.0, cell / 2.0);
+    Tint(map, {cv::Point(at - half), cv::Point(at + half)}, Bgr(kUnknown), 0.5);
+    DrawRock(map, at, std::max(0.42 * cell, 1.5));
+  }
 }
 
 void DrawValueScale(cv::Mat& map, const Values& values, FreeSpace& space, const Layout& layout,
@@ -91,9 +100,13 @@ void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
   }
 }
 
+int MoveSpacing(const Layout& layout) {
+  return std::max(1, int(std::ceil(kArrowSpacing * layout.unit / layout.view.cell_px())));
+}
+
 MoveSigns::MoveSigns(const Layout& layout)
     : view_(layout.view),
-      every_(std::max(1, int(std::ceil(kArrowSpacing * layout.unit / view_.cell_px())))),
+      every_(MoveSpacing(layout)),
       size_px_(std::min(0.8 * every_ * view_.cell_px(), kLargestArrow * layout.unit)) {
   // Same sub-pixel position as the cell centres if cells have whole pixels.
   const int half = cvCeil(0.5 * size_px_) + 3;
@@ -146,14 +159,15 @@ void Overlay::LayOver(cv::Mat& map, cv::Point middle) const {
   }
 }
 
-void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
-                const aquafarm_msgs::PolicyChoice& choice, const Layout& layout) {
+void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
+                const aquafarm_msgs::FarmState& state, const aquafarm_msgs::PolicyChoice& choice,
+                const Layout& layout) {
   if (!IsOf(choice, state)) return;
   for (const auto& ship : state.ships) {
     const auto id = static_cast<std::size_t>(ship.id);
     if (ship.id < 0 || id >= choice.actions.size() || !ship.active) continue;
     const int bearing = MoveBearingDeg(choice.actions[id]);
-    const cv::Point2d at = layout.view.ToPixel(ship.x, ship.y);
+    const cv::Point2d at = ShipPlace(spec, state, ship, layout);
     const double radius = layout.ship_radius_px();
     if (bearing < 0) {
       StrokeCircle(map, at, 1.5 * radius, Bgr(kChoiceColor), layout.Px(2.5));

@@ -7,7 +7,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include "aquafarm/tracks/wind_name.h"
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/draw/canvas.h"
@@ -43,19 +46,26 @@ struct Inset {
   }
 };
 
-void DrawRings(Inset& inset, const DisasterState& disaster, const Style& style) {
+using Outline = std::vector<cv::Point2d>;  // [pixels]
+
+// Draws the rings of a disaster and adds their outlines to a list.
+void DrawRings(Inset& inset, const DisasterState& disaster, const Style& style,
+               std::vector<Outline>& outlines) {
   constexpr int kCorners = 96;
   for (std::size_t ring = disaster.radii.size(); ring-- > 0;) {
     const std::array<double, 4> radii = RingQuadrants(disaster, ring);
-    std::vector<cv::Point> outline;
+    Outline outline;
+    std::vector<cv::Point> fixed;
     for (int i = 0; i < kCorners; ++i) {
       const double bearing = 2.0 * CV_PI * i / kCorners;
       const double radius = radii[std::size_t(i * 4 / kCorners)];
-      outline.push_back(Fixed(inset.At(disaster.x + radius * std::sin(bearing),
-                                       disaster.y + radius * std::cos(bearing))));
+      outline.push_back(inset.At(disaster.x + radius * std::sin(bearing),
+                                 disaster.y + radius * std::cos(bearing)));
+      fixed.push_back(Fixed(outline.back()));
     }
-    cv::polylines(inset.image, outline, /*isClosed=*/true,
+    cv::polylines(inset.image, fixed, /*isClosed=*/true,
                   Bgr(style.Risk(Severity(disaster.risks[ring]))), 1, cv::LINE_AA, kSubPixelBits);
+    outlines.push_back(std::move(outline));
   }
 }
 
@@ -101,11 +111,22 @@ std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, cons
   return course.errors.empty() ? "dashed: course ahead" : "shaded: mean forecast error";
 }
 
-// Words for a ring that covers a part of the farm. The centre may be far away.
-std::string OverText(std::string wind) {
-  std::transform(wind.begin(), wind.end(), wind.begin(),
+std::string Upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char letter) { return std::toupper(letter); });
-  return wind + " OVER THE RANCH";
+  return text;
+}
+
+// Words for a ring that covers a part of the farm. The centre may be far away.
+std::string OverText(const std::string& wind) { return Upper(wind) + " OVER THE RANCH"; }
+
+// Words for the step in which the outermost ring reaches the farm: "NEAR GALE IN 2.0 h".
+std::string ReachesText(const FarmSpec& spec, const Course& course, double step) {
+  const std::string ring = course.ring_winds_kt.empty()
+                               ? "REACHES THE RANCH"
+                               : Upper(aquafarm::RingName(course.ring_winds_kt.back()));
+  return ring + (step > course.known_until ? " IN ABOUT " : " IN ") +
+         AheadText(spec, step - course.ahead.front().step);
 }
 
 // Words for the time at which a storm whose course is given is nearest, or for rings that cover or
@@ -124,13 +145,10 @@ RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subj
                                 " in " + HoursText(ahead_s);
     const auto then = static_cast<std::time_t>(state.world_time.sec + ahead_s);
     const std::string time = spec.has_start_time ? LocalTimeText(spec, then, "%d %b %H:%M") : "";
-    const std::string heading =
-        is_over ? over
-        : std::isfinite(subject.danger)
-            ? (now.step + subject.danger > course.known_until ? "REACHES THE RANCH IN ABOUT "
-                                                              : "REACHES THE RANCH IN ") +
-                  AheadText(spec, subject.danger)
-            : "COMES NEARER";
+    const std::string heading = is_over ? over
+                                : std::isfinite(subject.danger)
+                                    ? ReachesText(spec, course, now.step + subject.danger)
+                                    : "COMES NEARER";
     if (subject.nearest.step > course.known_until) {
       return {heading, {nearest, SourceText(spec, state.disasters[subject.disaster], course)}};
     }
@@ -259,11 +277,12 @@ void DrawInset(Inset inset, const FarmSpec& spec, const FarmState& state,
   const Style& style = *layout.style;
   inset.image.setTo(Bgr(Mix(style.sea_south, style.panel, 0.4)));
   FreeSpace space(inset.image.size());
+  std::vector<Outline> rings;
   std::vector<CourseMark> marks;
   for (std::size_t i = 0; i < courses.size(); ++i) {
     const DisasterState& disaster = state.disasters[i];
     if (!IsDrawn(disaster)) continue;
-    DrawRings(inset, disaster, style);
+    DrawRings(inset, disaster, style, rings);
     const auto here = DrawCourse(
         inset.image, spec, courses[i], [&](double x, double y) { return inset.At(x, y); }, layout);
     marks.insert(marks.end(), here.begin(), here.end());
@@ -280,6 +299,11 @@ void DrawInset(Inset inset, const FarmSpec& spec, const FarmState& state,
   }
   BlockMarks(marks, space, layout);
   DrawFarm(inset, spec, space, layout, fonts);
+  for (const Outline& ring : rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      space.BlockLine(ring[i], ring[(i + 1) % ring.size()], 2);
+    }
+  }
   LabelMarks(inset.image, marks, space, layout, fonts);
   DrawScale(inset, spec, space, layout, fonts);
 }
@@ -296,10 +320,14 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
     farthest_m = std::max(farthest_m, MetresFromFarm(spec, disaster.x, disaster.y));
   }
   const RegionWords words = RegionText(spec, state, courses);
-  const int side = std::min(room.width, room.height - 3 * row_px - layout.Px(4));
-  // The map itself shows disasters whose centres are inside.
-  const bool is_drawn = farthest_m > 0.0 && side >= layout.Px(kSmallestSide);
   const bool has_course = words.heading != RegionWords().heading;
+  // The inset alone, where there is no space for the lines below it too.
+  const int smallest = layout.Px(kSmallestSide);
+  const int for_inset = room.height - row_px - layout.Px(4);
+  const bool has_lines = has_course || for_inset - 2 * row_px >= smallest;
+  const int side = std::min(room.width, for_inset - (has_lines ? 2 * row_px : 0));
+  // The map itself shows disasters whose centres are inside.
+  const bool is_drawn = farthest_m > 0.0 && side >= smallest;
   if (!is_drawn && !has_course) return;
   fonts.bold.Draw(image, fonts.bold.Fit(words.heading, room.width),
                   {room.x, room.y + fonts.small.cap_height()},
@@ -313,6 +341,7 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
     cv::rectangle(image, place, Bgr(layout.style->rule), 1);
     y += place.height;
   }
+  if (!has_lines) return;
   y += layout.Px(3) + fonts.small.cap_height();
   for (const std::string& line : words.lines) {
     fonts.small.Draw(image, fonts.small.Fit(line, room.width), {room.x, y},

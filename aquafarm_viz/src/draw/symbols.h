@@ -122,8 +122,9 @@ void DrawPaths(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail&
 void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to,
                     const aquafarm_msgs::FarmState& state, const Layout& layout);
 
-/// Blends the colours of V_π over the map.
-void DrawValues(cv::Mat& map, const Values& values);
+/// Blends the colours of V_π over the map, and grey over rocks, which have no value.
+void DrawValues(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Values& values,
+                const Layout& layout);
 
 /// Draws the colour scale of V_π into a corner of the map.
 /// @param space  free part of the map; the scale takes a part of it
@@ -161,6 +162,9 @@ void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, cons
 void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
               const Layout& layout);
 
+/// Returns the distance of two symbols of best moves along each axis [cells].
+int MoveSpacing(const Layout& layout);
+
 /// Draws the greedy actions of ShownActions with symbols that are drawn once and then copied to the
 /// nearest pixel.
 class MoveSigns {
@@ -183,8 +187,9 @@ class MoveSigns {
 };
 
 /// Draws the actions that a compared policy chooses for each ship.
-void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
-                const aquafarm_msgs::PolicyChoice& choice, const Layout& layout);
+void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
+                const aquafarm_msgs::FarmState& state, const aquafarm_msgs::PolicyChoice& choice,
+                const Layout& layout);
 
 /// Writes these actions into a corner of the map.
 void DrawChoiceWords(cv::Mat& map, const aquafarm_msgs::FarmState& state,
@@ -195,13 +200,13 @@ void DrawChoiceWords(cv::Mat& map, const aquafarm_msgs::FarmState& state,
 void DrawSight(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Layout& layout);
 
-/// Returns the middle of a port's disc: its cell, or next to a ship in this cell.
-cv::Point2d PortPlace(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
-                      const aquafarm_msgs::PortInfo& port, const Layout& layout);
+/// Returns where a ship is drawn: in its cell, or next to the port in this cell.
+cv::Point2d ShipPlace(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
+                      const aquafarm_msgs::ShipState& ship, const Layout& layout);
 
 /// Draws ports with their letters.
-void DrawPorts(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-               const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
+void DrawPorts(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
+               const Fonts& fonts);
 
 /// Draws devices that are deployed or delivered.
 void DrawDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,

@@ -16,7 +16,7 @@
 #include "markers/maker.h"
 #include "scene/nautical.h"
 #include "scene/outlook.h"
-#include "scene/port_shift.h"
+#include "scene/ship_place.h"
 #include "scene/storm_track.h"
 
 namespace aquafarm_viz {
@@ -55,11 +55,12 @@ class Labels {
       : spec_(spec), word_(maker.word_m() / maker.cell_m()) {
     const double half = 0.75 * maker.thing_m() / maker.cell_m();  // with circle and bar
     for (const auto& device : state.devices) Block(device.x, device.y, half);
-    for (const auto& ship : state.ships) Block(ship.x, ship.y, half);
-    for (const auto& port : spec.ports) {
-      const cv::Point shift = PortShift(spec, state, port);
-      Block(port.cell.x + shift.x, port.cell.y + shift.y, half);
+    for (const auto& ship : state.ships) {
+      const cv::Point2d at =
+          ShipPlace(spec, state, ship.x, ship.y, kShipAside * maker.thing_m() / maker.cell_m());
+      Block(at.x, at.y, half);
     }
+    for (const auto& port : spec.ports) Block(port.cell.x, port.cell.y, half);
     for (const auto& rock : spec.rocks) BlockLand(rock.cell, 0.42);
     for (const auto& cell : spec.islands) BlockLand(cell, 0.5);
   }

@@ -21,7 +21,7 @@
 #include "markers/rings.h"
 #include "scene/arrow.h"
 #include "scene/nautical.h"
-#include "scene/port_shift.h"
+#include "scene/ship_place.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -108,23 +108,19 @@ Marker Rocks(const Maker& maker, const FarmSpec& spec) {
   return rocks;
 }
 
-// A port's disc gives way to a ship in its cell.
-void AddPorts(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
-              const FarmState& state) {
-  const double side = 0.8 * maker.thing_m() / maker.cell_m();
+void AddPorts(MarkerArray& array, const Maker& maker, const FarmSpec& spec) {
   for (const auto& port : spec.ports) {
     if (!InGrid(spec, port.cell.x, port.cell.y)) continue;
-    const cv::Point shift = PortShift(spec, state, port);
-    const double x = port.cell.x + side * shift.x;
-    const double y = port.cell.y + side * shift.y;
-    Marker disc = maker.Make("port", port.id, Marker::CYLINDER, kPortLayer, x, y);
+    Marker disc =
+        maker.Make("port", port.id, Marker::CYLINDER, kPortLayer, port.cell.x, port.cell.y);
     disc.scale.x = disc.scale.y = 0.95 * maker.thing_m();
     disc.scale.z = 0.5 * maker.layer_m();
     disc.color = Color(kPort);
     array.markers.push_back(disc);
-    Marker letter = maker.Text("port_letter", port.id, x, y, PortLetter(port.id),
-                               std::max(0.8 * maker.thing_m(), maker.word_m()), kInk);
-    letter.pose.position.z = kDeviceLayer * maker.layer_m();  // below ships in the port
+    Marker letter =
+        maker.Text("port_letter", port.id, port.cell.x, port.cell.y, PortLetter(port.id),
+                   std::max(0.8 * maker.thing_m(), maker.word_m()), kInk);
+    letter.pose.position.z = kDeviceLayer * maker.layer_m();  // below ships
     array.markers.push_back(letter);
   }
 }
@@ -207,6 +203,9 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
       size = 0.18;
       color = Mix(DeviceColor(device.kind), kUnknown, 0.35);
     } else if (device.status == DeviceState::ABOARD) {
+      const cv::Point2d at = ShipPlace(spec, state, device.x, device.y, kShipAside * thing);
+      x = at.x;
+      y = at.y;
       size = 0.24;
       layer = kCargoLayer;
     }
@@ -221,33 +220,35 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
   }
 }
 
-void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, bool is_named,
-             const Trail* trail) {
+void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, cv::Point2d at,
+             bool is_named, const Trail* trail) {
   static const std::vector<cv::Point2f> kBow{{0.0F, 1.25F}, {-0.5F, 0.6F}, {0.5F, 0.6F}};
   static const std::vector<cv::Point2f> kDeck{{-0.22F, 0.42F}, {-0.26F, -0.1F}, {-0.22F, -0.68F},
                                               {0.22F, -0.68F}, {0.26F, -0.1F},  {0.22F, 0.42F}};
   const auto turned = Turned(ShipBearingDeg(ship, trail), kShapeNorthDeg);
   const bool own = ship.own_device >= 0;
-  Marker hull = maker.Shape("ship", ship.id, kShipLayer, ship.x, ship.y, own ? kBow : HullOutline(),
+  Marker hull = maker.Shape("ship", ship.id, kShipLayer, at.x, at.y, own ? kBow : HullOutline(),
                             (own ? 0.42 : 0.62) * maker.thing_m(), kPaper);
   hull.pose.orientation = turned;
   array.markers.push_back(hull);
   if (own) return;
-  Marker deck = maker.Shape("ship_deck", ship.id, kDeckLayer, ship.x, ship.y, kDeck,
+  Marker deck = maker.Shape("ship_deck", ship.id, kDeckLayer, at.x, at.y, kDeck,
                             0.62 * maker.thing_m(), ShipColor(ship.id));
   deck.pose.orientation = turned;
   array.markers.push_back(deck);
   if (!is_named) return array.markers.push_back(maker.Delete("ship_name", ship.id));
   const double aside = 0.75 * maker.thing_m() / maker.cell_m();
-  array.markers.push_back(maker.Text("ship_name", ship.id, ship.x + aside, ship.y - aside,
+  array.markers.push_back(maker.Text("ship_name", ship.id, at.x + aside, at.y - aside,
                                      std::to_string(ship.id), maker.word_m(), kPaper));
 }
 
 void AddShips(MarkerArray& array, const Maker& maker, const FarmSpec& spec, const FarmState& state,
               const Trail* trail) {
+  const double aside = kShipAside * maker.thing_m() / maker.cell_m();
   for (const auto& ship : state.ships) {
     if (ship.visible && ship.active && InGrid(spec, ship.x, ship.y)) {
-      AddShip(array, maker, ship, /*is_named=*/state.ships.size() > 1, trail);
+      AddShip(array, maker, ship, ShipPlace(spec, state, ship.x, ship.y, aside),
+              /*is_named=*/state.ships.size() > 1, trail);
       continue;
     }
     array.markers.push_back(maker.Delete("ship", ship.id));
@@ -335,7 +336,7 @@ MarkerArray StateMarkers(const FarmSpec& spec, const FarmState& state, const Tra
   const Maker maker(spec, state.header);
   MarkerArray array;
   AddDisasters(array, maker, spec, state, layers.risk);
-  AddPorts(array, maker, spec, state);
+  AddPorts(array, maker, spec);
   AddDevices(array, maker, spec, state);
   AddShips(array, maker, spec, state, trail);
   if (layers.labels) AddLabels(array, maker, spec, state);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/port_shift.h"
+#include "scene/ship_place.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,25 +12,22 @@ using aquafarm_msgs::DeviceState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-cv::Point PortShift(const FarmSpec& spec, const FarmState& state,
-                    const aquafarm_msgs::PortInfo& port) {
-  const auto is_ship_at = [&state](int x, int y) {
-    return std::any_of(state.ships.begin(), state.ships.end(), [x, y](const auto& ship) {
-      return ship.visible && ship.active && ship.x == x && ship.y == y;
-    });
-  };
-  if (!is_ship_at(port.cell.x, port.cell.y)) return {0, 0};
+cv::Point2d ShipPlace(const FarmSpec& spec, const FarmState& state, int x, int y, double aside) {
+  const auto port = std::find_if(spec.ports.begin(), spec.ports.end(), [x, y](const auto& one) {
+    return one.cell.x == x && one.cell.y == y;
+  });
+  if (port == spec.ports.end()) return {double(x), double(y)};
   // Distance of a cell to the nearest ship, other port or deployed device.
-  const auto free_around = [&](int x, int y) {
+  const auto free_around = [&](int column, int row) {
     double nearest = spec.width + spec.height;
     const auto keep_off = [&](int other_x, int other_y) {
-      nearest = std::min(nearest, std::hypot(other_x - x, other_y - y));
+      nearest = std::min(nearest, std::hypot(other_x - column, other_y - row));
     };
     for (const auto& other : spec.ports) {
-      if (other.id != port.id) keep_off(other.cell.x, other.cell.y);
+      if (other.id != port->id) keep_off(other.cell.x, other.cell.y);
     }
     for (const auto& ship : state.ships) {
-      const bool is_here = ship.x == port.cell.x && ship.y == port.cell.y;
+      const bool is_here = ship.x == x && ship.y == y;
       if (ship.visible && ship.active && !is_here) keep_off(ship.x, ship.y);
     }
     for (const auto& device : state.devices) {
@@ -39,18 +36,18 @@ cv::Point PortShift(const FarmSpec& spec, const FarmState& state,
     return nearest;
   };
   constexpr double kEnough = 2.0;  // [cells]
-  const int away = -DeliveredSide(spec, port.cell.y);
+  const int away = -DeliveredSide(spec, y);
   cv::Point best(-1, away);
   double widest = -1.0;
   for (const cv::Point shift : {cv::Point(-1, away), {1, away}, {-1, -away}, {1, -away}}) {
-    const int x = port.cell.x + shift.x;
-    const int y = port.cell.y + shift.y;
-    const double room = InGrid(spec, x, y) ? std::min(kEnough, free_around(x, y)) : -1.0;
+    const cv::Point to(x + shift.x, y + shift.y);
+    const double room =
+        InGrid(spec, to.x, to.y) ? std::min(kEnough, free_around(to.x, to.y)) : -1.0;
     if (room <= widest) continue;
     widest = room;
     best = shift;
   }
-  return best;
+  return cv::Point2d(x, y) + aside * cv::Point2d(best);
 }
 
 }  // namespace aquafarm_viz

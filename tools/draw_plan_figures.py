@@ -80,28 +80,32 @@ def name_of(storm):
 def draw_back_test(data, path):
     """Saved, promised and clairvoyant value of each recorded storm."""
     storms = data["storms"]
-    figure, axes = plt.subplots(figsize=(7.6, 0.27 * len(storms) + 1.2))
+    figure, axes = plt.subplots(figsize=(8.2, 0.27 * len(storms) + 1.2))
     places = range(len(storms), 0, -1)
     low = [max(0.0, s["saved"] - s["saved_low"]) for s in storms]
     high = [max(0.0, s["saved_high"] - s["saved"]) for s in storms]
     axes.barh(places, [s["at_risk"] for s in storms], color="0.87",
               label="at stake: lost if no ship leaves")
-    axes.plot([s["clairvoyant"] for s in storms], places, "|", color="#d55e00", markersize=14,
-              markeredgewidth=2.5, label="saved by a clairvoyant")
+    axes.plot([s["clairvoyant"] for s in storms], places, "|", color="#d55e00", markersize=17,
+              markeredgewidth=3.5, label="saved by a clairvoyant")
     axes.errorbar([s["saved"] for s in storms], places, xerr=[low, high], fmt="o", color="black",
-                  markersize=5, capsize=3, label="saved by the plan (mean, range)")
+                  markersize=4, capsize=3, label="saved by the plan (mean, range)")
     axes.plot([s["promised"] for s in storms], places, "x", color="#0072b2", markersize=7,
               markeredgewidth=1.8, label="promised before the storm (beyond the bar: a milder storm came)")
+    for place, storm in zip(places, storms):
+        if storm["at_risk"] <= 0.5:
+            axes.text(max(storm["promised"], storm["saved"]) + 6, place, "nothing at stake",
+                      va="center", fontsize=9, color="0.35")
     axes.set_yticks(list(places), [name_of(s) for s in storms], fontsize=10)
-    axes.set_xlabel("value of devices [units of the ranch]", fontsize=11)
+    axes.set_xlabel("value of devices [units of value]", fontsize=11)
     axes.set_xlim(-4, None)
     axes.set_ylim(0.3, len(storms) + 0.7)
     axes.grid(alpha=0.3, axis="x")
     handles, words = axes.get_legend_handles_labels()
     order = [words.index(word) for word in sorted(words)]
-    axes.legend([handles[i] for i in order], [words[i] for i in order], fontsize=10, ncol=2,
-                loc="lower center", bbox_to_anchor=(0.45, 1.0))  # above the bars
-    figure.suptitle(finding(storms), fontsize=12, y=1.04)
+    axes.legend([handles[i] for i in order], [words[i] for i in order], fontsize=10, ncol=1,
+                loc="lower left", bbox_to_anchor=(-0.01, 1.0), frameon=False, borderpad=0.2)
+    figure.suptitle(finding(storms), fontsize=12, y=1.10)
     figure.savefig(path, dpi=DPI, bbox_inches="tight")
     plt.close(figure)
 

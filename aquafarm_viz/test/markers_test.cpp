@@ -122,6 +122,43 @@ TEST(StateMarkers, NameADisasterOnTheSideThatItsArrowLeavesFree) {
   }
 }
 
+TEST(StateMarkers, NameADisasterOutsideItsRingsWhereThatIsOnTheMap) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  auto& disaster = state.disasters[0];
+  disaster.heading_deg = 180;
+  disaster.speed = 0.5F;
+  disaster.y = 12.0F;
+  for (const auto& [radius, is_outside] : {std::pair(6.0F, true), {14.0F, false}}) {
+    disaster.radii.back() = radius;
+    const auto at = ByKey(StateMarkers(spec, state)).at({"disaster_name", 0}).pose.position;
+    EXPECT_EQ(at.y / spec.cell_size_m > 12.0 + double(radius), is_outside) << radius;
+    EXPECT_LT(at.y / spec.cell_size_m, spec.height);
+  }
+}
+
+TEST(StateMarkers, ShowTheLastMovesOfAShip) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  state.ships.resize(1);
+  Trail trail;
+  EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"path", 0}).action, Marker::DELETE);
+  for (int step = 0; step < 3; ++step) {
+    state.step = std::uint64_t(step);
+    state.ships[0].x = 5 + step;
+    state.ships[0].y = 7;
+    trail.Update(state);
+  }
+  const auto path = ByKey(StateMarkers(spec, state, &trail)).at({"path", 0});
+  ASSERT_EQ(path.points.size(), 2U * 6U);
+  for (const auto& point : path.points) {
+    EXPECT_NEAR(point.x, 6 * spec.cell_size_m, 1.3 * spec.cell_size_m);
+    EXPECT_NEAR(point.y, 7 * spec.cell_size_m, 0.3 * spec.cell_size_m);
+  }
+  EXPECT_LT(path.colors.front().a, path.colors.back().a) << "the oldest is faint";
+  EXPECT_EQ(path.colors.back().a, 1.0F);
+}
+
 TEST(SpecMarkers, AreInMetresOfFrameMap) {
   auto spec = test::MakeSpec();
   spec.cell_size_m = 250.0;

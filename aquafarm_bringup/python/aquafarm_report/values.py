@@ -178,12 +178,11 @@ def draw_relation(axis, values, layer, result, letter):
     axis.set_xlabel(f"{words} [{unit_text(units)}]")
     axis.set_ylabel("return if the ship starts there")
     rest = compare(np.where(low, np.nan, values), field)["spearman_rho"]
-    axis.set_title(f"({letter}) Return against {words}", fontsize=11)
+    axis.set_title(f"({letter}) Return against {words}", fontsize=11, pad=32.0)
     said = (f"rank correlation {signed(result['spearman_rho'])}, {result['cells']} cells\n"
             f"{signed(rest)} without the lowest twentieth" if result["spearman_rho"] is not None else
             f"{result['cells']} cells: too few or too alike to compare")
-    axis.text(0.03, 0.04, said, transform=axis.transAxes, fontsize=9, va="bottom",
-              bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 2.0})
+    axis.text(0.5, 1.03, said, transform=axis.transAxes, fontsize=9, va="bottom", ha="center")
     axis.xaxis.set_major_locator(ticker.MaxNLocator(5))
     axis.grid(alpha=0.3)
 

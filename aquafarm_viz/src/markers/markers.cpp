@@ -242,33 +242,70 @@ void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, cv::
                                      std::to_string(ship.id), maker.word_m(), kPaper));
 }
 
+// Adds the last moves of a ship, which fade towards the oldest, as rectangles: lines of rviz have
+// no constant width.
+void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, const ShipState& ship,
+             const Trail* trail) {
+  const ShipTrail* way = trail == nullptr ? nullptr : trail->Find(ship.id);
+  const std::size_t count = way == nullptr ? 0 : way->places.size();
+  if (count < 2) return array.markers.push_back(maker.Delete("path", ship.id));
+  Marker path = maker.Make("path", ship.id, Marker::TRIANGLE_LIST, kPortLayer, 0, 0);
+  path.color =
+      Color(state.ships.size() > 1 ? Mix(ShipColor(ship.id), kPaper, 0.35) : HealthColor(1.0));
+  const double half_m = 0.06 * maker.thing_m();
+  for (std::size_t i = 1; i < count; ++i) {
+    const cv::Point2d from = cv::Point2d(way->places[i - 1]) * maker.cell_m();
+    const cv::Point2d to = cv::Point2d(way->places[i]) * maker.cell_m();
+    const double length = cv::norm(to - from);
+    if (length == 0.0) continue;
+    const cv::Point2d along = (to - from) * (half_m / length);  // joins the next rectangle
+    const cv::Point2d side(-along.y, along.x);
+    const cv::Point2d a = from - along;
+    const cv::Point2d b = to + along;
+    for (const cv::Point2d corner : {a - side, b - side, b + side, a - side, b + side, a + side}) {
+      path.points.push_back(Point(corner.x, corner.y));
+      path.colors.push_back(path.color);
+      path.colors.back().a = static_cast<float>(0.3 + 0.7 * double(i) / double(count - 1));
+    }
+  }
+  if (path.points.empty()) return array.markers.push_back(maker.Delete("path", ship.id));
+  array.markers.push_back(path);
+}
+
 void AddShips(MarkerArray& array, const Maker& maker, const FarmSpec& spec, const FarmState& state,
-              const Trail* trail) {
+              const Trail* trail, bool has_paths) {
   const double aside = kShipAside * maker.thing_m() / maker.cell_m();
   for (const auto& ship : state.ships) {
     if (ship.visible && ship.active && InGrid(spec, ship.x, ship.y)) {
       AddShip(array, maker, ship, ShipPlace(spec, state, ship.x, ship.y, aside),
               /*is_named=*/state.ships.size() > 1, trail);
+      AddPath(array, maker, state, ship, has_paths ? trail : nullptr);
       continue;
     }
     array.markers.push_back(maker.Delete("ship", ship.id));
+    array.markers.push_back(maker.Delete("path", ship.id));
     if (ship.own_device >= 0) continue;
     array.markers.push_back(maker.Delete("ship_deck", ship.id));
     array.markers.push_back(maker.Delete("ship_name", ship.id));
   }
 }
 
-void AddDisasterSigns(MarkerArray& array, const Maker& maker, const DisasterState& disaster) {
+void AddDisasterSigns(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
+                      const DisasterState& disaster) {
   Marker eye =
       maker.Make("disaster", disaster.id, Marker::CYLINDER, kSignLayer, disaster.x, disaster.y);
   eye.scale.x = eye.scale.y = 0.7 * maker.thing_m();
   eye.scale.z = 0.5 * maker.layer_m();
   eye.color = Color(GradeColor(disaster.grade));
   array.markers.push_back(eye);
-  // On the side that the arrow of its motion leaves free.
-  const bool is_above =
-      disaster.speed > 0.0F && std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1;
-  const double aside = (is_above ? 0.9 : -0.9) * maker.thing_m() / maker.cell_m();
+  // On the side that the arrow of its motion leaves free, outside the rings where that is on the
+  // map.
+  const double side =
+      disaster.speed > 0.0F && std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1 ? 1.0 : -1.0;
+  const double near = 0.9 * maker.thing_m() / maker.cell_m();
+  const double far = near + (disaster.radii.empty() ? 0.0 : double(disaster.radii.back()));
+  const double outside = disaster.y + side * far;
+  const double aside = side * (outside > 0.0 && outside < spec.height - 1.0 ? far : near);
   array.markers.push_back(maker.Text("disaster_name", disaster.id, disaster.x, disaster.y + aside,
                                      DisasterName(disaster.kind), maker.word_m(), kPaper));
   if (!(disaster.speed > 0.0F)) {
@@ -281,7 +318,7 @@ void AddDisasterSigns(MarkerArray& array, const Maker& maker, const DisasterStat
   heading.scale.x = 2.4 * maker.thing_m();
   heading.scale.y = 0.32 * maker.thing_m();
   heading.scale.z = maker.layer_m();
-  heading.color = Color(kPaper);
+  heading.color = Color(GradeColor(disaster.grade));
   array.markers.push_back(heading);
 }
 
@@ -292,7 +329,7 @@ void AddDisasters(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     AddRings(array, maker, spec, disaster, drawn);
     // A centre outside has a pointer at the edge (danger.h).
     if (drawn && (!has_pointers || IsCentreInFarm(spec, disaster))) {
-      AddDisasterSigns(array, maker, disaster);
+      AddDisasterSigns(array, maker, spec, disaster);
       continue;
     }
     for (const char* space : {"disaster", "disaster_name", "heading"}) {
@@ -338,7 +375,7 @@ MarkerArray StateMarkers(const FarmSpec& spec, const FarmState& state, const Tra
   AddDisasters(array, maker, spec, state, layers.risk);
   AddPorts(array, maker, spec);
   AddDevices(array, maker, spec, state);
-  AddShips(array, maker, spec, state, trail);
+  AddShips(array, maker, spec, state, trail, /*has_paths=*/layers.trail);
   if (layers.labels) AddLabels(array, maker, spec, state);
   array.markers.push_back(Status(maker, spec, state));
   return array;

@@ -13,35 +13,22 @@
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/palette.h"
 #include "fixture.h"
+#include "marker_fixture.h"
 #include "markers/legend.h"
 
 namespace aquafarm_viz {
 namespace {
 
+using test::BearingDeg;
+using test::ByKey;
+using test::Key;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
-using Key = std::pair<std::string, int>;
-
-std::map<Key, Marker> ByKey(const MarkerArray& array) {
-  std::map<Key, Marker> result;
-  for (const auto& marker : array.markers) {
-    EXPECT_TRUE(result.emplace(Key(marker.ns, marker.id), marker).second)
-        << marker.ns << " " << marker.id << " twice";
-  }
-  return result;
-}
 
 std::set<Key> Keys(const MarkerArray& array) {
   std::set<Key> keys;
   for (const auto& marker : array.markers) keys.emplace(marker.ns, marker.id);
   return keys;
-}
-
-// Returns the bearing of a marker's x axis (or, for outlines, of its bow).
-double BearingDeg(const Marker& marker, double rest_deg) {
-  const auto& q = marker.pose.orientation;
-  const double yaw_deg = 2.0 * std::atan2(q.z, q.w) * 180.0 / M_PI;
-  return std::fmod(rest_deg - yaw_deg + 720.0, 360.0);
 }
 
 TEST(SpecMarkers, ShowEveryThingThatStandsStill) {
@@ -97,18 +84,6 @@ TEST(SpecMarkers, NumberCellsWithoutAPlace) {
   EXPECT_EQ(texts.count("25"), 0U);
 }
 
-TEST(StateMarkers, NameShipsOnlyIfThereAreSeveral) {
-  const auto spec = test::MakeSpec();
-  auto state = test::MakeState();
-  state.ships.resize(1);
-  EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"ship_name", 0}).action, Marker::DELETE);
-  state.ships.push_back(state.ships[0]);
-  state.ships[1].id = 1;
-  state.ships[1].x += 3;
-  EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"ship_name", 0}).text, "0");
-  EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"ship_name", 1}).text, "1");
-}
-
 TEST(StateMarkers, NameADisasterOnTheSideThatItsArrowLeavesFree) {
   const auto spec = test::MakeSpec();
   auto state = test::MakeState();
@@ -135,28 +110,6 @@ TEST(StateMarkers, NameADisasterOutsideItsRingsWhereThatIsOnTheMap) {
     EXPECT_EQ(at.y / spec.cell_size_m > 12.0 + double(radius), is_outside) << radius;
     EXPECT_LT(at.y / spec.cell_size_m, spec.height);
   }
-}
-
-TEST(StateMarkers, ShowTheLastMovesOfAShip) {
-  const auto spec = test::MakeSpec();
-  auto state = test::MakeState();
-  state.ships.resize(1);
-  Trail trail;
-  EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"path", 0}).action, Marker::DELETE);
-  for (int step = 0; step < 3; ++step) {
-    state.step = std::uint64_t(step);
-    state.ships[0].x = 5 + step;
-    state.ships[0].y = 7;
-    trail.Update(state);
-  }
-  const auto path = ByKey(StateMarkers(spec, state, &trail)).at({"path", 0});
-  ASSERT_EQ(path.points.size(), 2U * 6U);
-  for (const auto& point : path.points) {
-    EXPECT_NEAR(point.x, 6 * spec.cell_size_m, 1.3 * spec.cell_size_m);
-    EXPECT_NEAR(point.y, 7 * spec.cell_size_m, 0.3 * spec.cell_size_m);
-  }
-  EXPECT_LT(path.colors.front().a, path.colors.back().a) << "the oldest is faint";
-  EXPECT_EQ(path.colors.back().a, 1.0F);
 }
 
 TEST(SpecMarkers, AreInMetresOfFrameMap) {
@@ -195,34 +148,6 @@ TEST(StateMarkers, ShowEveryShipDeviceAndDisaster) {
   }
   EXPECT_EQ(markers.at({"disaster", 0}).action, Marker::ADD);
   EXPECT_EQ(markers.at({"heading", 0}).type, Marker::ARROW);
-}
-
-TEST(StateMarkers, ShowAShipNextToThePortInItsCell) {
-  const auto spec = test::MakeSpec();
-  auto state = test::MakeState();
-  for (int port = 0; port < 4; ++port) {
-    const auto& cell = spec.ports[std::size_t(port)].cell;
-    for (const bool has_ship : {false, true}) {
-      state.ships[0].x = has_ship ? cell.x : 12;
-      state.ships[0].y = has_ship ? cell.y : 20;
-      const auto markers = ByKey(StateMarkers(spec, state));
-      const Marker& disc = markers.at({"port", port});
-      const Marker& letter = markers.at({"port_letter", port});
-      EXPECT_EQ(letter.text, std::string(1, char('A' + port)));
-      EXPECT_EQ(letter.pose.position.x, disc.pose.position.x);
-      EXPECT_EQ(disc.pose.position.x, cell.x * spec.cell_size_m);
-      EXPECT_EQ(disc.pose.position.y, cell.y * spec.cell_size_m);
-      const Marker& ship = markers.at({"ship", 0});
-      const double away = std::hypot(ship.pose.position.x / spec.cell_size_m - state.ships[0].x,
-                                     ship.pose.position.y / spec.cell_size_m - state.ships[0].y);
-      if (has_ship) {
-        EXPECT_GT(away, 1.0) << "port " << port << " is covered";
-        EXPECT_LT(away, 1.5);
-      } else {
-        EXPECT_EQ(away, 0.0);
-      }
-    }
-  }
 }
 
 TEST(StateMarkers, KeepTheirIdsWhateverHappens) {
@@ -354,16 +279,6 @@ TEST(StateMarkers, PointTheArrowWhereTheDisasterHeads) {
   const auto east = ByKey(StateMarkers(spec, state)).at({"heading", 0}).pose.orientation;
   EXPECT_NEAR(east.z, 0.0, 1e-12);  // without rotation rviz arrows point east
   EXPECT_NEAR(east.w, 1.0, 1e-12);
-}
-
-TEST(StateMarkers, TurnAShipTowardsItsMove) {
-  const auto spec = test::MakeSpec();
-  auto state = test::MakeState();
-  for (const auto& [action, bearing] : {std::pair{0, 0}, {3, 90}, {5, 45}, {6, 225}}) {
-    state.ships.front().action = static_cast<std::uint8_t>(action);
-    const auto ship = ByKey(StateMarkers(spec, state)).at({"ship", 0});
-    EXPECT_NEAR(BearingDeg(ship, 0.0), bearing, 1e-6);
-  }
 }
 
 TEST(StateMarkers, DeleteADisasterThatIsOver) {

@@ -181,7 +181,7 @@ class FiguresTest(unittest.TestCase):
         self.assertLess(axes.get_ylim()[1], 0.0)
         self.assertEqual({"SARSA", "LSTM-DQN"}, self.names_of(axes))
 
-    def test_references_with_almost_one_value_have_one_line(self):
+    def test_almost_equal_references_share_one_line(self):
         ends = figures._plot_references(self.axes, {"planner": 276.0, "clairvoyant": 277.6, "x": 5.0}, 9)
         self.assertEqual([(9, 277.6, "clairvoyant 278, planner 276"), (9, 5.0, "x 5")],
                          [(x, y, name) for x, y, _, name in ends])

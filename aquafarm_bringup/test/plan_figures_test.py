@@ -60,6 +60,13 @@ class PlanFiguresTest(unittest.TestCase):
         marked, = (point for point in region["points"] if point["is_now"])
         self.assertEqual(marked["xy"], now.anchor)
         self.assertIn(marked["time"].split(" ", 1)[1], now.lines[0])
+        self.assertEqual(document.Clock(plan["clock"]).day_time(plan["clock"]["start"]),
+                         marked["time"])
+        plan["storm"]["points"] = [point for point in plan["storm"]["points"]
+                                   if point["time"] != plan["clock"]["start"]]
+        later = figures.region(plan)
+        self.assertFalse([label for label in later["labels"] if "now" in label.lines[0]],
+                         "no other point is called so")
 
     def test_the_region_ends_soon_after_the_last_event(self):
         plan = plan_sample.sample(members=100)

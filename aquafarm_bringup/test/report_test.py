@@ -283,6 +283,7 @@ class ReportTest(unittest.TestCase):
                          [tuple(line.values()) for line in found["lines"]])
         self.assertEqual([[100.0, 80.4, 119.6]], found["marks"])
         self.assertAlmostEqual(np.mean(columns["return"][-50:]) / 3.0, found["bend"], delta=0.01)
+        self.assertIn("logarithmic below 0", found["title"])
         self.assertIsNone(chart({"return": columns["return"] - 1000.0})["bend"], "below 0")
 
     def test_one_sentence_says_how_good_a_run_is(self):

@@ -105,17 +105,23 @@ class ValuesTest(unittest.TestCase):
         self.assertEqual([], make(written(self.folder.name, slope(), {}), output))
         self.assertEqual(b"\x89PNG", pathlib.Path(output + ".png").read_bytes()[:4])
 
-    def test_the_title_says_where_to_start(self):
+    def test_the_title_names_the_best_start(self):
         values = slope()
         values[1:3, 2:4] = -50.0
         values[9, 10] = 99.0
         text = {"cell_size_m": 500.0, "ports": [[0, 0]], "devices": [[10, 8]]}
         said = verdict(values, text)
-        self.assertIn("Best start: next to a device, 5 km east, 5 km north (99 points)", said)
-        self.assertIn("is around 1 km east, 1 km north", said)
+        self.assertIn("Best start: next to a device, 5.2 km east, 4.8 km north (99 points)", said)
+        self.assertIn("is around 1.2 km east, 0.8 km north", said)
+        values[0, 13] = -60.0
+        self.assertIn("is around 1.2 km east, 0.8 km north", verdict(values, text), "the largest part")
+        even = np.ones((5, 6))
+        even[4, 5] = 2.0
+        self.assertEqual("Best start: 2.8 km east, 2.2 km north (2 points)",
+                         verdict(even, {"cell_size_m": 500.0}), "many cells have the lowest return")
         text["devices"] = [[10, 9]]
         self.assertIn("Best start: at a device,", verdict(values, text))
-        self.assertIn("Best start: 5 km east", verdict(values, {"cell_size_m": 500.0}))
+        self.assertIn("Best start: 5.2 km east", verdict(values, {"cell_size_m": 500.0}))
         self.assertEqual("", verdict(np.ones((3, 4)), text))
         self.assertEqual("", verdict(np.full((3, 4), np.nan), text))
 

@@ -11,7 +11,7 @@ namespace {
 
 const cv::Size kLabel(80, 16);
 
-// A map of 640 x 640 pixels with one island in its middle and a path along row 20.
+// A picture of 640 x 640 pixels with one island in its middle and a path along row 20.
 struct LabelScene {
   LabelScene() {
     spec.islands = {test::MakeCell(12, 12)};
@@ -54,9 +54,9 @@ TEST(LabelSpace, CoversLittleBeforeItCoversMore) {
   const LabelScene scene;
   const cv::Point2d path = scene.At(12, 20);
   LabelSpace space = scene.Space();
-  const auto beside = space.Take(kLabel, path, 60.0);
-  ASSERT_TRUE(beside);
-  EXPECT_FALSE(beside->contains(cv::Point(path))) << "next to the path, not on it";
+  const auto aside = space.Take(kLabel, path, 60.0);
+  ASSERT_TRUE(aside);
+  EXPECT_FALSE(aside->contains(cv::Point(path))) << "next to the path, not on it";
   const auto on_it = scene.Space().Take(kLabel, path, 4.0);
   ASSERT_TRUE(on_it);
   EXPECT_TRUE(on_it->contains(cv::Point(path))) << "nothing else is in reach";

@@ -143,6 +143,21 @@ TEST(RegionWords, OfAStormThatLeaves) {
   EXPECT_EQ(storms.words().lines[1], "dashed: course ahead");
 }
 
+TEST(RegionWords, NameTheWindThatArrivesAndWhen) {
+  const char* const track =
+      "{step: 0, x: 112, y: 12, radii: [2, 10]}, "
+      "{step: 20, x: 12, y: 12, radii: [2, 10]}";
+  for (const auto& [winds, heading] :
+       {std::pair("[64, 34]", "GALE IN "), {"[34, 28]", "NEAR GALE IN "}}) {
+    Storms storms;
+    storms.Add(track, 112.0F, 12.0F, (std::string("    ring_winds_kt: ") + winds + "\n").c_str());
+    storms.state.disasters[0].radii = {2.0F, 10.0F};
+    storms.state.disasters[0].risks = {-10.0F, -5.0F};
+    EXPECT_EQ(storms.words().heading.substr(0, std::string(heading).size()), heading);
+    EXPECT_TRUE(storms.words().is_urgent);
+  }
+}
+
 TEST(RegionWords, OfAStormThatStays) {
   Storms storms;
   storms.Add("{step: 0, x: 112, y: 12, radii: [10]}", 112.0F, 12.0F);

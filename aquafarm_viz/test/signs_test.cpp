@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
@@ -14,6 +15,7 @@
 #include "draw/map_labels.h"
 #include "draw/symbols.h"
 #include "fixture.h"
+#include "scene/ship_place.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -109,6 +111,27 @@ TEST(Signs, OfAShipStandNextToThePortInItsCell) {
     }
     EXPECT_FALSE(BlockSymbols(spec, state, {}, layout).IsFree({cv::Point(at), cv::Size(1, 1)}))
         << "labels keep off";
+  }
+}
+
+TEST(Signs, OfAShipStandOnWaterNextToAPort) {
+  auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  spec.ports.front().cell = test::MakeCell(12, 12);
+  const auto cell = spec.ports.front().cell;
+  state.ships.front().x = cell.x;
+  state.ships.front().y = cell.y;
+  spec.rocks.clear();
+  spec.islands.clear();
+  for (int gap = 0; gap < 4; ++gap) {  // land on three of the four sides
+    spec.islands.clear();
+    const std::array<cv::Point, 4> sides{cv::Point(-1, -1), {1, -1}, {-1, 1}, {1, 1}};
+    for (int side = 0; side < 4; ++side) {
+      const cv::Point at = sides[std::size_t(side)];
+      if (side != gap) spec.islands.push_back(test::MakeCell(cell.x + at.x, cell.y + at.y));
+    }
+    const cv::Point2d there = ShipPlace(spec, state, cell.x, cell.y, 1.0);
+    EXPECT_EQ(there, cv::Point2d(cell.x, cell.y) + cv::Point2d(sides[std::size_t(gap)]));
   }
 }
 

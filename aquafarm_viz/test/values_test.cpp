@@ -43,6 +43,25 @@ TEST(Values, FarFromZeroHaveTheColoursOfTheirDifferences) {
   EXPECT_EQ(cv::norm(drawn(0.0F), drawn(-1.0e7F), cv::NORM_INF), 0.0);
 }
 
+TEST(Values, LeaveRocksGrey) {
+  auto spec = test::MakeSpec(8);
+  spec.rocks.resize(1);
+  spec.rocks.front().cell = test::MakeCell(3, 4);
+  Values values;
+  values.width = values.height = 8;
+  values.highest = 1.0F;
+  values.values.assign(64, 0.0F);
+  values.values[4 * 8 + 3] = std::numeric_limits<float>::quiet_NaN();
+  const Layout layout = MakeLayout(8, 8, {400, 400});
+  cv::Mat map(layout.map.size(), CV_8UC3, cv::Scalar(255, 0, 0));
+  DrawValues(map, spec, values, layout);
+  const cv::Point2d corner =
+      layout.view.ToPixel(3, 4) + cv::Point2d(0.42, 0.42) * layout.view.cell_px();
+  const auto grey = map.at<cv::Vec3b>(cv::Point(corner));
+  EXPECT_LT(int(grey[0]), 240) << "not the blue of the map";
+  EXPECT_GT(int(grey[2]), 60);
+}
+
 TEST(Values, LeavesOutInvalidCellsActionsAndNumbers) {
   auto cloud = test::MakeCloud();
   sensor_msgs::PointCloud2Iterator<float> at(cloud, "x");

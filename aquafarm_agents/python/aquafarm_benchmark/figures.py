@@ -68,8 +68,8 @@ def _scale_returns(axes):
 def _draw_returns(path, title, ylabel, plots):
     """Draws returns on the scale of _scale_returns. Lines are named at their right end.
 
-    plots: (function that plots on axes and returns the ends of the lines, xlabel) of charts below
-        each other
+    plots: (function that plots on axes and returns the ends of the lines, xlabel) of each chart,
+        from top to bottom
     """
     figure, rows = plt.subplots(len(plots), 1, figsize=(8.7, 1.0 + 4.4 * len(plots)),
                                 squeeze=False, layout="constrained")
@@ -84,9 +84,9 @@ def _draw_returns(path, title, ylabel, plots):
 
 
 _LOGARITHMIC = "#eef1f4"  # background of the part of a scale that is logarithmic
-_ALIKE = 0.02  # relative difference of references that have one line
-_NAME_PT = 15.0  # height of a name
-_TEXT = 4.5  # contrast of names to white, at least (WCAG 2.1, 1.4.3)
+_ALIKE = 0.02  # references that differ by less share one line
+_NAME_PT = 15.0  # height of a name [pt]
+_TEXT = 4.5  # min contrast ratio of names on white (WCAG 2.1, 1.4.3)
 
 
 def spread(places, gap, low=0.0, high=1.0):
@@ -192,7 +192,7 @@ def plot_rewards_by_episodes(axes, contestants, runs, references):
 def draw_rewards(path, contestants, runs, references):
     """Fig. 12a by time steps, next to the same data by episodes."""
     data = (contestants, runs, references)
-    _draw_returns(path, f"Return of one run each, the first one (Fig. 12a): mean of "
+    _draw_returns(path, f"Return of the first run of each learner (Fig. 12a): mean of "
                   f"{measures.WINDOW} episodes", "return of an episode", [
                       (lambda axes: plot_rewards_by_steps(axes, *data),
                        "time steps so far (logarithmic)"),
@@ -225,8 +225,9 @@ def draw_square_error(path, contestants, runs):
                          "highest",
                          f"{measures.WINDOW}-episode mean [reward²]\n(logarithmic scale)")
     plot_square_error(axes, contestants, runs)
-    axes.text(0.0, -0.17, "Each learner's own targets: errors of different learners do not compare. A "
-              "low error means\nconsistent estimates, which a policy that fails can have, too.",
+    axes.text(0.0, -0.17, "The error is relative to each learner's own targets and cannot be compared "
+              "between learners.\nA low error means consistent estimates; a policy that fails can have "
+              "one too.",
               transform=axes.transAxes, fontsize=9, va="top")
     save(figure, path)
 
@@ -394,7 +395,7 @@ def plot_repeated(axes, contestants, runs, references):
 
 
 def _shade(axes, x, low, high, colour):
-    """Shades a range, with thin edges: shades of several ranges mix."""
+    """Shades a range. Thin edges separate ranges that overlap."""
     axes.fill_between(x, low, high, facecolor=(*colors.to_rgb(colour), 0.16),
                       edgecolor=(*colors.to_rgb(colour), 0.45), linewidth=0.5)
 

@@ -20,7 +20,7 @@ _LANE = 0.14  # distance of a leg from the middle of its cells; the next leg has
 # Legs by whether something is aboard; colours of Okabe and Ito (2008).
 _LEGS = {False: ("#0072b2", (0, (4, 1.5)), "route with nothing aboard"),
          True: ("#d55e00", "solid", "route with a device aboard")}
-_REPEATED = 0.35  # opacity of a line that may lie on itself
+_REPEATED = 0.35  # opacity of a path that may overlap itself
 _DEVICE = "#c2185b"
 _SEA = "#eaf3f9"
 _LAND = "#c9b98a"
@@ -111,7 +111,7 @@ def plot_unfinished(axes, name, route, size):
         axes.plot(*np.array(cells, dtype=float).T, color="#5b6b78", linewidth=1.0, zorder=4,
                   alpha=0.7, label="route before")
     colour, kind = _LEGS[loaded][0], f"{'a device' if loaded else 'nothing'} aboard"
-    axes.add_collection(LineCollection(  # each step for itself: what the ship repeats is darker
+    axes.add_collection(LineCollection(  # one segment per step, so that repeated ones are darker
         [np.array(pair, dtype=float) for pair in zip(last_leg, last_leg[1:])], color=colour,
         linewidth=1.4, zorder=5, alpha=_REPEATED, label=f"last leg, {kind}; darker: repeated"))
     axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black",
@@ -137,7 +137,8 @@ def _chart(axes, chart, size=None, left=None):
     """Draws a ranch on axes for ranches of at most this size; by default, its own. Returns the patch
     of its sea.
 
-    left: the cells of the devices that were not fetched; the others are hollow. None: all filled
+    left: the cells of the devices that were not fetched; the others are hollow. If None, all are
+        filled
     """
     width, height = size or (chart["width"], chart["height"])
     axes.set_aspect("equal")
@@ -171,8 +172,8 @@ def _chart(axes, chart, size=None, left=None):
 
 
 def plot_moves(axes, moves, chart):
-    """The move preferred in each _EVERY-th column and row of open water as an arrow; each preferred
-    stop."""
+    """Draws the preferred move as an arrow in each _EVERY-th column and row, except at ports and
+    devices, and marks each preferred stop."""
     taken = [*chart["ports"], *(device["cell"] for device in chart["devices"])]
     pointed = [(x, y, *_DIRECTIONS[action]) for x, y, action in moves
                if action in _DIRECTIONS and x % _EVERY == 0 and y % _EVERY == 0
@@ -250,7 +251,8 @@ def _explain(empty, charts, stops, has_moves):
                linespacing=1.4)
     if stops:
         table = empty.table(stops, colLabels=["stop", "action", "step"], cellLoc="left",
-                            colLoc="left", edges="horizontal", bbox=(0.02, 0.08, 0.6, 0.42))
+                            colLoc="left", edges="horizontal",
+                            bbox=(0.02, 0.5 - 0.06 * (len(stops) + 1), 0.6, 0.06 * (len(stops) + 1)))
         table.auto_set_font_size(False)
         table.set_fontsize(11)
 

@@ -41,11 +41,10 @@ def region(plan):
         left = 0.25 * (side - east + west)
         return (x - west + left) * scale, ((south + north + side) / 2 - y) * scale
 
-    now = min(range(len(points)), key=lambda i: abs(clock.seconds(points[i]["time"])))
     drawn = [{
         "xy": px(*p["at"]), "source": p["source"], "time": clock.day_time(p["time"]),
-        "wind": p["wind_mps"], "is_now": i == now
-    } for i, p in enumerate(points)]
+        "wind": p["wind_mps"], "is_now": abs(clock.seconds(p["time"])) < 60.0
+    } for p in points]
     rings, caption = _region_rings(plan, points, middle, px, scale / cell_km, clock)
     bar = [{"px": n * km / cell_km * scale, "text": f"{n:g} {unit}"}
            for unit, km in (("km", 1), ("nmi", 1.852)) for n in [nice(side * cell_km * 0.25 / km)]]
@@ -66,7 +65,8 @@ def region(plan):
 
 
 def _apart(drawn, least):
-    """The points of a dense track that are at least a distance apart [px], and the last one."""
+    """The points of a dense track that are at least a distance apart [px], and always the present and
+    the last one."""
     kept = []
     for one in drawn:
         if (not kept or math.dist(one["xy"], kept[-1]["xy"]) >= least or one["is_now"]
@@ -79,13 +79,13 @@ def _region_labels(plan, drawn, rings, box):
     """The ranch's name, times and winds at the fixes, and names at the rings."""
     centre = (box["x"] + box["w"] / 2, box["y"] + box["h"] / 2)
     labels = [Label(["ranch"], centre, box["w"] / 2 + 2, 14, name="ranch-name")]
-    now = next(one for one in drawn if one["is_now"])
+    now = [one for one in drawn if one["is_now"]][:1]  # a track may have no point at the start
     others = [one for one in drawn[::math.ceil(len(drawn) / (REGION_LABELS - 1))]
-              if math.dist(one["xy"], now["xy"]) > 40.0]
-    for one in [now, *others]:
+              if all(math.dist(one["xy"], at["xy"]) > 40.0 for at in now)]
+    for one in now + others:
         words = one["time"].split(" ", 1)[1]
         words += "" if one["wind"] is None else f", {one['wind']:.0f} m/s"
-        labels.append(Label([f"now: {words}" if one is now else words], one["xy"], 6, 12,
+        labels.append(Label([f"now: {words}" if one["is_now"] else words], one["xy"], 6, 12,
                             name=one["source"]))
     for ring in rings:
         x, y = ring["xy"][0], ring["xy"][1] + ring["r"]

@@ -12,7 +12,7 @@ from .document import Clock, amount, percent
 
 # Not a PackageLoader: in a devel space the package is a stub that extends its path.
 TEMPLATES = pathlib.Path(__file__).with_name("templates")
-UNIT = re.compile(r"(?<=\d) (?=%)")  # the space of "92 %", where no line may end
+UNIT = re.compile(r"(?<=\d) (?=%)")  # the space in "92 %", at which a line must not break
 BASIS = {
     "recorded": "recorded", "forecast": "forecast", "published": "published",
     "estimated": "estimated", "assumed": "assumed", "given": "given by you"

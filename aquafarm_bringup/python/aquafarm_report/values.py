@@ -16,7 +16,7 @@ from aquafarm_bringup.files import open_atomically  # noqa: E402
 
 MOST_WINDOW = 7  # cells on a side, as in scikit-image
 FEWEST_CELLS = 10
-NEXT_TO = 2.0  # distance of a cell from a device or port next to it [cells]
+NEXT_TO = 2.0  # max distance of a cell next to a device or port [cells]
 _COLUMN = 3.3  # width of a map in the figure [inch]
 _LOW_COLOUR = "#440154"  # the lowest one of viridis
 _SEA_COLOURS = {"depth": "Blues", "warmth": "YlOrRd"}
@@ -84,30 +84,37 @@ def signed(number):
 
 
 def place_words(cells, text):
-    """Where a cell [east, north] is: next to a device or port, else its distance east and north."""
+    """Returns where a cell [east, north] is, such as "next to a device, 5 km east, 5 km north"; the
+    device or port only within NEXT_TO."""
     east, north = cells
     near = [(math.hypot(east - x, north - y), words, (x, y))
             for words, key in (("device", "devices"), ("port", "ports"))
             for x, y in text.get(key) or []]
     km = text["cell_size_m"] / 1000.0
-    at = f"{(east + 0.5) * km:.0f} km east, {(north + 0.5) * km:.0f} km north"
+    place = f"{(east + 0.5) * km:.1f} km east, {(north + 0.5) * km:.1f} km north"
     if near and min(near)[0] <= NEXT_TO:
         distance, words, _ = min(near)
-        return f"{'at' if distance < 1.0 else 'next to'} a {words}, {at}"
-    return at
+        return f"{'at' if distance < 1.0 else 'next to'} a {words}, {place}"
+    return place
 
 
 def verdict(values, text):
-    """Words on the best start and on the lowest twentieth of the cells; empty if all are alike."""
+    """Words on the best start and on the lowest twentieth of the cells; empty if all are
+    equal or unknown."""
     known = np.isfinite(values)
     if not known.any() or np.ptp(values[known]) == 0.0:
         return ""
     north, east = np.unravel_index(np.nanargmax(values), values.shape)
     best = place_words((int(east), int(north)), text)
-    low = lowest_cells(values)
-    middle = place_words([float(np.median(axis)) for axis in reversed(np.nonzero(low))], text)
-    return (f"Best start: {best} ({np.nanmax(values):.0f} points). The lowest twentieth, below "
-            f"{np.quantile(values[known], _LOWEST):.0f} points,\nis around {middle}")
+    said = f"Best start: {best} ({np.nanmax(values):.0f} points)"
+    parts, count = ndimage.label(lowest_cells(values))
+    if count == 0:  # many cells have the lowest return
+        return said
+    largest = np.argwhere(parts == 1 + np.argmax(np.bincount(parts.ravel())[1:]))
+    middle = largest[np.argmin(np.abs(largest - largest.mean(axis=0)).sum(axis=1))]
+    return (f"{said}. The largest part of the lowest twentieth of the cells,\nbelow "
+            f"{np.quantile(values[known], _LOWEST):.0f} points, is around "
+            f"{place_words((int(middle[1]), int(middle[0])), text)}")
 
 
 def device_distance(values, devices):

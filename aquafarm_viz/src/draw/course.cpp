@@ -115,7 +115,7 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
        ++i) {
     const TrackPoint point = TrackAt(course.ahead, now + double(i) * steps);
     const cv::Point2d at = to_pixel(point.x, point.y);
-    const int rim = layout.Px(6);  // a mark that the edge cuts is not seen as one
+    const int rim = layout.Px(6);  // a mark cut by the edge is not recognizable
     const cv::Rect inside(rim, rim, image.cols - 2 * rim, image.rows - 2 * rim);
     if (!IsNear(at) || !inside.contains(cv::Point(at))) continue;
     FillCircle(image, at, 4.2 * layout.unit, Bgr(layout.style->halo));
@@ -157,7 +157,7 @@ void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace&
     if (!place) place = from.Take(size, mark.at - aside, 6.0 * layout.unit);
     return place;
   };
-  FreeSpace trial = space;  // all marks have the longer text, or none
+  FreeSpace trial = space;  // the longer text is used only if it fits at every mark
   const bool are_long = std::all_of(marks.begin(), marks.end(), [&](const CourseMark& mark) {
     return !mark.longer.empty() && take_near(trial, mark, mark.longer);
   });

@@ -125,14 +125,17 @@ Rings InPixels(const DisasterState& disaster, const Layout& layout) {
   return rings;
 }
 
-// Returns whether the outermost ring covers a map.
-bool CoversAll(const Rings& rings, cv::Size map) {
-  if (rings.radii_px.empty()) return false;
-  const auto& radii = rings.radii_px.back();
-  const double least = *std::min_element(radii.begin(), radii.end());
-  const cv::Point2d far(std::max(rings.centre.x, map.width - rings.centre.x),
-                        std::max(rings.centre.y, map.height - rings.centre.y));
-  return cv::norm(far) <= least;
+// Returns whether the edge of any ring may cross a map.
+bool HasEdgeOn(const Rings& rings, cv::Size map) {
+  const cv::Point2d centre = rings.centre;
+  const cv::Point2d far(std::max(centre.x, map.width - centre.x),
+                        std::max(centre.y, map.height - centre.y));
+  const cv::Point2d near(centre.x - std::clamp(centre.x, 0.0, double(map.width)),
+                         centre.y - std::clamp(centre.y, 0.0, double(map.height)));
+  return std::any_of(rings.radii_px.begin(), rings.radii_px.end(), [&](const auto& radii) {
+    const bool covers = cv::norm(far) <= double(*std::min_element(radii.begin(), radii.end()));
+    return !covers && double(Largest(radii)) >= cv::norm(near);
+  });
 }
 
 // Adds one disaster to a row: updates the worst shade and the coverage by ring edges of each pixel.
@@ -224,8 +227,11 @@ void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land,
   Patterns patterns(DisasterKindCount());
   for (const Rings& rings : all) {
     auto& pattern = patterns[KindIndex(rings.kind)];
-    // Wider where a ring covers all of the map: there the pattern separates nothing.
-    if (!pattern) pattern.emplace(rings.kind, layout.Px(CoversAll(rings, map.size()) ? 30 : 13));
+    if (pattern) continue;
+    const bool has_edge = std::any_of(all.begin(), all.end(), [&](const Rings& other) {
+      return other.kind == rings.kind && HasEdgeOn(other, map.size());
+    });
+    pattern.emplace(rings.kind, layout.Px(has_edge ? 13 : 30));  // wider: it marks no boundary
   }
   const ShadeTable table = MakeShadeTable(*layout.style, is_tinted ? layout.style->ring_tint : 0.0);
   RingRow line(static_cast<std::size_t>(map.cols), all.front().kind);

@@ -45,7 +45,7 @@ class FreeSpace {
   /// Returns whether nothing uses a part of the map. Parts outside the map are not free.
   bool IsFree(cv::Rect part) const;
 
-  /// Returns whether a line crosses a rectangle of Add or Take, except `own`.
+  /// Returns whether a line crosses a label that Add or Take has added, except `own`.
   bool CrossesLabel(cv::Point2d from, cv::Point2d to, cv::Rect own) const;
 
   /// Finds the free rectangle of a size that is nearest to a point.
@@ -64,7 +64,7 @@ class FreeSpace {
 
   static constexpr int kBlock = 3;  // pixels of a side of a cell of `used_`
   cv::Mat1b used_;                  // 1: used, one entry per kBlock x kBlock pixels
-  std::vector<cv::Rect> labels_;    // of Add
+  std::vector<cv::Rect> labels_;    // added by Add
   cv::Size size_;
 };
 

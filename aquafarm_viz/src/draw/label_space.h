@@ -7,6 +7,7 @@
 #include <aquafarm_msgs/FarmState.h>
 
 #include <array>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
 
@@ -17,7 +18,7 @@ namespace aquafarm_viz {
 
 struct Layout;
 
-/// What a label may cover; never symbols and other labels.
+/// What a label may cover. It never covers symbols or other labels.
 enum class Cover : std::uint8_t { kNothing, kPaths, kPathsAndLand };
 
 /// The free space of a map for each Cover.
@@ -26,7 +27,7 @@ class LabelSpace {
   /// @param symbols  the space that the symbols leave (BlockSymbols)
   LabelSpace(const FreeSpace& symbols, const aquafarm_msgs::FarmSpec& spec, const Layout& layout);
 
-  /// Marks the paths of the ships as used.
+  /// Blocks the paths of the ships for labels that may cover nothing.
   void BlockPaths(const aquafarm_msgs::FarmState& state, const Trail& paths, const Layout& layout);
 
   /// Finds and blocks a place, as FreeSpace::Take.
@@ -34,12 +35,12 @@ class LabelSpace {
   /// The same with the first Cover that has a place within reach.
   std::optional<cv::Rect> Take(cv::Size size, cv::Point2d near, double farthest);
 
-  /// Returns the free space, to find a place under more conditions.
+  /// Returns the free space, for a caller with further conditions.
   const FreeSpace& space(Cover cover) const { return spaces_[std::size_t(cover)]; }
-  /// Blocks a place that was found there.
+  /// Blocks a place that was found in space().
   void Add(cv::Rect place);
 
-  /// Marks a line to a label as used; false if it would cross another label.
+  /// Blocks a line to a label. Returns false, and blocks nothing, if it would cross another label.
   bool AddLine(cv::Point2d from, cv::Point2d to, cv::Rect label, int width);
 
  private:

@@ -260,7 +260,7 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
 
 namespace {
 
-// Finds a place that a line from the symbol reaches without crossing another label.
+// Takes the nearest free place; nullopt if the line to it would cross another label.
 std::optional<cv::Rect> TakeInSight(LabelSpace& space, Cover cover, cv::Size size,
                                     cv::Point2d symbol, double farthest) {
   const FreeSpace& open = space.space(cover);

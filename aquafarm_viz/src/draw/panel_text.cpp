@@ -184,12 +184,16 @@ class Panel {
     y_ += RowPx();
   }
 
-  /// Two texts at the ends of a row, and one in its middle.
+  /// Two texts at the ends of a row, and one in its middle if there is space for it.
   void Ends(const std::string& left_text, const std::string& right_text,
             const std::string& middle_text = "") {
     const int base = y_ + (RowPx() + fonts_.small.cap_height()) / 2;
-    fonts_.small.Draw(image_, middle_text, {Middle() - fonts_.small.Width(middle_text) / 2, base},
-                      Bgr(layout_.style->words));
+    const int half = fonts_.small.Width(middle_text) / 2 + layout_.Px(6);
+    if (left_ + fonts_.small.Width(left_text) < Middle() - half &&
+        right_ - fonts_.small.Width(right_text) > Middle() + half) {
+      fonts_.small.Draw(image_, middle_text, {Middle() - half + layout_.Px(6), base},
+                        Bgr(layout_.style->words));
+    }
     Row(left_, left_text, fonts_.small, layout_.style->words, right_text, layout_.style->words);
   }
 

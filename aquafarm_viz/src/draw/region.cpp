@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "aquafarm/tracks/wind_name.h"
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/draw/canvas.h"
@@ -120,12 +119,12 @@ std::string Upper(std::string text) {
 // Words for a ring that covers a part of the farm. The centre may be far away.
 std::string OverText(const std::string& wind) { return Upper(wind) + " OVER THE RANCH"; }
 
-// Words for the step in which the outermost ring reaches the farm: "NEAR GALE IN 2.0 h".
+// Words for the step in which a ring reaches the farm, with the strongest wind there in that step:
+// "NEAR GALE IN 2.0 h", or "REACHES THE RANCH IN 2.0 h" without winds.
 std::string ReachesText(const FarmSpec& spec, const Course& course, double step) {
-  const std::string ring = course.ring_winds_kt.empty()
-                               ? "REACHES THE RANCH"
-                               : Upper(aquafarm::RingName(course.ring_winds_kt.back()));
-  return ring + (step > course.known_until ? " IN ABOUT " : " IN ") +
+  const std::string wind = Upper(WindOverFarm(spec, course, TrackAt(course.ahead, step)));
+  return (wind.empty() ? "REACHES THE RANCH" : wind) +
+         (step > course.known_until ? " IN ABOUT " : " IN ") +
          AheadText(spec, step - course.ahead.front().step);
 }
 
@@ -138,7 +137,7 @@ RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subj
   const std::string centre = "centre " + PlaceText(spec, now.x, now.y);
   const double ahead_s = (subject.nearest.step - now.step) * spec.step_duration_s;
   const bool is_over = subject.danger == 0.0;
-  const std::string wind = WindOverFarm(spec, course);
+  const std::string wind = WindOverFarm(spec, course, now);
   const std::string over = OverText(wind.empty() ? RiskOverFarm(spec, course) : wind);
   if (ahead_s > 0.0) {
     const std::string nearest = "closest " + PlaceText(spec, subject.nearest.x, subject.nearest.y) +
@@ -173,8 +172,11 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
   const DisasterState& disaster = state.disasters[subject->disaster];
   const Course& course = courses[subject->disaster];
   RegionWords words;
+  words.is_urgent = subject->danger > 0.0 && std::isfinite(subject->danger);
   if (course.kind != Course::Kind::kExtrapolated) {
+    const bool is_urgent = words.is_urgent;
     words = CourseWords(spec, state, *subject, course);
+    words.is_urgent = is_urgent;
     std::string& last = words.lines[1];
     const std::string wind = WindText(subject->nearest);
     const bool is_later = subject->nearest.step > course.ahead.front().step;
@@ -321,10 +323,10 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
   }
   const RegionWords words = RegionText(spec, state, courses);
   const bool has_course = words.heading != RegionWords().heading;
-  // The inset alone, where there is no space for the lines below it too.
+  // Lines without a course and an arrival are left out if there is no space for them and the inset.
   const int smallest = layout.Px(kSmallestSide);
   const int for_inset = room.height - row_px - layout.Px(4);
-  const bool has_lines = has_course || for_inset - 2 * row_px >= smallest;
+  const bool has_lines = has_course || words.is_urgent || for_inset - 2 * row_px >= smallest;
   const int side = std::min(room.width, for_inset - (has_lines ? 2 * row_px : 0));
   // The map itself shows disasters whose centres are inside.
   const bool is_drawn = farthest_m > 0.0 && side >= smallest;

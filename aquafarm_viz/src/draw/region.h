@@ -22,6 +22,7 @@ struct Layout;
 struct RegionWords {
   std::string heading{"REGION"};
   std::array<std::string, 2> lines;
+  bool is_urgent{};  ///< a ring reaches the farm later
 };
 
 /// Returns the words for the disaster whose ring is first over the farm; if none ever is, for one

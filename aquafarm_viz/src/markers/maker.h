@@ -35,7 +35,7 @@ enum Layer {
   kWordLayer
 };
 
-constexpr double kShipAside = 0.8;    ///< of a ship from its port, along each axis [things]
+constexpr double kShipAside = 0.8;    ///< of a ship from its port, along each axis [thing_m()]
 constexpr double kLineOfClock = 2.0;  ///< above the farm
 
 inline geometry_msgs::Point Point(double x, double y, double z = 0.0) {

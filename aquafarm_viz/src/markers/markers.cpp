@@ -15,6 +15,7 @@
 #include "aquafarm_viz/names.h"
 #include "aquafarm_viz/scene/directions.h"
 #include "aquafarm_viz/scene/labels.h"
+#include "aquafarm_viz/scene/rings.h"
 #include "markers/axes.h"
 #include "markers/legend.h"
 #include "markers/maker.h"
@@ -242,8 +243,8 @@ void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, cv::
                                      std::to_string(ship.id), maker.word_m(), kPaper));
 }
 
-// Adds the last moves of a ship, which fade towards the oldest, as rectangles: lines of rviz have
-// no constant width.
+// Adds the last moves of a ship, which fade towards the oldest, as rectangles, because the lines of
+// rviz have an uneven width in this view.
 void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, const ShipState& ship,
              const Trail* trail) {
   const ShipTrail* way = trail == nullptr ? nullptr : trail->Find(ship.id);
@@ -257,7 +258,7 @@ void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, con
     const cv::Point2d from = cv::Point2d(way->places[i - 1]) * maker.cell_m();
     const cv::Point2d to = cv::Point2d(way->places[i]) * maker.cell_m();
     const double length = cv::norm(to - from);
-    if (length == 0.0) continue;
+    if (length == 0.0 || Trail::IsGap(way->places[i - 1], way->places[i])) continue;
     const cv::Point2d along = (to - from) * (half_m / length);  // joins the next rectangle
     const cv::Point2d side(-along.y, along.x);
     const cv::Point2d a = from - along;
@@ -290,6 +291,13 @@ void AddShips(MarkerArray& array, const Maker& maker, const FarmSpec& spec, cons
   }
 }
 
+// Returns the radius of the outermost ring north (side 1) or south (-1) of the centre [cells].
+double RadiusTowards(const DisasterState& disaster, double side) {
+  if (disaster.radii.empty()) return 0.0;
+  const auto radii = RingQuadrants(disaster, disaster.radii.size() - 1);  // NE, SE, SW, NW
+  return side > 0.0 ? std::max(radii[0], radii[3]) : std::max(radii[1], radii[2]);
+}
+
 void AddDisasterSigns(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                       const DisasterState& disaster) {
   Marker eye =
@@ -298,12 +306,11 @@ void AddDisasterSigns(MarkerArray& array, const Maker& maker, const FarmSpec& sp
   eye.scale.z = 0.5 * maker.layer_m();
   eye.color = Color(GradeColor(disaster.grade));
   array.markers.push_back(eye);
-  // On the side that the arrow of its motion leaves free, outside the rings where that is on the
-  // map.
+  // On the side that the arrow of its motion leaves free: outside the rings if that is on the map.
   const double side =
       disaster.speed > 0.0F && std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1 ? 1.0 : -1.0;
   const double near = 0.9 * maker.thing_m() / maker.cell_m();
-  const double far = near + (disaster.radii.empty() ? 0.0 : double(disaster.radii.back()));
+  const double far = near + RadiusTowards(disaster, side);
   const double outside = disaster.y + side * far;
   const double aside = side * (outside > 0.0 && outside < spec.height - 1.0 ? far : near);
   array.markers.push_back(maker.Text("disaster_name", disaster.id, disaster.x, disaster.y + aside,

@@ -151,11 +151,10 @@ double WorstRisk(const DeviceOutlook& device) {
   return device.arrivals.empty() ? device.risk_now : device.arrivals.back().risk;
 }
 
-const char* WindOverFarm(const FarmSpec& spec, const Course& course) {
-  const TrackPoint& now = course.ahead.front();
+const char* WindOverFarm(const FarmSpec& spec, const Course& course, const TrackPoint& at) {
   std::int32_t strongest_kt = 0;
-  for (std::size_t i = 0; i < std::min(now.radii.size(), course.ring_winds_kt.size()); ++i) {
-    if (!IsOverFarm(spec, now, now.radii[i])) continue;
+  for (std::size_t i = 0; i < std::min(at.radii.size(), course.ring_winds_kt.size()); ++i) {
+    if (!IsOverFarm(spec, at, at.radii[i])) continue;
     strongest_kt = std::max(strongest_kt, course.ring_winds_kt[i]);
   }
   return strongest_kt > 0 ? aquafarm::WindName(strongest_kt) : "";

@@ -56,9 +56,11 @@ Outlook ComputeOutlook(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs:
 double StepsToFarm(const aquafarm_msgs::FarmSpec& spec,
                    const aquafarm_msgs::DisasterState& disaster, const Course& course);
 
-/// Returns the name of the strongest wind that a disaster has over a part of the farm now, such as
+/// Returns the name of the strongest wind that a disaster has over a part of the farm, such as
 /// "gale"; empty if no ring covers a part of it, or if the winds of the rings are not given.
-const char* WindOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& course);
+/// @param at  a point of the course
+const char* WindOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& course,
+                         const TrackPoint& at);
 
 /// Returns the worst risk that a disaster has over a part of the farm now: "risk -5".
 std::string RiskOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& course);

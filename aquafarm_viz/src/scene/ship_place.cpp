@@ -35,14 +35,21 @@ cv::Point2d ShipPlace(const FarmSpec& spec, const FarmState& state, int x, int y
     }
     return nearest;
   };
+  const auto is_land = [&spec](cv::Point at) {
+    const auto is_there = [at](const auto& cell) { return cell.x == at.x && cell.y == at.y; };
+    return std::any_of(spec.islands.begin(), spec.islands.end(), is_there) ||
+           std::any_of(spec.rocks.begin(), spec.rocks.end(),
+                       [&](const auto& rock) { return is_there(rock.cell); });
+  };
   constexpr double kEnough = 2.0;  // [cells]
   const int away = -DeliveredSide(spec, y);
   cv::Point best(-1, away);
-  double widest = -1.0;
+  double widest = -2.0;
   for (const cv::Point shift : {cv::Point(-1, away), {1, away}, {-1, -away}, {1, -away}}) {
-    const cv::Point to(x + shift.x, y + shift.y);
-    const double room =
-        InGrid(spec, to.x, to.y) ? std::min(kEnough, free_around(to.x, to.y)) : -1.0;
+    const cv::Point to(cv::Point2d(x, y) + aside * cv::Point2d(shift));  // rounded
+    const double room = !InGrid(spec, to.x, to.y) ? -1.0
+                        : is_land(to)             ? -0.5
+                                                  : std::min(kEnough, free_around(to.x, to.y));
     if (room <= widest) continue;
     widest = room;
     best = shift;

@@ -16,9 +16,10 @@ inline int DeliveredSide(const aquafarm_msgs::FarmSpec& spec, int y) {
   return 2 * y >= spec.height ? -1 : 1;
 }
 
-/// Returns where ships in a cell are shown [cells]: there, but next to a port, in the direction of
-/// the diagonal neighbour that is farthest from other ports, ships and deployed devices; 2 cells
-/// are enough.
+/// Returns the position at which ships in a cell are drawn [cells]: the cell, or if it has a port,
+/// `aside` cells towards the diagonal neighbour that is farthest from other ports, ships and
+/// deployed devices (distances above 2 cells count as 2);
+/// on land or off the map only if all are.
 /// @param aside  distance from the port along each axis [cells]
 cv::Point2d ShipPlace(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                       int x, int y, double aside);

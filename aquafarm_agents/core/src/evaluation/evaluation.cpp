@@ -11,7 +11,7 @@
 
 #include "aquafarm/agents/base/storage.h"
 #include "aquafarm/agents/environment/family_environment.h"
-#include "aquafarm/agents/evaluation/metrics.h"
+#include "aquafarm/agents/evaluation/metrics_file.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/farm.h"
 #include "aquafarm/scenario/scenario_yaml.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Times, survival and value of trips; shared by the plan and the deadlines.
+/// Computes times, survival and saved value of trips. Plans, deadlines and trials share it.
 
 #include <cstdint>
 #include <vector>
@@ -13,7 +13,8 @@
 namespace aquafarm::agents {
 
 /// By member: 1 while the ship still works.
-using Alive = std::vector<std::int16_t>;  // as wide as the steps of arrival, for vector code
+using Alive = std::vector<std::int16_t>;  // same width as the arrival steps, so that loops over
+                                          // both vectorize
 
 /// Weights of the members, which sum to 1; empty: all members have equal weights.
 using MemberWeights = std::vector<float>;
@@ -54,21 +55,22 @@ class TripModel {
   double Pace(std::size_t ship) const;
   /// Moves a ship along a route and adds the handling time at its end.
   /// @param time_s departure; set to the time when handling is done
-  /// @param alive loses the members in which the ship stops on the way
+  /// @param alive cleared for members in which winds stop the ship on the way or during handling
   void Move(std::size_t ship, std::size_t from, std::size_t to, double& time_s, Alive& alive) const;
-  /// Clears the members in which the winds have reached a cell by a time; all members if the time
-  /// is after the last step of the ensemble.
+  /// Clears the members in which winds of `abort_ring` have reached a cell by a time; clears all
+  /// members if the time is after the last step of the ensemble.
   void Stay(Cell cell, double until_s, Alive& alive) const;
 
   /// Loss of a device that is at its site until a time, [members].
   const float* LossUntil(std::size_t device, double time_s) const;
   /// Loss of a device that is never delivered, [members].
   const float* LossIdle(std::size_t device) const;
-  /// Mean over all members of the value that is saved by delivering a device at a time; 0 in the
-  /// members in which the ship has stopped.
+  /// Weighted mean over all members of the value that delivering a device at a time saves. A member
+  /// in which the ship has stopped counts as 0.
   double Saved(std::size_t device, double time_s, const Alive& alive,
                const MemberWeights& weights = {}) const;
-  /// Effort of a route and of the handling at its end. @param aboard number of devices aboard
+  /// Effort of a route and of the handling at its end; 0 kWh and 0 h if the problem has no energy.
+  /// @param aboard number of devices aboard
   TripEffort Effort(std::size_t ship, std::size_t from, std::size_t to, std::size_t aboard) const;
   /// Cost of an effort.
   double Cost(const TripEffort& effort) const;
@@ -77,9 +79,10 @@ class TripModel {
   std::int32_t NearestPort(std::size_t place) const;
   /// Upper bound on the value that delivering a device can save, whichever ship delivers it.
   double BoundOf(std::size_t device, const MemberWeights& weights = {}) const;
-  /// Returns the cells of a ship's first trip to a device, each with the time at which the ship
-  /// leaves it, relative to the departure; the last time is that of delivery. A ship with devices
-  /// aboard delivers them first. Empty if no route exists or another ship has the device aboard.
+  /// Returns the cells of the trip on which a ship first delivers a device, each with the time at
+  /// which the ship leaves it, relative to the departure; the last time is that of delivery. A ship
+  /// with devices aboard delivers them first. Empty if no route exists or another ship has the
+  /// device aboard.
   std::vector<TimedCell> FirstTrip(std::size_t ship, std::size_t device) const;
 
  private:

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "agents_fixture.h"
-#include "aquafarm/agents/evaluation/metrics.h"
+#include "aquafarm/agents/evaluation/metrics_file.h"
 
 namespace aquafarm::agents::test {
 namespace {

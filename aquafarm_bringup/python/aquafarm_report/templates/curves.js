@@ -145,7 +145,7 @@ function reference(canvas, area, dygraph, lines, onScale) {
     else names.push({y: line.y, text: name});
   }
   for (const name of names) {
-    // Where the fewest points are in its way: at the left or the right, above or below its line.
+    // At the left or the right end, above or below its line, where it covers the fewest points.
     const width = canvas.measureText(name.text).width + 12;
     const end = area.x + area.w - PAD;
     const places = [[area.x, -5], [end - width, -5], [area.x, 16], [end - width, 16]]
@@ -159,8 +159,8 @@ function reference(canvas, area, dygraph, lines, onScale) {
   canvas.restore();
 }
 
-// Draws the mean of greedy play of each run with its interval at the right edge, in a strip with its
-// name.
+// Draws the mean of greedy play of each run with its interval at the right edge, in a strip
+// labelled "greedy play".
 function mark(canvas, area, dygraph, marks, onScale) {
   const at = value => dygraph.toDomYCoord(onScale(value));
   if (!marks.length) return;

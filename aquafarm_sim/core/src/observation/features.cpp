@@ -61,10 +61,12 @@ float* WriteBlocked(const View& view, float* out) {
   const std::array<bool, 3> off_x{self.x == 0, false, self.x == width - 1};
   const std::array<bool, 3> off_y{self.y == 0, false, self.y == height - 1};
   for (const Cell move : kMoves) {
-    const bool off =
-        off_x[static_cast<std::size_t>(move.x + 1)] | off_y[static_cast<std::size_t>(move.y + 1)];
+    const bool is_off_x = off_x[static_cast<std::size_t>(move.x + 1)];
+    const bool is_off_y = off_y[static_cast<std::size_t>(move.y + 1)];
+    const bool off = is_off_x | is_off_y;
     const std::uint8_t bits = here[off ? 0 : LinearIndex(move, width)];
-    *out++ = static_cast<float>(off | ((bits & kBlockedBits) != 0));
+    const bool is_blocked = (bits & kBlockedBits) != 0;
+    *out++ = static_cast<float>(off | is_blocked);
   }
   return out;
 }
@@ -89,7 +91,8 @@ void WritePorts(const FeatureScales& scales, const View& view, float* out) {
   }
 }
 
-// Writes what every scenario has, in one call: a call through a pointer takes as long as a group.
+// Writes what every scenario has, as one group: a call through a pointer takes as long as writing
+// one of its parts.
 void WriteBase(const FeatureScales& scales, const View& view, float* out) {
   out = WriteSelf(scales, view, out);
   out = WriteBlocked(view, out);

@@ -193,7 +193,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
   view.layout = &farm.layout();
   CollectSensors(farm, view.self, view.sensors);
 
-  // Iterators instead of indices: the number of elements costs more than what a loop does.
+  // Iterators instead of indices: computing size() costs more than the loop body.
   view.others.resize(ships.size() - 1);
   auto other = view.others.begin();
   for (const Ship& one : ships) {

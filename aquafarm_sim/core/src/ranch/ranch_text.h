@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Writes the text of a ranch's file after all decisions are made.
+/// Writes the scenario file of a ranch from a complete RanchPlan.
 
 #include <cstdio>
 #include <string>
@@ -27,20 +27,20 @@ struct RanchPlan {
   Terrain terrain;
   std::vector<Cell> ports;        ///< empty: drawn at random
   std::vector<DeviceSite> sites;  ///< empty: drawn at random
-  StormRings storm;               ///< without waypoints: calm weather
+  StormRings storm;               ///< empty: no storm from a track
   std::string storm_text;         ///< description of the storm, for people
   StormKnowledge knowledge;
   std::int32_t storm_steps{};
   std::vector<StormForecast> forecasts;  ///< of the storm, sorted by time of issue
   std::vector<DisasterSpec> presets;
-  std::string archive;  ///< the storms of --archive in reach, as text; empty: not yet selected
+  std::string archive;  ///< tracks of the --archive storms in reach, as text; empty: not selected
   std::int32_t archive_steps{};  ///< duration of an episode with one of them; 0: no archive
   std::vector<NamedLayer> layers;
   std::vector<std::string> sea_units;  ///< one for each layer
-  bool routes{};
+  bool routes{};                       ///< view.routes of the scenario
 };
 
-/// @param decided lines for people, written as comments
+/// @param decided the decisions, one line each; written as YAML comments
 std::string WriteRanch(const RanchRequest& request, const RanchPlan& plan,
                        const std::vector<std::string>& decided);
 
@@ -53,7 +53,7 @@ std::string Text(const char* format, Args... args) {
 
 /// Returns the last part of a path.
 std::string FileName(const std::string& path);
-/// Returns a text on one line.
+/// Replaces control characters, such as line breaks, with '?'.
 std::string OneLine(std::string text);
 /// Formats a number with at most `digits` decimals.
 std::string Short(double value, int digits);

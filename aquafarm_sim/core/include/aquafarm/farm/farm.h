@@ -66,10 +66,11 @@ struct EpisodeRecord : EpisodeStatistics {
 /// Returns the summary of an episode that the farm with index `farm` played.
 EpisodeSummary SummaryOf(const EpisodeRecord& record, std::int32_t farm);
 
-/// The storms that the disasters of a farm drew in the present episode.
+/// Storms drawn for the disasters of a farm in the present episode.
 struct DrawnStorms {
-  std::vector<std::shared_ptr<std::vector<Waypoint>>> tracks;  ///< by disaster; null: no storms
-  std::vector<const ArchivedStorm*> storms;                    ///< by disaster; null: no storms
+  std::vector<std::shared_ptr<std::vector<Waypoint>>>
+      tracks;                                ///< by disaster; null if it draws none
+  std::vector<const ArchivedStorm*> storms;  ///< by disaster; null if it draws none
   StormPlacer placer;
   std::vector<StormErrors> errors;  ///< of the storm that is placed
 };
@@ -125,7 +126,7 @@ class Farm {
   EndReason reason() const { return record_.reason; }
   /// Whether the episode has ended; call Reset or Load to continue.
   bool over() const { return record_.reason != EndReason::kNone; }
-  /// Returns the money of an episode that has ended; nullopt before its end and without `money`.
+  /// Returns the accounts of an episode that has ended; nullopt before its end and without `money`.
   std::optional<Accounts> SettleAccounts() const;
 
   /// Returns the current worst risk of disasters and sea at a cell of the map; 0 or negative.
@@ -138,9 +139,9 @@ class Farm {
   Cell CellOf(std::int32_t device) const {
     return CellOf(devices_[static_cast<std::size_t>(device)]);
   }
-  /// The same for a device of this farm.
+  /// As above. @param device of this farm
   Cell CellOf(const Device& device) const {
-    // Without a branch, because farms differ in it.
+    // Branch-free: farms differ in it, so a branch would be mispredicted.
     const std::size_t is_aboard = device.carrier == kNone ? 0 : 1;
     const Cell aboard = ships_[is_aboard * static_cast<std::size_t>(device.carrier)].cell;
     const Cell cells[] = {device.cell, aboard};

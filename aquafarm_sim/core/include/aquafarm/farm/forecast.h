@@ -66,11 +66,11 @@ IssuedForecast FitForecast(const Farm& farm, std::int32_t disaster, const Disast
 /// Returns the present position and rings of a disaster as a waypoint of step 0.
 Waypoint RingsOf(const ObservableDisaster& disaster);
 
-/// Returns HasForecast of a disaster that has a track or an issued forecast.
+/// HasForecast for a disaster that has a track or an issued forecast; called by it.
 bool HasForecastOfTrack(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
 /// Returns whether the agents of a farm observe a forecast of a disaster at step `issued`. Each
-/// observation asks this; most disasters have neither a track nor an issued forecast.
+/// observation calls it; most disasters have neither a track nor an issued forecast.
 inline bool HasForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
   const auto id = static_cast<std::size_t>(disaster);
   if (farm.tracks()[id]->empty() && farm.forecasts()[id] == nullptr) return false;

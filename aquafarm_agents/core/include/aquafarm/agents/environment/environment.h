@@ -76,7 +76,7 @@ struct StepResults {
   std::vector<float> distance;            ///< [N, S] travelled in the step [km]
   std::vector<std::uint8_t> outcomes;     ///< [N, S] Outcome
   std::vector<ActionMask> legal;          ///< [N, S] for the next step
-  std::vector<std::uint8_t> active;       ///< [N, S] 0 if this agent is done until the next episode
+  std::vector<std::uint8_t> active;       ///< [N, S] 0 from an agent's end to the next episode
   std::vector<std::uint8_t> end_reasons;  ///< [N] EndReason; kNone while the episode continues
   std::vector<std::uint8_t> is_first;     ///< [N] 1 at an episode's first observation
   std::vector<std::uint64_t> hashes;      ///< [N]; empty unless requested
@@ -92,7 +92,7 @@ struct EnvironmentOptions {
   std::int32_t farms{1};
   std::uint8_t observation_types{kIndexBit};
   bool hashes{false};
-  std::int32_t threads{1};  ///< threads that step the farms; results do not depend on it
+  std::int32_t threads{1};  ///< threads that step the farms; no effect on results
 };
 
 /// Thrown when the farms behind an environment are unreachable for longer than its time limit.
@@ -102,7 +102,7 @@ class EnvironmentLost : public std::runtime_error {
 };
 
 /// Returns whether `observation_types` request individual rewards where the scenario gives every
-/// agent the team's sum. If so, `spec` then has no team reward, and the farms must return
+/// agent the team's sum. If so, sets spec.team_reward to false; the farms must then return
 /// kTermsField.
 bool WantsOwnRewards(std::uint8_t observation_types, EnvironmentSpec& spec);
 

@@ -23,7 +23,7 @@ class Policy {
   /// Chooses the actions of the step after `results`. @param actions is resized to [N, S]
   virtual void Act(const StepResults& results, std::vector<std::uint8_t>& actions) = 0;
 
-  /// Learned V_π: the expected discounted return of each action that the last Act chose, [N, S].
+  /// Learned V_π at the last Act, [N, S]: V(s) of a critic, else Q(s, a) of the greedy action.
   /// Empty if the policy has no value estimates.
   const std::vector<float>& values() const { return values_; }
 

@@ -46,7 +46,7 @@ struct Evaluation {
   std::optional<Losses> losses;
   std::optional<double>
       mean_bound;  ///< mean upper bound of the return (team_bound.h); unset unless requested
-  DeviceOutcomes devices;  ///< empty if they are unknown
+  DeviceOutcomes devices;  ///< outcomes of the devices; empty if unknown
 };
 
 /// Returns the accounts of a farm whose episode has just ended; nullopt without `money`.
@@ -57,7 +57,7 @@ using AccountsOf = std::function<std::optional<Accounts>(std::int32_t farm)>;
 /// between batch sizes.
 /// @param stop may be set by a signal handler; null if the evaluation cannot be stopped
 /// @param on_progress called periodically with the number of finished episodes
-/// @param policy_seed of the policy's random numbers; by default the seed of the episodes
+/// @param policy_seed seed of the policy's random numbers; by default that of the episodes
 /// @param accounts_of returns the accounts of a farm, once for each episode. An empty function
 ///        (accounts are not available through ROS services) leaves `losses` unset.
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
@@ -66,9 +66,10 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
                     std::optional<std::uint64_t> policy_seed = std::nullopt,
                     const AccountsOf& accounts_of = {});
 
-/// Inputs of an evaluation. WriteEvaluation stores them so that it can be repeated.
+/// Inputs of an evaluation. WriteEvaluation stores them so that the evaluation can be
+/// repeated.
 struct EvaluationContext {
-  std::string policy;  ///< path of the policy file, or "random"
+  std::string policy;  ///< path of the policy file, or name of a built-in policy
   std::string algorithm;
   std::uint64_t training_steps{};
   std::string scenario_name;
@@ -82,10 +83,10 @@ struct EvaluationContext {
 void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
                      const EvaluationContext& context);
 
-/// "success 100.0 %, return 243.1 [95 %: 241.0, 245.2] per episode, 4.02 per step, 60.4 steps
-/// (1000 episodes, 998 distinct)"
+/// Returns one line: "success 100.0 %, return 243.1 [95 %: 241.0, 245.2] per episode, 4.02 per
+/// step, 60.4 steps (1000 episodes, 998 distinct)"
 std::string Describe(const Evaluation& evaluation);
-/// Returns one line; empty without losses: "loss 1234.50 ± 8.10 CNY of 5000.00 insured, operating
+/// Returns one line, empty without losses: "loss 1234.50 ± 8.10 CNY of 5000.00 insured, operating
 /// cost 310.00, VaR 5 % 2000.00 [95 %: 1900.00, 2100.00], CVaR 5 % …".
 std::string DescribeLosses(const Evaluation& evaluation);
 

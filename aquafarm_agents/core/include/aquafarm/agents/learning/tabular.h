@@ -47,7 +47,7 @@ struct SarsaRule {
   static float NextValue(float /*best*/, float chosen) { return chosen; }
 };
 
-/// Hyperparameters of a tabular learner. The defaults are tuned on the shipped farms.
+/// Hyperparameters of a tabular learner. The defaults are tuned on the shipped scenarios.
 struct TabularOptions {
   Schedule learning_rate{ScheduleKind::kLinear, 0.5, 0.02, 1.0};
   double gamma{0.97};
@@ -63,7 +63,9 @@ struct TabularOptions {
 /// A table with its exploration, checkpoints and greedy policy. A derived class adds Step.
 class TableLearner : public Learner {
  public:
-  /// @throws InputError if the farm is too large for a table, or an option is wrong
+  /// @throws InputError if the farm has no tabular states, if its table would exceed kMaxBytes, or
+  /// if
+  ///   an option is invalid
   TableLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
 
   std::uint8_t observation_types() const override { return kIndexBit; }
@@ -83,10 +85,10 @@ class TableLearner : public Learner {
   ActionMask ActionMaskOf(ActionMask legal) const {
     return options_.mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
   }
-  /// Adds the mean squared TD error of a step to the reported loss.
+  /// Updates the reported loss, a moving average of the squared TD error, with that of one step.
   void AddLoss(float loss);
 
-  /// In pending_: the agent is not in play, so it has no last action.
+  /// In pending_: the agent is not active, so it has no last action.
   inline static constexpr auto kNoAction = std::numeric_limits<std::uint64_t>::max();
 
   std::string resolved_;

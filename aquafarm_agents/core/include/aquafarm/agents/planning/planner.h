@@ -4,8 +4,8 @@
 /// Plans for one ship by dynamic programming over (time, cell, devices aboard and delivered). With
 /// the true future of the disasters the plan has the exact max return of a seeded episode: the
 /// clairvoyant optimum, the reference of paper §4.2 (see docs/model.md). If it plans again at each
-/// step, from the issued forecast or from the present heading of a disaster without a forecast, it
-/// acts as an operator can who does not know the future.
+/// step (receding horizon), from the issued forecast or, without one, from the disaster's present
+/// heading, it uses only what an operator knows at that time.
 ///
 /// Health is computed exactly. The health of a deployed device depends only on time; aboard, its
 /// loss accumulates along the route. Each pickup is therefore planned as paid or unpaid. Paid: the

@@ -20,8 +20,9 @@ namespace aquafarm::agents {
 
 /// Risks of one step, [H, W].
 struct RiskLayers {
-  Grid<float> risk;   ///< risk at each cell; 0 or negative
-  Grid<float> quiet;  ///< reward of a step without any other term: the risk, else the step reward
+  Grid<float> risk;  ///< risk at each cell; 0 or negative
+  Grid<float>
+      quiet;  ///< reward of a step without any other term: the risk below 0, else the step reward
   /// Risk that damages each kind of device (Farm::DamagingRiskAt). An empty layer stands for
   /// `risk`.
   DamagingRisks by_kind;
@@ -54,8 +55,8 @@ class RiskSource {
   virtual float best_quiet() const = 0;
 };
 
-/// The risks of a farm's disasters and sea, from its present step on. Keeps the layers of the first
-/// steps, so that several searches compute them once.
+/// The risks of a farm's disasters and sea in the steps after its present one. Keeps the layers of
+/// the first steps, so that several searches compute them once.
 class DisasterRisk final : public RiskSource {
  public:
   /// @param farm must outlive the object and must not step while the object is in use

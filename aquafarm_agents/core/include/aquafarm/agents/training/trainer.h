@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "aquafarm/agents/environment/environment.h"
-#include "aquafarm/agents/evaluation/metrics.h"
+#include "aquafarm/agents/evaluation/metrics_file.h"
 #include "aquafarm/agents/learning/learner.h"
 #include "aquafarm/agents/ranks/process_group.h"
 #include "aquafarm/agents/training/run_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm/agents/evaluation/metrics.h"
+#include "aquafarm/agents/evaluation/metrics_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -104,22 +104,24 @@ def spread(places, gap, low=0.0, high=1.0):
 
 
 def _name_ends(axes, ends):
-    """Writes a name next to the end of each line, at the right edge and apart from each other, with
-    a line to it that ends before the name.
+    """Writes a name to the right of the end of each line, apart from each other, with a line to it that
+    ends before the name.
 
     ends: (x, y, colour, name) of each line
     """
     axes.margins(x=0.0)
     axes.set_ylim(axes.get_ylim())  # stays as it is
-    to_axes = axes.transData + axes.transAxes.inverted()
     ends = sorted(ends, key=lambda end: end[1])
     axes.figure.draw_without_rendering()  # sets the size of the axes
+    to_axes = axes.transData + axes.transAxes.inverted()
     height_pt = 72.0 * axes.get_window_extent().height / axes.figure.dpi
     places = spread([float(to_axes.transform((x, y))[1]) for x, y, _, _ in ends],
                     _NAME_PT / height_pt, high=1.0 + 0.3 * _NAME_PT / height_pt)
     for (x, y, colour, name), place in zip(ends, places):
-        axes.annotate(name, (x, y), xytext=(1.04, place), textcoords=axes.transAxes,
+        end = float(to_axes.transform((x, y))[0])
+        axes.annotate(name, (x, y), xytext=(min(end, 1.0) + 0.04, place), textcoords=axes.transAxes,
                       color=_legible(colour), va="center", fontsize=10, annotation_clip=False,
+                      bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
                       arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8,
                                   "relpos": (0.0, 0.5), "shrinkA": 1.0, "shrinkB": 0.0})
 
@@ -201,7 +203,7 @@ def draw_rewards(path, contestants, runs, references):
 
 def draw_average_rewards(path, contestants, runs, references):
     """Fig. 12b: mean return of all episodes so far, over all runs."""
-    _draw_returns(path, f"Mean return of all episodes so far (Fig. 12b)\n"
+    _draw_returns(path, f"Mean return of all episodes so far (Fig. 12b):\n"
                   f"median of {_runs_text(_count(contestants, runs))}, shaded from the lowest to the "
                   "highest", "mean return so far", [
         (lambda axes: plot_average_rewards(axes, contestants, runs, references), "episode")])

@@ -121,7 +121,7 @@ def plot_unfinished(axes, name, route, size):
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
                    f"return {route['return']:.0f}".replace("-", "−") + "\n"
                    f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps\n"
-                   f"the last {len(last_leg) - 1} steps without a stop", fontsize=11,
+                   f"the last {len(last_leg) - 1} steps without pickup or drop-off", fontsize=11,
                    y=(chart["height"] - 1 + 2 * _RIM) / (size[1] - 1 + 2 * _RIM))
 
 

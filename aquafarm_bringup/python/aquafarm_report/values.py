@@ -112,7 +112,7 @@ def verdict(values, text):
         return said
     largest = np.argwhere(parts == 1 + np.argmax(np.bincount(parts.ravel())[1:]))
     middle = largest[np.argmin(np.abs(largest - largest.mean(axis=0)).sum(axis=1))]
-    return (f"{said}. The largest part of the lowest twentieth of the cells,\nbelow "
+    return (f"{said};\nthe largest area of low returns, below "
             f"{np.quantile(values[known], _LOWEST):.0f} points, is around "
             f"{place_words((int(middle[1]), int(middle[0])), text)}")
 

@@ -170,11 +170,11 @@ function mark(canvas, area, dygraph, marks, onScale) {
   canvas.fillRect(strip + 6, area.y, area.x + area.w - strip - 6, area.h);
   const style = getComputedStyle(document.body);
   canvas.save();
-  canvas.translate(strip + 18 + 7 * (marks.length - 1), area.y + area.h - 8);
+  canvas.translate((strip + 6 + area.x + area.w) / 2, area.y + area.h - 24);  // above RANDOM
   canvas.rotate(-Math.PI / 2);
   canvas.font = `12px ${style.fontFamily}`;
   canvas.fillStyle = style.color;
-  canvas.fillText("greedy play", 0, 5);
+  canvas.fillText("greedy play", 0, 4);
   canvas.restore();
   canvas.lineWidth = 2;
   marks.forEach(([mean, low, high], i) => {

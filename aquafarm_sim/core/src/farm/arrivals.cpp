@@ -107,6 +107,11 @@ void FitArrival(const Farm& farm, std::int32_t disaster, DisasterSpec& spec) {
   }
 }
 
+const Bulletin& Farm::BulletinOf(std::size_t disaster) const {
+  static const Bulletin kNotIssued;
+  return bulletins_.empty() ? kNotIssued : bulletins_[disaster];
+}
+
 void Farm::IssueForecast(std::int32_t id, const IssuedForecast& forecast) {
   CheckForecast(*this, id, forecast);
   const auto k = static_cast<std::size_t>(id);

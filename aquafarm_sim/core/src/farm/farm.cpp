@@ -155,6 +155,8 @@ void Farm::Reset(std::uint64_t seed, std::uint64_t episode) {
                                        seed, episode, scenario_->width, scenario_->height,
                                        tracks_[id].get()));
   }
+  const bool is_partial = scenario_->view.mode == ViewMode::kPartial;
+  bulletins_.assign(is_partial ? disasters_.size() : 0, Bulletin{});
   IssueBulletins();
 }
 
@@ -176,7 +178,7 @@ void Farm::Prefetch() const {
   // The first of each: most farms have one ship and one disaster.
   load(ships_.data(), sizeof(Ship));
   load(devices_.data(), sizeof(Device));
-  load(disasters_.data(), sizeof(Disaster) - sizeof(Bulletin));  // the bulletin is its last member
+  load(disasters_.data(), sizeof(Disaster));
 }
 
 void Farm::Step(const std::uint8_t* actions) {
@@ -211,17 +213,18 @@ void Farm::IssueBulletins() {
 }
 
 void Farm::IssueBulletin(std::size_t id) {
-  Disaster& disaster = disasters_[id];
+  const Disaster& disaster = disasters_[id];
+  Bulletin& bulletin = bulletins_[id];
   const auto draws =
       Draw({record_.seed, record_.episode, RngStream::kSensors, static_cast<std::uint32_t>(id)},
            static_cast<std::uint32_t>(record_.steps));
   const float noise = scenario_->view.bulletin_noise;
-  disaster.bulletin.x = disaster.x + noise * (2.0F * ToUnit(draws[0]) - 1.0F);
-  disaster.bulletin.y = disaster.y + noise * (2.0F * ToUnit(draws[1]) - 1.0F);
-  disaster.bulletin.speed = disaster.speed;
-  disaster.bulletin.heading_deg = disaster.heading_deg;
-  disaster.bulletin.step = record_.steps;
-  disaster.SnapshotRings();
+  bulletin.x = disaster.x + noise * (2.0F * ToUnit(draws[0]) - 1.0F);
+  bulletin.y = disaster.y + noise * (2.0F * ToUnit(draws[1]) - 1.0F);
+  bulletin.speed = disaster.speed;
+  bulletin.heading_deg = disaster.heading_deg;
+  bulletin.step = record_.steps;
+  CopyRings(disaster, bulletin);
 }
 
 void Farm::Act(std::int32_t id, Action action) {

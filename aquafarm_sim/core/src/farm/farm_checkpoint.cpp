@@ -32,7 +32,7 @@ using nlohmann::json;
 
 constexpr int kStateFormat = 1;
 
-void HashDisaster(const Disaster& disaster, Hasher& hasher) {
+void HashDisaster(const Disaster& disaster, const Bulletin& bulletin, Hasher& hasher) {
   hasher.Add(Int(disaster.kind), disaster.grade);
   hasher.Add(disaster.x, disaster.y);
   hasher.Add(disaster.dx, disaster.dy);
@@ -46,10 +46,9 @@ void HashDisaster(const Disaster& disaster, Hasher& hasher) {
   for (std::size_t q = 0; disaster.by_quadrant && q < disaster.quadrant.size(); ++q) {
     for (const float radius : disaster.quadrant[q]) hasher.Add(radius, 0.0F);
   }
-  const Bulletin& bulletin = disaster.bulletin;
   hasher.Add(bulletin.x, bulletin.y);
   hasher.Add(bulletin.heading_deg, bulletin.step);
-  if (!RingsMayHaveChanged(disaster)) return;
+  if (!RingsMayHaveChanged(disaster, bulletin)) return;
   for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
     hasher.Add(bulletin.radius[k], bulletin.speed);
     for (std::size_t q = 0; disaster.by_quadrant && q < bulletin.quadrant.size(); ++q) {
@@ -124,12 +123,12 @@ std::int32_t ReadDevices(const json& list, std::vector<Device>& devices) {
   return remaining;
 }
 
-std::vector<Disaster> ReadDisasters(const json& list, std::size_t min) {
+std::vector<SavedDisaster> ReadDisasters(const json& list, std::size_t min) {
   if (list.size() < min || list.size() > static_cast<std::size_t>(kMaxDisasters)) {
     throw InputError("state: disasters: got " + std::to_string(list.size()) + ", expected [" +
                      std::to_string(min) + ", " + std::to_string(kMaxDisasters) + "]");
   }
-  std::vector<Disaster> disasters;
+  std::vector<SavedDisaster> disasters;
   disasters.reserve(list.size());
   for (const json& disaster : list) disasters.push_back(DisasterFrom(disaster));
   return disasters;
@@ -175,7 +174,9 @@ void Farm::HashState(Hasher& hasher) const {
     hasher.Add(device.value, device.health);
     hasher.Add(device.carrier, Int(device.status));
   }
-  for (const Disaster& disaster : disasters_) HashDisaster(disaster, hasher);
+  for (std::size_t id = 0; id < disasters_.size(); ++id) {
+    HashDisaster(disasters_[id], BulletinOf(id), hasher);
+  }
   // Else the tracks are those of the scenario.
   if (tracks_changed_ || drawn_ != nullptr) {
     for (const Track& track : tracks_) HashTrack(*track, hasher);
@@ -184,6 +185,10 @@ void Farm::HashState(Hasher& hasher) const {
 }
 
 std::string Farm::Save() const {
+  std::vector<SavedDisaster> disasters;
+  for (std::size_t id = 0; id < disasters_.size(); ++id) {
+    disasters.push_back({disasters_[id], BulletinOf(id)});
+  }
   json state{{"format", kStateFormat},
              {"version", kVersion},
              {"scenario", scenario_->name},
@@ -191,7 +196,7 @@ std::string Farm::Save() const {
              {"record", Written(record_)},
              {"ships", Written(ships_)},
              {"devices", Written(devices_)},
-             {"disasters", Written(disasters_)},
+             {"disasters", Written(disasters)},
              {"hash", Hash()}};
   if (tracks_changed_ || drawn_ != nullptr) {
     for (const Track& track : tracks_) state["tracks"].push_back(TrackToJson(*track));
@@ -209,6 +214,12 @@ std::string Farm::Save() const {
   std::string bytes;
   json::to_cbor(sealed, bytes);
   return bytes;
+}
+
+void Farm::LoadDisasters(std::vector<SavedDisaster> saved) {
+  disasters_.assign(saved.begin(), saved.end());
+  bulletins_.clear();
+  for (const SavedDisaster& disaster : saved) bulletins_.push_back(disaster.bulletin);
 }
 
 void Farm::Load(const std::string& bytes) {
@@ -230,7 +241,7 @@ void Farm::Load(const std::string& bytes) {
     loaded.record_ = record;
     ReadShips(state.at("ships"), loaded.ships_);
     loaded.remaining_ = ReadDevices(state.at("devices"), loaded.devices_);
-    loaded.disasters_ = ReadDisasters(state.at("disasters"), scenario_->disasters.size());
+    loaded.LoadDisasters(ReadDisasters(state.at("disasters"), scenario_->disasters.size()));
     const std::size_t disasters = loaded.disasters_.size();
     if (state.contains("tracks")) {
       loaded.tracks_changed_ = true;
@@ -270,6 +281,8 @@ void Farm::CopyStateFrom(const Farm& from) {
   ship_index_ = from.ship_index_;
   devices_ = from.devices_;
   disasters_ = from.disasters_;
+  bulletins_ = from.bulletins_;
+  if (scenario_->view.mode == ViewMode::kPartial) bulletins_.resize(disasters_.size());
   CopyTracksFrom(from);
   forecasts_ = from.forecasts_;
   record_ = from.record_;
@@ -374,6 +387,9 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
   Track track = Owned(k, spec.track);
   if (added) {
     disasters_.push_back(disaster);
+    if (scenario_->view.mode == ViewMode::kPartial || !bulletins_.empty()) {
+      bulletins_.resize(disasters_.size());
+    }
     tracks_.push_back(std::move(track));
     forecasts_.emplace_back();
   } else {
@@ -382,8 +398,8 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
       disaster.x = present.x;
       disaster.y = present.y;
     }
-    disaster.bulletin = present.bulletin;
-    disaster.SnapshotRings();  // ring sizes of the replaced disaster do not apply to the new one
+    // Ring sizes of the replaced disaster do not apply to the new one.
+    if (!bulletins_.empty()) CopyRings(disaster, bulletins_[k]);
     disasters_[k] = disaster;
     tracks_[k] = std::move(track);
   }

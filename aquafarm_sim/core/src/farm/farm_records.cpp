@@ -8,7 +8,7 @@ namespace aquafarm::internal {
 namespace {
 
 // Fills the rings by quadrant and those of the last bulletin.
-void ReadRings(Reader& a, Disaster& d) {
+void ReadRings(Reader& a, SavedDisaster& d) {
   d.by_quadrant = a.state.contains("quadrants");
   if (d.by_quadrant) {
     decltype(d.quadrant) sides{};
@@ -17,10 +17,10 @@ void ReadRings(Reader& a, Disaster& d) {
       SetRing(d, k, {sides[0][k], sides[1][k], sides[2][k], sides[3][k]});
     }
   }
-  d.SnapshotRings();
+  CopyRings(d, d.bulletin);
   if (a.state.contains("bulletin_rings")) {
     a.Fields("bulletin_rings", d.bulletin.radius, d.bulletin.quadrant);
-  } else if (RingsMayHaveChanged(d)) {
+  } else if (RingsMayHaveChanged(d, d.bulletin)) {
     throw InputError(
         "state: disaster: bulletin_rings: missing, expected the rings as the last bulletin gave "
         "them, which states saved by older versions lack");
@@ -28,7 +28,7 @@ void ReadRings(Reader& a, Disaster& d) {
 }
 
 // Forged bytes must not cause out-of-bounds access or an endless search.
-void CheckDisaster(const Disaster& d) {
+void CheckDisaster(const SavedDisaster& d) {
   const auto is_heading = [](std::int32_t degrees) { return degrees >= 0 && degrees <= 359; };
   if (!is_heading(d.heading_deg)) throw InputError("state: heading out of range");
   if (!is_heading(d.bulletin.heading_deg)) throw InputError("state: bulletin heading out of range");
@@ -46,10 +46,10 @@ void CheckDisaster(const Disaster& d) {
 
 }  // namespace
 
-Disaster DisasterFrom(const json& j) {
-  Disaster d;
+SavedDisaster DisasterFrom(const json& j) {
+  SavedDisaster d;
   Reader reader(j);
-  FieldsOf<Disaster>::Visit(reader, d);
+  FieldsOf<SavedDisaster>::Visit(reader, d);
   if (d.rings < 0 || d.rings > kMaxRings) throw InputError("state: disaster rings out of range");
   ReadRings(reader, d);
   CheckDisaster(d);

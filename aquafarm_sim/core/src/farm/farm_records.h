@@ -14,6 +14,15 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/farm.h"
 
+namespace aquafarm {
+
+// A disaster with its last bulletin, as in a saved state.
+struct SavedDisaster : Disaster {
+  Bulletin bulletin;
+};
+
+}  // namespace aquafarm
+
 namespace aquafarm::internal {
 
 using nlohmann::json;
@@ -23,9 +32,9 @@ std::int32_t Int(Enum value) {
   return static_cast<std::int32_t>(value);
 }
 
-// Returns whether the rings may have changed since the last bulletin was issued.
-inline bool RingsMayHaveChanged(const Disaster& disaster) {
-  return disaster.radius_growth != 0.0F && disaster.bulletin.step != kNone;
+// Returns whether the rings may have changed since a bulletin was issued.
+inline bool RingsMayHaveChanged(const Disaster& disaster, const Bulletin& bulletin) {
+  return disaster.radius_growth != 0.0F && bulletin.step != kNone;
 }
 
 // Archives that write a record to JSON and read it back. Each Visit lists the fields of one record.
@@ -180,7 +189,7 @@ struct FieldsOf<EpisodeRecord> {
 // The radii of quadrants and those of the last bulletin are written only where they differ
 // from what the other fields give.
 template <>
-struct FieldsOf<Disaster> {
+struct FieldsOf<SavedDisaster> {
   template <typename Archive, typename D>
   static void Visit(Archive& a, D& d) {
     auto& b = d.bulletin;
@@ -205,13 +214,13 @@ struct FieldsOf<Disaster> {
     a.Fields("bulletin_when", b.heading_deg, b.step);
     if constexpr (!Archive::kReads) {
       if (d.by_quadrant) a.Field("quadrants", d.quadrant);
-      if (RingsMayHaveChanged(d)) a.Fields("bulletin_rings", b.radius, b.quadrant);
+      if (RingsMayHaveChanged(d, b)) a.Fields("bulletin_rings", b.radius, b.quadrant);
     }
   }
 };
 
 // Reads a disaster. @throws InputError if a value is out of range
-Disaster DisasterFrom(const json& j);
+SavedDisaster DisasterFrom(const json& j);
 
 json TrackToJson(const std::vector<Waypoint>& track);
 std::vector<Waypoint> TrackFromJson(const json& points);

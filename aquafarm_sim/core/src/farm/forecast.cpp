@@ -59,7 +59,8 @@ std::array<float, 2> PositionAt(const Farm& farm, std::int32_t disaster, std::in
   if (track.empty()) {
     const Disaster& present = farm.disasters()[static_cast<std::size_t>(disaster)];
     if (issued == farm.step()) return {present.x, present.y};
-    return {present.bulletin.x, present.bulletin.y};
+    const Bulletin& bulletin = farm.BulletinOf(static_cast<std::size_t>(disaster));
+    return {bulletin.x, bulletin.y};
   }
   const auto step = static_cast<float>(issued);
   const std::size_t next = After(step, track);
@@ -77,7 +78,8 @@ std::array<float, 2> MotionAt(const Farm& farm, std::int32_t disaster, std::int3
   if (track.empty()) {
     const Disaster& present = farm.disasters()[static_cast<std::size_t>(disaster)];
     if (issued == farm.step()) return {present.dx, present.dy};
-    const std::array<float, 2> heading = HeadingVector(present.bulletin.heading_deg);
+    const Bulletin& bulletin = farm.BulletinOf(static_cast<std::size_t>(disaster));
+    const std::array<float, 2> heading = HeadingVector(bulletin.heading_deg);
     return {present.speed * heading[0], present.speed * heading[1]};
   }
   const std::size_t next = After(static_cast<float>(issued), track);

@@ -118,9 +118,9 @@ void ObserveDisaster(const Farm& farm, std::size_t id, bool full,
   known.age = 0;
   // A ship observes a disaster if its edge is within sensor range ([decided], see docs/model.md).
   known.visible = full || IsSeen(sensors, disaster.x, disaster.y, disaster.reach());
-  known.known = known.visible || disaster.bulletin.step != kNone;
+  const Bulletin& bulletin = farm.BulletinOf(id);
+  known.known = known.visible || bulletin.step != kNone;
   if (known.visible || !known.known) return;
-  const Bulletin& bulletin = disaster.bulletin;
   known.age = farm.step() - bulletin.step;
   RestoreBulletin(*farm.tracks()[id], bulletin, known.belief);
   known.belief.x = bulletin.x;

@@ -362,8 +362,8 @@ TEST(Features, HaveTheRiskThatAnOldBulletinLeadsToExpect) {
     risky += ExpectCourses(farm, [&](Cell cell, int steps) {
       std::vector<Disaster> ahead = farm.disasters();
       const auto since = static_cast<float>(round % 9 + steps);
-      ahead[0].x = ahead[0].bulletin.x + 0.15F * since;
-      ahead[1].x = ahead[1].bulletin.x - 0.1F * since;
+      ahead[0].x = farm.BulletinOf(0).x + 0.15F * since;
+      ahead[1].x = farm.BulletinOf(1).x - 0.1F * since;
       return RiskAt(ahead, cell);
     });
   }

@@ -71,17 +71,17 @@ struct ObservableDisaster {
   float reach() const { return rings == 0 ? 0.0F : radius[static_cast<std::size_t>(rings - 1)]; }
 };
 
-/// Complete state of a disaster: everything that may change during an episode.
+/// Complete state of a disaster, without its last bulletin: everything that may change during an
+/// episode.
 struct Disaster : ObservableDisaster {
   std::array<std::uint32_t, 4> draws{};  ///< random draws of the current block of four steps
-  Bulletin bulletin;
-
-  /// Copies the current rings into the bulletin.
-  void SnapshotRings() {
-    bulletin.radius = radius;
-    bulletin.quadrant = quadrant;
-  }
 };
+
+/// Copies the present rings of a disaster into its bulletin.
+inline void CopyRings(const ObservableDisaster& disaster, Bulletin& bulletin) {
+  bulletin.radius = disaster.radius;
+  bulletin.quadrant = disaster.quadrant;
+}
 
 /// Waypoints of a disaster; shared and constant during an episode.
 using Track = std::shared_ptr<const std::vector<Waypoint>>;

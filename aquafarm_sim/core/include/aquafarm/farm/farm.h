@@ -26,6 +26,7 @@
 namespace aquafarm {
 
 class Hasher;
+struct SavedDisaster;
 
 /// Forecasts of one disaster that were issued during an episode, in order of issue; null: none.
 using Forecasts = std::shared_ptr<const std::vector<IssuedForecast>>;
@@ -109,6 +110,8 @@ class Farm {
   const std::vector<Device>& devices() const { return devices_; }
   /// Disasters by id: the true state, independent of what ships observe.
   const std::vector<Disaster>& disasters() const { return disasters_; }
+  /// Returns the last bulletin of a disaster; its step is kNone if none was issued.
+  const Bulletin& BulletinOf(std::size_t disaster) const;
   /// Waypoints of each disaster; empty for a disaster without a track.
   const std::vector<Track>& tracks() const { return tracks_; }
   /// Forecasts of each disaster that were issued during this episode. Agents receive them. They
@@ -200,6 +203,7 @@ class Farm {
   void MoveDisasters();
   void IssueBulletins();
   void IssueBulletin(std::size_t id);
+  void LoadDisasters(std::vector<SavedDisaster> saved);
   void Act(std::int32_t id, Action action);
   void Move(Ship& ship, std::int32_t id, Action action);
   void PickUp(Ship& ship, std::int32_t id);
@@ -237,6 +241,7 @@ class Farm {
   std::shared_ptr<Layout> own_layout_;  // null when the layout is shared
   std::unique_ptr<LayoutGenerator> generator_;
   std::vector<Forecasts> forecasts_;
+  std::vector<Bulletin> bulletins_;     // by disaster; may be empty if none was issued
   std::unique_ptr<DrawnStorms> drawn_;  // null: no disaster has storms
 };
 

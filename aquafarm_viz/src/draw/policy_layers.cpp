@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "draw/free_space.h"
 #include "draw/symbols.h"

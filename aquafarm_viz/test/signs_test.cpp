@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/draw/image.h"
 #include "draw/legend.h"
 #include "draw/map_labels.h"

@@ -118,8 +118,9 @@ def plot_unfinished(axes, name, route, size):
                  linewidth=2.2, zorder=8, label="device that was not fetched")
     axes.scatter(*last["cell"], s=150, marker="*", color="#f0e442", edgecolor="black", zorder=9,
                  label="ship at the end")
+    result = f"{route['return']:.0f}".replace("-", "−")
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
-                   f"return {route['return']:.0f}".replace("-", "−") + "\n"
+                   f"return {result}\n"
                    f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps\n"
                    f"the last {len(last_leg) - 1} steps without pickup or drop-off", fontsize=11,
                    y=(chart["height"] - 1 + 2 * _RIM) / (size[1] - 1 + 2 * _RIM))

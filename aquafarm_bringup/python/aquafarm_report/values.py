@@ -87,13 +87,13 @@ def place_words(cells, text):
     """Returns where a cell [east, north] is, such as "next to a device, 5 km east, 5 km north"; the
     device or port only within NEXT_TO."""
     east, north = cells
-    near = [(math.hypot(east - x, north - y), words, (x, y))
+    near = [(math.hypot(east - x, north - y), words)
             for words, key in (("device", "devices"), ("port", "ports"))
             for x, y in text.get(key) or []]
     km = text["cell_size_m"] / 1000.0
     place = f"{(east + 0.5) * km:.1f} km east, {(north + 0.5) * km:.1f} km north"
     if near and min(near)[0] <= NEXT_TO:
-        distance, words, _ = min(near)
+        distance, words = min(near)
         return f"{'at' if distance < 1.0 else 'next to'} a {words}, {place}"
     return place
 

@@ -111,12 +111,12 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
   const double hours = MarkHours(spec, course.ahead, to_pixel, layout);
   const double steps = hours * 3600.0 / std::max(1.0, spec.step_duration_s);
   const double now = course.ahead.front().step;
+  const int rim = layout.Px(6);  // a mark cut by the edge is not recognizable
+  const cv::Rect inside(rim, rim, image.cols - 2 * rim, image.rows - 2 * rim);
   for (std::size_t i = 1; i <= kMaxMarks && now + double(i) * steps <= course.ahead.back().step;
        ++i) {
     const TrackPoint point = TrackAt(course.ahead, now + double(i) * steps);
     const cv::Point2d at = to_pixel(point.x, point.y);
-    const int rim = layout.Px(6);  // a mark cut by the edge is not recognizable
-    const cv::Rect inside(rim, rim, image.cols - 2 * rim, image.rows - 2 * rim);
     if (!IsNear(at) || !inside.contains(cv::Point(at))) continue;
     FillCircle(image, at, 4.2 * layout.unit, Bgr(layout.style->halo));
     FillCircle(image, at, 3.0 * layout.unit, Bgr(layout.style->label));

@@ -171,12 +171,10 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
   if (!subject) return {};
   const DisasterState& disaster = state.disasters[subject->disaster];
   const Course& course = courses[subject->disaster];
-  RegionWords words;
+  const bool has_course = course.kind != Course::Kind::kExtrapolated;
+  RegionWords words = has_course ? CourseWords(spec, state, *subject, course) : RegionWords{};
   words.is_urgent = subject->danger > 0.0 && std::isfinite(subject->danger);
-  if (course.kind != Course::Kind::kExtrapolated) {
-    const bool is_urgent = words.is_urgent;
-    words = CourseWords(spec, state, *subject, course);
-    words.is_urgent = is_urgent;
+  if (has_course) {
     std::string& last = words.lines[1];
     const std::string wind = WindText(subject->nearest);
     const bool is_later = subject->nearest.step > course.ahead.front().step;

@@ -12,9 +12,9 @@
 
 namespace aquafarm::agents {
 
-/// By member: 1 while the ship still works.
-using Alive = std::vector<std::int16_t>;  // same width as the arrival steps, so that loops over
-                                          // both vectorize
+/// By member: 1 while the ship still works. As wide as the arrival steps, so that loops over both
+/// vectorize.
+using Alive = std::vector<std::int16_t>;
 
 /// Weights of the members, which sum to 1; empty: all members have equal weights.
 using MemberWeights = std::vector<float>;

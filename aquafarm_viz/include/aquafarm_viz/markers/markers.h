@@ -39,8 +39,7 @@ visualization_msgs::MarkerArray SpecMarkers(const aquafarm_msgs::FarmSpec& spec,
                                             const Layers& layers = {});
 
 /// Returns the markers of ports, ships, devices and disasters, and of the line with time, episode,
-/// step and return. A ship in a port is drawn next to the
-/// port.
+/// step and return. A ship is drawn next to its port.
 /// The spec must pass CheckSpec and the state CheckState.
 visualization_msgs::MarkerArray StateMarkers(const aquafarm_msgs::FarmSpec& spec,
                                              const aquafarm_msgs::FarmState& state,

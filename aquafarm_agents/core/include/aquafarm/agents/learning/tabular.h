@@ -64,8 +64,7 @@ struct TabularOptions {
 class TableLearner : public Learner {
  public:
   /// @throws InputError if the farm has no tabular states, if its table would exceed kMaxBytes, or
-  /// if
-  ///   an option is invalid
+  ///   if an option is invalid
   TableLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
 
   std::uint8_t observation_types() const override { return kIndexBit; }

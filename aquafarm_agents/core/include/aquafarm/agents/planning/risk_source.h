@@ -21,8 +21,8 @@ namespace aquafarm::agents {
 /// Risks of one step, [H, W].
 struct RiskLayers {
   Grid<float> risk;  ///< risk at each cell; 0 or negative
-  Grid<float>
-      quiet;  ///< reward of a step without any other term: the risk below 0, else the step reward
+  /// Reward of a step without any other term: the risk below 0, else the step reward.
+  Grid<float> quiet;
   /// Risk that damages each kind of device (Farm::DamagingRiskAt). An empty layer stands for
   /// `risk`.
   DamagingRisks by_kind;

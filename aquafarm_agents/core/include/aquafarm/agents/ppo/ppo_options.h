@@ -50,8 +50,7 @@ struct PpoOptions {
   bool mask_illegal{true};          ///< probability 0 for actions that would be ILLEGAL
   bool mask_blocked{
       true};  ///< probability 0 for moves onto a charted rock or an island, or off the map
-  /// `level` is the coefficient of the entropy bonus; `icm` options add an intrinsic
-  /// reward.
+  /// `level` is the coefficient of the entropy bonus; `icm` adds an intrinsic reward.
   ExplorationOptions exploration{
       ExplorationKind::kEntropy, {ScheduleKind::kLinear, 0.02, 0.0, 1.0}, {}};
   /// Weight of the cross-entropy with a teacher, which the policy imitates at first (kickstarting,

@@ -23,7 +23,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"
 from aquafarm_report import values_topics  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 
-from aquafarm_report.values import (ValuesError, compare, draw_key, draw_map,  # noqa: E402
+from aquafarm_report.values import (ValuesError, compare, draw_map,  # noqa: E402
                                     draw_places, draw_relation, make, read, verdict)
 
 
@@ -112,9 +112,10 @@ class ValuesTest(unittest.TestCase):
         text = {"cell_size_m": 500.0, "ports": [[0, 0]], "devices": [[10, 8]]}
         said = verdict(values, text)
         self.assertIn("Best start: next to a device, 5.2 km east, 4.8 km north (99 points)", said)
-        self.assertIn("is around 1.2 km east, 0.8 km north", said)
+        self.assertIn("mostly around 1.2 km east, 0.8 km north", said)
         values[0, 13] = -60.0
-        self.assertIn("is around 1.2 km east, 0.8 km north", verdict(values, text), "the largest part")
+        self.assertIn("mostly around 1.2 km east, 0.8 km north", verdict(values, text),
+                      "the largest part")
         even = np.ones((5, 6))
         even[4, 5] = 2.0
         self.assertEqual("Best start: 2.8 km east, 2.2 km north (2 points)",
@@ -134,7 +135,6 @@ class ValuesTest(unittest.TestCase):
         self.assertEqual("(d) Return against temperature", axis.get_title())
         self.assertIn("rank correlation +1.00", axis.texts[0].get_text())
         self.assertEqual("temperature [°C]", axis.get_xlabel())
-        draw_key(axis, {"policy": "planner"}, None)
         for words in (axis.get_title(), *(text.get_text() for text in axis.texts)):
             for jargon in ("SSIM", "Spearman", "rho", "turned over", "degC"):
                 self.assertNotIn(jargon, words)

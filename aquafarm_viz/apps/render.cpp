@@ -268,6 +268,12 @@ void RenderPicture(const Request& request) {
   if (missing > 0) throw std::runtime_error(Missing(request, found, gaps));
   WarnOfMissing(request, found);
   cv::Mat picture;
+  constexpr int kGutter_px = 6;
+  for (std::size_t i = 1; i < pictures.size(); ++i) {
+    cv::copyMakeBorder(pictures[i], pictures[i], request.is_stacked ? kGutter_px : 0, 0,
+                       request.is_stacked ? 0 : kGutter_px, 0, cv::BORDER_CONSTANT,
+                       cv::Scalar::all(0x80));
+  }
   request.is_stacked ? cv::vconcat(pictures, picture) : cv::hconcat(pictures, picture);
   const std::filesystem::path output(request.output);
   std::vector<std::uint8_t> bytes;

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "aquafarm_viz/base/disaster_kinds.h"
@@ -192,6 +193,34 @@ std::vector<double> FromRings(cv::Point2d pixel, const aquafarm_msgs::DisasterSt
   }
   std::sort(found.begin(), found.end());
   return found;
+}
+
+TEST(Signs, OfCentresOutsideTheMapAreApartAtTheBorder) {
+  const Layout layout = MakeLayout(25, 25, kSignsSize);
+  aquafarm_msgs::FarmState state;
+  for (const auto& [x, y] : {std::pair(-9.0F, 12.0F),
+                             {-7.0F, 12.2F},
+                             {-6.0F, 11.9F},
+                             {12.0F, 12.0F},
+                             {40.0F, 40.0F},
+                             {42.0F, 42.0F}}) {
+    state.disasters.push_back(test::MakeDisaster(int(state.disasters.size()), x, y));
+  }
+  const std::vector<SignPlace> signs = PlaceSigns(state, layout);
+  ASSERT_EQ(signs.size(), state.disasters.size());
+  EXPECT_TRUE(signs[3].is_inside);
+  EXPECT_EQ(signs[3].at, layout.view.ToPixel(12.0, 12.0));
+  const cv::Size map = layout.map.size();
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    if (i == 3) continue;
+    const cv::Point2d at = signs[i].at;
+    const double edge = std::min({at.x, at.y, map.width - at.x, map.height - at.y});
+    EXPECT_NEAR(edge, 13.0 * layout.unit, 1e-6) << i;
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_GT(cv::norm(at - signs[j].at), 25.0 * layout.unit) << i << " and " << j;
+    }
+  }
+  EXPECT_EQ(signs[0].at.y, PlaceSign(state.disasters[0], layout).at.y) << "the first stays";
 }
 
 TEST(Signs, OfRingsAreLabelledOnTheirOwnLineAndOffTheLand) {

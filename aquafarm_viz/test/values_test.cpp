@@ -201,7 +201,7 @@ TEST(Values, BestMovesAreOneMarkerAKindWithStableIds) {
   EXPECT_GT(cells.colors.back().g, 0.85F);
   EXPECT_EQ(cells.points.front().x, -500.0);
   EXPECT_EQ(array.markers[0].points.size(), 12U * 12U * 9U) << "every second cell";
-  EXPECT_EQ(array.markers[1].points.size(), 1U);
+  EXPECT_EQ(array.markers[1].points.size(), 24U) << "the frame of one cell";
   EXPECT_EQ(array.markers[2].action, Marker::DELETE);
   for (int id = 0; id < 3; ++id) {
     EXPECT_EQ(array.markers[std::size_t(id)].ns, "moves");

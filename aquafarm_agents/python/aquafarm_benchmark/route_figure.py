@@ -79,6 +79,7 @@ def draw_unfinished(path, routes, title):
     figure, all_axes = plt.subplots(
         rows, columns, figsize=(4.2 * columns, (0.7 + 4.2 * size[1] / size[0]) * rows),
         squeeze=False, layout="constrained")
+    figure.get_layout_engine().set(h_pad=0.12)
     all_axes = list(all_axes.flat)
     charts = all_axes[:len(routes)]
     for axes, (name, route) in zip(charts, routes.items()):
@@ -122,8 +123,7 @@ def plot_unfinished(axes, name, route, size):
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
                    f"return {result}\n"
                    f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps\n"
-                   f"the last {len(last_leg) - 1} steps without pickup or drop-off", fontsize=11,
-                   y=(chart["height"] - 1 + 2 * _RIM) / (size[1] - 1 + 2 * _RIM))
+                   f"the last {len(last_leg) - 1} steps without pickup or drop-off", fontsize=11)
 
 
 def _symbols(charts):
@@ -148,7 +148,8 @@ def _chart(axes, chart, size=None, left=None):
     for axis, count in ((axes.xaxis, chart["width"]), (axes.yaxis, chart["height"])):
         axis.set_ticks(range(0, count, 5 if count <= 30 else 10))
     axes.set_xlim(-_RIM, width - 1 + _RIM)
-    axes.set_ylim(-_RIM, height - 1 + _RIM)
+    axes.set_ylim(chart["height"] - height - _RIM, chart["height"] - 1 + _RIM)  # at the top
+    axes.spines["bottom"].set_position(("data", -_RIM))
     sea = axes.add_patch(Rectangle((-0.5, -0.5), chart["width"], chart["height"], facecolor=_SEA,
                                    edgecolor="#5b6b78", zorder=0))
     if chart["islands"]:

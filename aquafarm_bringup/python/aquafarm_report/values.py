@@ -8,7 +8,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import numpy as np  # noqa: E402
-from matplotlib import pyplot, ticker  # noqa: E402
+from matplotlib import patches, pyplot, ticker  # noqa: E402
 from scipy import ndimage, stats  # noqa: E402
 from skimage.metrics import structural_similarity  # noqa: E402
 
@@ -17,7 +17,9 @@ from aquafarm_bringup.files import open_atomically  # noqa: E402
 MOST_WINDOW = 7  # cells on a side, as in scikit-image
 FEWEST_CELLS = 10
 NEXT_TO = 2.0  # max distance of a cell next to a device or port [cells]
-_COLUMN = 3.3  # width of a map in the figure [inch]
+_COLUMN = 2.9  # width of a map in the figure [inch]
+_GAP = 1.1  # between columns and between rows [inch]
+_TOP = 1.05  # height of the titles [inch]
 _LOW_COLOUR = "#440154"  # the lowest one of viridis
 _SEA_COLOURS = {"depth": "Blues", "warmth": "YlOrRd"}
 _LOWEST = 0.05  # share of the cells whose return has one colour
@@ -112,18 +114,16 @@ def verdict(values, text):
         return said
     largest = np.argwhere(parts == 1 + np.argmax(np.bincount(parts.ravel())[1:]))
     middle = largest[np.argmin(np.abs(largest - largest.mean(axis=0)).sum(axis=1))]
-    return (f"{said};\nthe largest area of low returns, below "
-            f"{np.quantile(values[known], _LOWEST):.0f} points, is around "
+    return (f"{said}\nLowest returns: below "
+            f"{np.quantile(values[known], _LOWEST):.0f} points, mostly around "
             f"{place_words((int(middle[1]), int(middle[0])), text)}")
 
 
-def device_distance(values, devices):
-    """Rank correlation of the return with the distance to the nearest device; None if not known."""
-    if not devices:
-        return None
-    north, east = np.indices(values.shape)
+def device_distance(shape, devices, km):
+    """Returns the distance of each cell to the nearest device, as a layer like those of the sea."""
+    north, east = np.indices(shape)
     away = np.min([np.hypot(east - x, north - y) for x, y in devices], axis=0)
-    return compare(values, away)["spearman_rho"]
+    return "distance to a device", "km", away * km
 
 
 def lowest_cells(values):
@@ -152,7 +152,7 @@ def draw_map(axis, field, km, colours, label, lowest=0.0):
     low, high = np.quantile(known, (lowest, 1.0)) if len(known) else (0.0, 1.0)
     image = axis.imshow(field, origin="lower", cmap=colours, vmin=low, vmax=high,
                         extent=(0, width * km, 0, height * km))
-    axis.figure.colorbar(image, ax=axis, label=label, fraction=0.05 * height / width, pad=0.02,
+    axis.figure.colorbar(image, cax=axis.inset_axes([1.03, 0.0, 0.05, 1.0]), label=label,
                          extend="min" if lowest > 0.0 else "neither")
     axis.set_xlabel("east [km]")
 
@@ -175,7 +175,7 @@ def draw_relation(axis, values, layer, result, letter):
     low = lowest_cells(values)
     axis.scatter(x, y, s=9, color="#0072b2", alpha=0.35, linewidth=0, label="a cell")
     axis.scatter(field[known & low], values[known & low], s=12, color=_LOW_COLOUR, linewidth=0,
-                 label="of the lowest twentieth")
+                 label="a cell of the lowest twentieth, one colour on map (a)")
     if len(x) >= FEWEST_CELLS and np.ptp(x) > 0.0:
         parts = np.array_split(np.argsort(x, kind="stable"), 10)
         axis.plot([np.median(x[part]) for part in parts], [np.median(y[part]) for part in parts],
@@ -183,27 +183,33 @@ def draw_relation(axis, values, layer, result, letter):
                   label="median of 1/10 of the cells")
     words = sea_words(name)
     axis.set_xlabel(f"{words} [{unit_text(units)}]")
-    axis.set_ylabel("return if the ship starts there")
     rest = compare(np.where(low, np.nan, values), field)["spearman_rho"]
     axis.set_title(f"({letter}) Return against {words}", fontsize=11, pad=32.0)
     said = (f"rank correlation {signed(result['spearman_rho'])}, {result['cells']} cells\n"
             f"{signed(rest)} without the lowest twentieth" if result["spearman_rho"] is not None else
             f"{result['cells']} cells: too few or too alike to compare")
-    axis.text(0.5, 1.03, said, transform=axis.transAxes, fontsize=9, va="bottom", ha="center")
+    axis.text(0.5, 1.03, said, transform=axis.transAxes, fontsize=9, va="bottom",
+              ha="center")
     axis.xaxis.set_major_locator(ticker.MaxNLocator(5))
     axis.grid(alpha=0.3)
 
 
 def draw(text, values, layers, results, path):
-    """Draws the maps side by side, and below each sea the return against its value."""
+    """Draws the maps side by side, and below each sea the return against its value; below the map
+    of returns, against the distance to the nearest device."""
     km = text["cell_size_m"] / 1000.0
     height, width = values.shape
     tall = min(1.6, max(0.5, height / width))
-    rows = 2 if layers else 1
-    figure, axes = pyplot.subplots(rows, 1 + len(layers), squeeze=False, constrained_layout=True,
-                                   figsize=(_COLUMN * (1 + len(layers)),
-                                            0.84 * _COLUMN * tall + (3.8 if layers else 1.2)),
-                                   height_ratios=[0.84 * _COLUMN * tall, 2.6][:rows])
+    heights = [_COLUMN * tall, 2.4, 0.2] if layers else [_COLUMN * tall, 0.8]
+    columns = 1 + len(layers)
+    width_in = _GAP * (columns + 0.6) + _COLUMN * columns
+    height_in = sum(heights) + _TOP + _GAP * (len(heights) - 0.6)
+    figure, axes = pyplot.subplots(len(heights), columns, squeeze=False,
+                                   figsize=(width_in, height_in), height_ratios=heights)
+    figure.subplots_adjust(
+        left=0.7 * _GAP / width_in, right=1.0 - 0.9 * _GAP / width_in, wspace=_GAP / _COLUMN,
+        top=1.0 - _TOP / height_in, bottom=0.3 * _GAP / height_in,
+        hspace=0.95 * _GAP / (sum(heights) / len(heights)))
     draw_map(axes[0][0], values, km, "viridis", "return [points]", _LOWEST)
     letters = iter("abcdefghijklmnopqrstuvwxyz")
     axes[0][0].set_title(f"({next(letters)}) Return if the ship starts here", fontsize=11)
@@ -217,30 +223,43 @@ def draw(text, values, layers, results, path):
         axes[0][column].set_title(f"({next(letters)}) {words[:1].upper()}{words[1:]} of the sea",
                                   fontsize=11)
         draw_places(axes[0][column], text, km)
-    for column, (layer, result) in enumerate(zip(layers, results), start=1):
-        draw_relation(axes[1][column], values, layer, result, next(letters))
     if layers:
-        draw_key(axes[1][0], text, device_distance(values, text.get("devices")))
-        marks = zip(axes[0][0].get_legend_handles_labels(), axes[1][1].get_legend_handles_labels())
-        axes[1][0].legend(*([*one, *other] for one, other in marks), loc="upper left", frameon=False,
-                          bbox_to_anchor=(-0.05, 0.62)).set_in_layout(False)
+        draw_relations(axes[1], text, values, layers, results, letters)
+    draw_key(figure, axes)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
     said = verdict(values, text)
     figure.suptitle("\n".join([*([said] if said else []), f"{text['policy']} on {text['scenario']}, "
-                               f"{episodes}"]), fontsize=12)
+                               f"{episodes}"]), fontsize=11.5)
     with open_atomically(path, "wb") as file:
         figure.savefig(file, dpi=150, format="png")
     pyplot.close(figure)
 
 
-def draw_key(axis, text, distance):
-    """What the figure shows, in words."""
-    axis.axis("off")
-    lines = ["The lowest twentieth has one colour.", "Hatched: land, rocks or unknown."]
-    if distance is not None:
-        lines += ["", "Rank correlation of the return with", f"the distance to a device: {signed(distance)}"]
-    axis.text(0.0, 1.0, "\n".join(lines), va="top", fontsize=10).set_in_layout(False)
+def draw_relations(axes, text, values, layers, results, letters):
+    """Draws the second row: the return against the distance to a device and against each sea."""
+    if devices := text.get("devices"):
+        away = device_distance(values.shape, devices, text["cell_size_m"] / 1000.0)
+        draw_relation(axes[0], values, away, compare(values, away[2]), next(letters))
+    else:
+        axes[0].axis("off")
+    for axis, layer, result in zip(axes[1:], layers, results):
+        draw_relation(axis, values, layer, result, next(letters))
+    axes[0 if devices else 1].set_ylabel("return if the ship starts there")
+
+
+def draw_key(figure, axes):
+    """Draws one legend of all symbols in place of the last row."""
+    signs = {}
+    for axis in axes.flat:
+        signs.update((label, handle) for handle, label in zip(*axis.get_legend_handles_labels()))
+    for axis in axes[-1]:
+        axis.remove()
+    row = figure.add_subplot(axes[-1][0].get_gridspec()[-1, :])
+    row.axis("off")
+    signs["land, rocks or unknown"] = patches.Patch(facecolor="0.82", edgecolor="0.65", hatch="////")
+    row.legend(signs.values(), signs.keys(), loc="center", frameon=False,
+               ncols=3 if axes.shape[1] > 1 else 1)
 
 
 def make(values_file, output):

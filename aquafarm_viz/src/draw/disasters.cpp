@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "draw/symbols.h"
@@ -76,7 +77,7 @@ void DrawCentre(cv::Mat& map, const DisasterState& disaster, const SignPlace& si
 void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, const SignPlace& sign,
                        const Layout& layout) {
   static const std::vector<cv::Point2f> kPointer{{0.0F, 1.0F}, {0.75F, -0.7F}, {-0.75F, -0.7F}};
-  const cv::Point2d away = sign.at - cv::Point2d(map.cols / 2.0, map.rows / 2.0);
+  const cv::Point2d away = layout.view.ToPixel(disaster.x, disaster.y) - sign.at;
   const double bearing = std::atan2(away.x, -away.y) * 180.0 / CV_PI;
   const Pose2 placing{sign.at, 9.0 * layout.unit, bearing};
   StrokeShape(map, kPointer, placing, Bgr(layout.style->halo), layout.Px(5));
@@ -111,15 +112,44 @@ SignPlace PlaceSign(const DisasterState& disaster, const Layout& layout) {
   return sign;
 }
 
+std::vector<SignPlace> PlaceSigns(const FarmState& state, const Layout& layout) {
+  const double apart = 26.0 * layout.unit;
+  std::vector<SignPlace> signs;
+  std::vector<cv::Point2d> pointers;
+  for (const auto& disaster : state.disasters) {
+    SignPlace sign = PlaceSign(disaster, layout);
+    signs.push_back(sign);
+    if (sign.is_inside || !IsDrawn(disaster)) continue;
+    const cv::Point2d middle(layout.map.width / 2.0, layout.map.height / 2.0);
+    const cv::Point2d from_middle = sign.at - middle;
+    // Whether the pointer is on the left or right border.
+    const bool is_aside = std::abs(from_middle.x) * middle.y > std::abs(from_middle.y) * middle.x;
+    const cv::Point2d along = is_aside ? cv::Point2d(0.0, apart) : cv::Point2d(apart, 0.0);
+    const cv::Rect2d inside({0.0, 0.0}, cv::Size2d(layout.map.size()));
+    for (const double moved : {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0}) {
+      const cv::Point2d at = sign.at + moved * along;
+      const bool is_near = std::any_of(pointers.begin(), pointers.end(), [&](cv::Point2d other) {
+        return cv::norm(other - at) < 0.99 * apart;
+      });
+      if (is_near || (moved != 0.0 && !inside.contains(at))) continue;
+      signs.back().at = signs.back().arrow_to = at;
+      break;
+    }
+    pointers.push_back(signs.back().at);
+  }
+  return signs;
+}
+
 void DrawDisasterSigns(cv::Mat& map, const FarmState& state, const Layout& layout,
                        const Fonts& fonts) {
-  for (const auto& disaster : state.disasters) {
+  const std::vector<SignPlace> signs = PlaceSigns(state, layout);
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    const DisasterState& disaster = state.disasters[i];
     if (!IsDrawn(disaster)) continue;
-    const SignPlace sign = PlaceSign(disaster, layout);
-    if (sign.is_inside) {
-      DrawCentre(map, disaster, sign, layout, fonts);
+    if (signs[i].is_inside) {
+      DrawCentre(map, disaster, signs[i], layout, fonts);
     } else {
-      DrawBorderPointer(map, disaster, sign, layout);
+      DrawBorderPointer(map, disaster, signs[i], layout);
     }
   }
 }

@@ -204,7 +204,7 @@ void DrawPorts(cv::Mat& map, const FarmSpec& spec, const Layout& layout, const F
 }
 
 void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, const Layout& layout) {
-  const double size = std::max(0.75 * layout.view.cell_px(), 16.0 * layout.unit);
+  const double size = std::max(0.55 * layout.view.cell_px(), 12.0 * layout.unit);
   for (const auto& port : ports) {
     const cv::Point2d middle = layout.view.ToPixel(port.cell.x, port.cell.y);
     for (const std::uint8_t action : port.actions) {

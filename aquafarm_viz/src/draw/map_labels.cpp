@@ -72,6 +72,35 @@ void DrawPlate(cv::Mat& map, cv::Rect plate, const std::vector<std::string>& lin
   }
 }
 
+constexpr double kMaxLine = 200.0;  // width of a line of a label [design units]
+
+// Breaks a text after commas into lines of at most kMaxLine, as far as its parts are that short.
+std::vector<std::string> BrokenAtCommas(const std::string& text, const Layout& layout,
+                                        const Fonts& fonts) {
+  std::vector<std::string> lines{""};
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t comma = text.find(", ", from);
+    const std::size_t end = comma == std::string::npos ? text.size() : comma + 1;
+    const std::string part = text.substr(from, end - from);
+    const std::string longer = lines.back() + (lines.back().empty() ? "" : " ") + part;
+    if (lines.back().empty() || fonts.bold.Width(longer) <= layout.Px(kMaxLine)) {
+      lines.back() = longer;
+    } else {
+      lines.push_back(part);
+    }
+    from = end + 1;
+  }
+  return lines;
+}
+
+// Returns the size of a plate with some lines.
+cv::Size PlateSize(const std::vector<std::string>& lines, const Layout& layout,
+                   const Fonts& fonts) {
+  int width = 0;
+  for (const std::string& line : lines) width = std::max(width, fonts.bold.Width(line));
+  return {width + layout.Px(kPlateMargins), layout.Px(2.0 + kPlateRow * double(lines.size()))};
+}
+
 Rgb RiskColor(double risk, const Layout& layout) { return layout.style->Risk(Severity(risk)); }
 
 }  // namespace
@@ -109,9 +138,10 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlo
     space.Block(
         WithBar(ShipPlace(spec, state, ship, layout), 1.1 * layout.ship_radius_px(), layout));
   }
-  for (const auto& disaster : state.disasters) {
-    if (!IsDrawn(disaster)) continue;
-    const SignPlace sign = PlaceSign(disaster, layout);
+  const std::vector<SignPlace> signs = PlaceSigns(state, layout);
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    if (!IsDrawn(state.disasters[i])) continue;
+    const SignPlace& sign = signs[i];
     space.Block(Around(sign.at, 12.0 * layout.unit));
     const cv::Point2d middle = (sign.at + sign.arrow_to) * 0.5;
     const cv::Point2d half(std::abs(sign.arrow_to.x - sign.at.x) / 2.0 + 8.0 * layout.unit,
@@ -152,15 +182,14 @@ std::set<std::int32_t> LabelDanger(cv::Mat& map, const FarmSpec& spec, const Far
     const std::string danger = DangerText(spec, one);
     if (device == nullptr || danger.empty()) continue;
     if (tries++ == kMaxDangerLabels) break;
-    const std::string text = DeviceLabel(one.id) + ": " + danger;
+    const auto lines = BrokenAtCommas(DeviceLabel(one.id) + ": " + danger, layout, fonts);
     const cv::Point2d at = layout.view.ToPixel(device->x, device->y);
-    const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins),
-                        layout.Px(kPlateRow + 2.0));
+    const cv::Size size = PlateSize(lines, layout, fonts);
     auto plate = space.Take(Cover::kNothing, size, at, 110.0 * layout.unit);
     if (!plate) plate = space.Take(size, at, 140.0 * layout.unit);
     if (!plate) continue;
     DrawLeader(map, at, kDangerRing * layout.device_radius_px(), *plate, space, layout);
-    DrawPlate(map, *plate, {text}, RiskColor(WorstRisk(one), layout), layout, fonts);
+    DrawPlate(map, *plate, lines, RiskColor(WorstRisk(one), layout), layout, fonts);
     labelled.insert(one.id);
   }
   return labelled;
@@ -237,14 +266,17 @@ void BlockOtherRings(const FarmState& state, const DisasterState& own, std::size
 
 void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>& courses,
                 LabelSpace& space, const Layout& layout, const Fonts& fonts) {
+  const bool are_several =
+      std::count_if(state.disasters.begin(), state.disasters.end(), IsDrawn) > 1;
   for (std::size_t index = 0; index < state.disasters.size(); ++index) {
     const DisasterState& disaster = state.disasters[index];
     const std::vector<std::int32_t>& winds = courses[index].ring_winds_kt;
     if (!IsDrawn(disaster)) continue;
+    const std::string whose = are_several ? NameNow(disaster, courses[index]) + ", " : "";
     for (std::size_t ring = 0; ring < std::min(disaster.radii.size(), disaster.risks.size());
          ++ring) {
       const std::string name = ring < winds.size() ? aquafarm::RingName(winds[ring]) + ", " : "";
-      const std::string text = name + "risk " + Number(double(disaster.risks[ring]), 0);
+      const std::string text = whose + name + "risk " + Number(double(disaster.risks[ring]), 0);
       const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins), layout.Px(kPlateRow));
       const auto points = PointsOnMap(disaster, ring, map.size(), layout);
       FreeSpace water = space.space(Cover::kPaths);
@@ -275,23 +307,23 @@ std::optional<cv::Rect> TakeInSight(LabelSpace& space, Cover cover, cv::Size siz
 void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
                    const std::vector<Course>& courses, LabelSpace& space, const Layout& layout,
                    const Fonts& fonts) {
-  for (std::size_t i = 0; i < state.disasters.size(); ++i) {
+  const std::vector<SignPlace> signs = PlaceSigns(state, layout);
+  for (std::size_t i = 0; i < signs.size(); ++i) {
     const DisasterState& disaster = state.disasters[i];
-    if (!IsDrawn(disaster)) continue;
-    const SignPlace sign = PlaceSign(disaster, layout);
-    if (sign.is_inside) continue;
-    const std::vector<std::string> lines{CentreText(spec, disaster, courses[i]),
-                                         MotionNow(spec, disaster)};
-    const int width = std::max(fonts.bold.Width(lines[0]), fonts.bold.Width(lines[1]));
-    const cv::Size size(width + layout.Px(kPlateMargins), layout.Px(2.0 * kPlateRow));
+    const SignPlace& sign = signs[i];
+    if (!IsDrawn(disaster) || sign.is_inside) continue;
+    auto lines = BrokenAtCommas(CentreText(spec, disaster, courses[i]), layout, fonts);
+    if (layout.panel.empty()) lines.push_back(MotionNow(spec, disaster));
+    const cv::Size size = PlateSize(lines, layout, fonts);
     // To the side of the pointer, which lies at the edge, if possible: above or below it, another
     // pointer's label is near.
     const double aside = size.width / 2.0 + 14.0 * layout.unit;
     const cv::Point2d place_aside(
         sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside, sign.at.y);
     auto place = space.Take(Cover::kNothing, size, place_aside, 24.0 * layout.unit);
-    if (!place) place = TakeInSight(space, Cover::kNothing, size, sign.at, 1.1 * size.width);
-    if (!place) place = TakeInSight(space, Cover::kPaths, size, sign.at, 0.7 * size.width);
+    if (!place) place = TakeInSight(space, Cover::kNothing, size, sign.at, 0.8 * size.width);
+    if (!place) place = TakeInSight(space, Cover::kPaths, size, sign.at, 0.8 * size.width);
+    if (!place) place = TakeInSight(space, Cover::kNothing, size, sign.at, 1.2 * size.width);
     if (!place) place = space.Take(size, place_aside, 24.0 * layout.unit);
     if (!place) place = space.Take(size, sign.at, double(map.cols + map.rows));
     if (!place) continue;

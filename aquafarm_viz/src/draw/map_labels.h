@@ -38,14 +38,15 @@ std::set<std::int32_t> LabelDanger(cv::Mat& map, const aquafarm_msgs::FarmSpec& 
                                    LabelSpace& space, const Layout& layout, const Fonts& fonts);
 
 /// Labels each ring of a disaster that crosses the map, on its line, else next to it, on water:
-/// "risk -5", or "gale (34 kt), risk -5" where the wind is given. A ring without a free place has
-/// none.
+/// "risk -5", or "gale (34 kt), risk -5" where the wind is given, after the name of the disaster if
+/// there are several. A ring without a free place has no label.
 /// @param courses  one per disaster of the state
 void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmState& state,
                 const std::vector<Course>& courses, LabelSpace& space, const Layout& layout,
                 const Fonts& fonts);
 
-/// Labels the pointers to disasters outside the map with CentreText and MotionNow.
+/// Labels the pointers to disasters outside the map with CentreText, and with MotionNow if there is
+/// no panel, which lists it.
 void LabelPointers(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                    const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
                    LabelSpace& space, const Layout& layout, const Fonts& fonts);

@@ -295,7 +295,6 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
                               : disaster.grade < kGrades.size() ? kGrades[disaster.grade]
                                                                 : "";
     const Rgb color = over ? layout.style->faint : layout.style->GradeText(disaster.grade);
-    const std::string motion = MotionText(spec, disaster.heading_deg, disaster.speed);
     const std::string left =
         over ? ""
         : spec.step_duration_s > 0.0
@@ -303,6 +302,7 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
             : Count(std::uint64_t(disaster.steps_left)) + " steps left";
     const std::string known =
         disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago";
+    const std::string motion = MotionText(spec, disaster.heading_deg, disaster.speed);
     std::string wind = over ? "" : WindText(courses[i].ahead.front());
     const std::string both = grade + (known.empty() ? "" : ", " + known);
     if (wind.empty() && panel.Fits(motion, known)) {

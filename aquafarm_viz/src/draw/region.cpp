@@ -272,6 +272,17 @@ void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout
   if (place) DrawLabel(inset.image, fonts.small, word, place->tl(), layout);
 }
 
+// Draws an arrow along the present motion of a disaster without a course.
+void DrawMotion(cv::Mat& image, cv::Point2d centre, int bearing_deg, FreeSpace& space,
+                const Layout& layout) {
+  const double length = 18.0 * layout.unit;
+  const Pose2 placing{centre, 6.0 * layout.unit + length / 2.0, double(bearing_deg)};
+  const cv::Point2d middle = Place({0.0, 1.0}, placing);
+  DrawArrow(image, middle, bearing_deg, length, Bgr(layout.style->halo), layout.Px(4));
+  DrawArrow(image, middle, bearing_deg, length, Bgr(layout.style->label), layout.Px(2));
+  space.Block(Around(middle, length / 2.0));
+}
+
 void DrawInset(Inset inset, const FarmSpec& spec, const FarmState& state,
                const std::vector<Course>& courses, const Layout& layout, const Fonts& fonts) {
   const Style& style = *layout.style;
@@ -287,6 +298,9 @@ void DrawInset(Inset inset, const FarmSpec& spec, const FarmState& state,
         inset.image, spec, courses[i], [&](double x, double y) { return inset.At(x, y); }, layout);
     marks.insert(marks.end(), here.begin(), here.end());
     const cv::Point2d at = inset.At(disaster.x, disaster.y);
+    if (courses[i].kind == Course::Kind::kExtrapolated && disaster.speed > 0.0F) {
+      DrawMotion(inset.image, at, disaster.heading_deg, space, layout);
+    }
     FillCircle(inset.image, at, 5.0 * layout.unit, Bgr(style.halo));
     FillCircle(inset.image, at, 4.0 * layout.unit, Bgr(GradeColor(disaster.grade)));
     for (std::size_t j = 1; j < courses[i].ahead.size(); ++j) {
@@ -325,7 +339,9 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
   const int smallest = layout.Px(kSmallestSide);
   const int for_inset = room.height - row_px - layout.Px(4);
   const bool has_lines = has_course || words.is_urgent || for_inset - 2 * row_px >= smallest;
-  const int side = std::min(room.width, for_inset - (has_lines ? 2 * row_px : 0));
+  // Without a course there is little to show.
+  const int max_side = has_course ? room.width : room.width * 2 / 3;
+  const int side = std::min(max_side, for_inset - (has_lines ? 2 * row_px : 0));
   // The map itself shows disasters whose centres are inside.
   const bool is_drawn = farthest_m > 0.0 && side >= smallest;
   if (!is_drawn && !has_course) return;

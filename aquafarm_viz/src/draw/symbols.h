@@ -101,6 +101,9 @@ struct SignPlace {
   bool is_inside{};      ///< false: the centre lies outside the map
 };
 SignPlace PlaceSign(const aquafarm_msgs::DisasterState& disaster, const Layout& layout);
+/// Returns a place for each disaster of the state. Pointers that would overlap are moved apart
+/// along the border.
+std::vector<SignPlace> PlaceSigns(const aquafarm_msgs::FarmState& state, const Layout& layout);
 
 /// Draws each disaster's centre and heading, or a pointer at the border if it is outside the map.
 void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Layout& layout,

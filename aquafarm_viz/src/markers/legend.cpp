@@ -97,6 +97,14 @@ class Row {
     Put(pointer);
   }
 
+  // The frame around a cell where the best move is a pickup or a drop-off.
+  void Frame(Rgb color) {
+    Marker frame = MakeList();
+    AddFrame(frame, 0.0, 0.0, 0.9 * size_m_);
+    frame.color = Color(color);
+    Put(frame);
+  }
+
   // The arrow along the motion of a disaster.
   void Arrow() {
     Marker arrow = MakeList();
@@ -196,9 +204,9 @@ void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& valu
   }
   row.Arrow();
   row.Text("best move");
-  row.Bar(0.6 * row.size_m(), kPickupColor);
+  row.Frame(kPickupColor);
   row.Text("pickup");
-  row.Bar(0.6 * row.size_m(), kDropOffColor);
+  row.Frame(kDropOffColor);
   row.Text("drop-off");
 }
 

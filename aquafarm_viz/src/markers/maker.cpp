@@ -21,7 +21,7 @@ double LetterWidth(char letter) {
   const auto is_in = [letter](const char* letters) {
     return std::string(letters).find(letter) != std::string::npos;
   };
-  if (letter == ' ') return 0.62;
+  if (letter == ' ') return 0.28 * kScale;  // narrow_spaces.cpp
   if (is_in("ijl.,:;'|!()[]ft/I-r")) return 0.3 * kScale;
   if (is_in("mwMW%")) return 0.82 * kScale;
   return (letter >= 'A' && letter <= 'Z' ? 0.68 : 0.55) * kScale;

@@ -37,6 +37,7 @@ using visualization_msgs::MarkerArray;
 
 constexpr double kShapeNorthDeg = 0.0;   // outlines have their bow at north
 constexpr double kArrowNorthDeg = 90.0;  // rviz arrows point along x
+constexpr double kBetweenHeads = 2.5;    // of the arrowheads of a path [thing_m()]
 
 Marker Sea(const Maker& maker, const FarmSpec& spec) {
   Marker sea = maker.Make("sea", 0, Marker::CUBE, kSeaLayer, (spec.width - 1) / 2.0,
@@ -254,6 +255,7 @@ void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, con
   path.color =
       Color(state.ships.size() > 1 ? Mix(ShipColor(ship.id), kPaper, 0.35) : HealthColor(1.0));
   const double half_m = 0.06 * maker.thing_m();
+  double since_head_m = 0.0;
   for (std::size_t i = 1; i < count; ++i) {
     const cv::Point2d from = cv::Point2d(way->places[i - 1]) * maker.cell_m();
     const cv::Point2d to = cv::Point2d(way->places[i]) * maker.cell_m();
@@ -263,7 +265,15 @@ void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, con
     const cv::Point2d side(-along.y, along.x);
     const cv::Point2d a = from - along;
     const cv::Point2d b = to + along;
-    for (const cv::Point2d corner : {a - side, b - side, b + side, a - side, b + side, a + side}) {
+    std::vector<cv::Point2d> corners{a - side, b - side, b + side, a - side, b + side, a + side};
+    since_head_m += length;
+    if (since_head_m >= kBetweenHeads * maker.thing_m()) {  // an arrowhead in the middle
+      since_head_m = 0.0;
+      const cv::Point2d middle = 0.5 * (from + to);
+      corners.insert(corners.end(), {middle - 3.0 * along - 3.5 * side, middle + 5.0 * along,
+                                     middle - 3.0 * along + 3.5 * side});
+    }
+    for (const cv::Point2d& corner : corners) {
       path.points.push_back(Point(corner.x, corner.y));
       path.colors.push_back(path.color);
       path.colors.back().a = static_cast<float>(0.3 + 0.7 * double(i) / double(count - 1));

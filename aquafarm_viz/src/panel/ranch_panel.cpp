@@ -7,6 +7,7 @@
 #include <aquafarm_msgs/Reset.h>
 #include <aquafarm_msgs/SetDisaster.h>
 #include <aquafarm_msgs/SetPace.h>
+#include <rviz/visualization_manager.h>
 #include <std_msgs/Time.h>
 
 #include <QVBoxLayout>
@@ -20,6 +21,7 @@
 #include "aquafarm_viz/names.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "fit_screen.h"
+#include "narrow_spaces.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -82,6 +84,12 @@ RanchPanel::RanchPanel(QWidget* parent)
     widget_->Refresh();
   });
   timer_.start(kRefresh_ms);
+}
+
+void RanchPanel::onInitialize() {
+  rviz_ = vis_manager_;
+  connect(rviz_, &rviz::VisualizationManager::preUpdate, this,
+          [this] { NarrowSpaces(*rviz_->getSceneManager()); });
 }
 
 void RanchPanel::load(const rviz::Config& config) {

@@ -19,7 +19,7 @@ class RanchPanel : public rviz::Panel {
  public:
   explicit RanchPanel(QWidget* parent = nullptr);
 
-  void onInitialize() override { rviz_ = vis_manager_; }
+  void onInitialize() override;
   void load(const rviz::Config& config) override;
   void save(rviz::Config config) const override;
 

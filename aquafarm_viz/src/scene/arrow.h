@@ -10,4 +10,8 @@ namespace aquafarm_viz {
 void AddArrow(visualization_msgs::Marker& marker, double x, double y, int bearing_deg,
               double cell_m, double size = 1.0);
 
+/// Adds a frame inside the border of the cell (x, y) to a triangle list: 24 points. The symbol of a
+/// device or a port in the cell leaves its corners visible.
+void AddFrame(visualization_msgs::Marker& marker, double x, double y, double cell_m);
+
 }  // namespace aquafarm_viz

@@ -240,14 +240,17 @@ std::string RingText(double risk, std::int32_t wind_kt) {
   return wind_kt > 0 ? aquafarm::WindName(wind_kt) : "risk " + Number(risk, 0);
 }
 
-// Returns "F0", "F0 and F1" or "3 devices": those to which something applies.
+// Returns the devices to which something applies, by id: "F0", "F0 and F1" or "3 devices".
 std::string Names(const Outlook& outlook,
                   const std::function<bool(const DeviceOutlook& device)>& applies) {
   constexpr std::size_t kMaxNames = 2;
-  std::vector<std::string> names;
+  std::vector<std::int32_t> ids;
   for (const DeviceOutlook& one : outlook.devices) {
-    if (applies(one)) names.push_back(DeviceLabel(one.id));
+    if (applies(one)) ids.push_back(one.id);
   }
+  std::sort(ids.begin(), ids.end());
+  std::vector<std::string> names;
+  for (const std::int32_t id : ids) names.push_back(DeviceLabel(id));
   return names.size() > kMaxNames    ? std::to_string(names.size()) + " devices"
          : names.size() == kMaxNames ? names[0] + " and " + names[1]
                                      : names[0];

@@ -113,6 +113,22 @@ void AddArrow(Marker& marker, double x, double y, int bearing_deg, double cell_m
   }
 }
 
+void AddFrame(Marker& marker, double x, double y, double cell_m) {
+  constexpr double kOuter = 0.5;
+  constexpr double kInner = 0.4;
+  for (const auto& [east, north] : {std::pair(1.0, 0.0), {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}}) {
+    const auto corner = [&, east = east, north = north](double out, double along) {
+      return At((x + out * east - along * north) * cell_m,
+                (y + out * north + along * east) * cell_m);
+    };
+    for (const auto& point :
+         {corner(kInner, -kInner), corner(kOuter, -kOuter), corner(kOuter, kOuter),
+          corner(kInner, -kInner), corner(kOuter, kOuter), corner(kInner, kInner)}) {
+      marker.points.push_back(point);
+    }
+  }
+}
+
 Values ReadValues(const PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec) {
   Check(cloud);
   Values read;
@@ -155,18 +171,17 @@ visualization_msgs::MarkerArray MoveMarkers(const Values& values,
   const double size = every == 1 ? 1.0 : 0.75 * every;
   Marker arrows = MakeMarker("moves", 0, Marker::TRIANGLE_LIST, kPaper);
   arrows.scale.x = arrows.scale.y = arrows.scale.z = 1.0;
-  Marker pickups = MakeMarker("moves", 1, Marker::POINTS, kPickupColor);
-  Marker drop_offs = MakeMarker("moves", 2, Marker::POINTS, kDropOffColor);
-  for (Marker* dots : {&pickups, &drop_offs}) {
-    dots->scale.x = dots->scale.y = 0.4 * size * spec.cell_size_m;
+  Marker pickups = MakeMarker("moves", 1, Marker::TRIANGLE_LIST, kPickupColor);
+  Marker drop_offs = MakeMarker("moves", 2, Marker::TRIANGLE_LIST, kDropOffColor);
+  for (Marker* frames : {&pickups, &drop_offs}) {
+    frames->scale.x = frames->scale.y = frames->scale.z = 1.0;
   }
   for (const cv::Point cell : ShownActions(values, every)) {
     const std::uint8_t action = values.actions[values.Index(cell.x, cell.y)];
     if (const int bearing = MoveBearingDeg(action); bearing >= 0) {
       AddArrow(arrows, cell.x, cell.y, bearing, spec.cell_size_m, size);
     } else {
-      (action == 8 ? pickups : drop_offs)
-          .points.push_back(At(cell.x * spec.cell_size_m, cell.y * spec.cell_size_m));
+      AddFrame(action == 8 ? pickups : drop_offs, cell.x, cell.y, spec.cell_size_m);
     }
   }
   visualization_msgs::MarkerArray array;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""For catkin alone: where the Python packages lie."""
+"""Lists the Python packages for catkin. Do not run it directly."""
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Folder of the Python packages, for catkin. Wheels are built by pyproject.toml."""
+"""Lists the Python packages for catkin. Wheels are built from pyproject.toml."""
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 

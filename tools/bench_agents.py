@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures joint steps per second with one policy_node per ship (default 8), in lockstep via ROS.
+"""Measures joint steps per second with one policy_node per ship (default: 8), in lockstep via ROS.
 
-Prints a `metric value unit` line for RANDOM and one for a network, each the median of a few rounds.
-Needs a built workspace in the environment; starts a master if there is none."""
+Prints one line `metric value unit` for the policy random and one for a network. Each value is the
+median of several rounds. The setup.bash of a built workspace must be sourced. Starts a ROS master
+if none runs."""
 import argparse
 import pathlib
 import signal
@@ -23,13 +24,13 @@ LIMIT_S = 30.0
 
 
 def start(*command):
-    """Starts a program and discards its output."""
+    """Starts a program whose output is discarded; returns the process."""
     return subprocess.Popen([str(word) for word in command], stdout=subprocess.DEVNULL,
                             stderr=subprocess.DEVNULL)
 
 
 def program(package, name):
-    """Path of an executable of a package."""
+    """Returns the path of an executable of a package; ends this program if there is none."""
     found = roslib.packages.find_node(package, name)
     if not found:
         raise SystemExit(f"bench_agents: {package} has no {name}; run ./aquafarm build")
@@ -37,7 +38,7 @@ def program(package, name):
 
 
 def scenario_of(ships, folder):
-    """A copy of two_squads with the given number of ships."""
+    """Writes a copy of two_squads.yaml with `ships` ships into a folder; returns its path."""
     source = pathlib.Path(rospkg.RosPack().get_path("aquafarm_sim")) / "scenarios/two_squads.yaml"
     text = source.read_text(encoding="utf-8")
     changed = text.replace("ships: {count: 2,", f"ships: {{count: {ships},")
@@ -48,8 +49,9 @@ def scenario_of(ships, folder):
 
 
 def train_network(scenario, folder):
-    """A DQN of the usual size. Training does not affect its speed, but a well-trained policy would
-    end episodes within a round."""
+    """Trains a DQN of the default size for 6,000 steps; returns its run folder.
+
+    More training would not change the speed, but a good policy ends episodes within a round."""
     run = pathlib.Path(folder) / "dqn"
     subprocess.run([program("aquafarm_agents", "aquafarm_train"), scenario, "-a", "dqn", "-n",
                     "6000", "-o", "device=cpu", "--random", "0", "--evaluate", "0", "-d", run],
@@ -58,7 +60,10 @@ def train_network(scenario, folder):
 
 
 def measure(get_state, rounds, round_s):
-    """Joint steps per second of each round that stayed within an episode."""
+    """Returns the joint steps per second of `rounds` rounds of `round_s` seconds each.
+
+    Waits for step 100 first. Repeats a round in which an episode ends. Ends this program if either
+    takes longer than LIMIT_S."""
     rates = []
     end = time.monotonic() + LIMIT_S
     while get_state().state.step < 100:
@@ -78,7 +83,7 @@ def measure(get_state, rounds, round_s):
 
 
 def end_all(children):
-    """Interrupts programs, the newest first, and waits for them."""
+    """Interrupts processes, the newest first, and kills those that do not end within 10 s."""
     for child in reversed(children):
         child.send_signal(signal.SIGINT)
     for child in reversed(children):
@@ -90,7 +95,7 @@ def end_all(children):
 
 
 def measure_agents(name, policy, scenario, arguments):
-    """Starts a farm and its agents, measures their speed and ends them."""
+    """Starts a sim node and its agents, measures and prints their speed, and ends them."""
     space = f"/bench_agents_{name}_{socket.gethostname().replace('-', '_')}"
     children = []
     try:
@@ -109,7 +114,7 @@ def measure_agents(name, policy, scenario, arguments):
 
 
 def main():
-    """Measures RANDOM, then a network."""
+    """Measures the policy random, then a network."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--ships", type=int, default=8)
     parser.add_argument("--rounds", type=int, default=5)

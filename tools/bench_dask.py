@@ -4,10 +4,11 @@
 
 Usage: bench_dask.py [--programs FOLDER] [--repetitions N] [--jobs N] [-- BENCHMARK ARGUMENTS]
 
-The pool is the Python code of an earlier commit, taken from git; both call the same programs. They
-take turns, and the order changes with each repetition. The default arguments are those of the quick
-benchmark, which takes minutes. Prints one line per pair, then the ratio with n and its 95 % interval.
-Ends with code 1 if the tables differ.
+The pool of processes is Python code of an earlier commit, taken from git. Both versions call the
+same programs. Each repetition runs both, in alternating order. By default it runs the quick
+benchmark, which takes minutes. Prints one line per repetition, then the ratio Dask / pool with its
+95 % interval and the number of repetitions. Exit code 1: a benchmark failed, or the two versions
+wrote different tables.
 """
 import argparse
 import os
@@ -26,7 +27,7 @@ TABLE = "runs.csv"
 
 
 def earlier_code(folder, commit):
-    """Writes the Python package of a commit into a folder."""
+    """Writes the Python code of aquafarm_agents at a commit into a folder."""
     archive = subprocess.run(["git", "-C", ROOT, "archive", commit, f"{PACKAGE}/python",
                               f"{PACKAGE}/scripts"], stdout=subprocess.PIPE, check=False)
     if archive.returncode != 0:
@@ -35,7 +36,7 @@ def earlier_code(folder, commit):
 
 
 def seconds(code, programs, jobs, output, words):
-    """Runs a benchmark with the Python code of a folder; returns its wall time."""
+    """Runs a benchmark with the Python code of the folder `code`; returns its wall time [s]."""
     command = ["/usr/bin/python3", code / PACKAGE / "scripts/aquafarm_benchmark", *words, "--jobs",
                str(jobs), "--programs", programs, "--output", output]
     environment = {**os.environ, "PYTHONPATH": str(code / PACKAGE / "python"), "OMP_NUM_THREADS": "1"}

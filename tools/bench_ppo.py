@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures PPO of other libraries on the same farm and relates ours to it.
+"""Measures the training speed of other PPO implementations and prints the ratio of ours to each.
 
 usage: bench_ppo.py BENCH_OUTPUT, a file with the lines 'metric value unit' of bench_ppo
 
-References: PPO of Stable-Baselines3, MaskablePPO of sb3_contrib, and a PPO in one file of PyTorch
-(below). All run on one core, through aquafarm_gym, with the settings of bench_ppo: paper.yaml with
-81 features, 256 farms x 64 steps, minibatches of 2,048, two epochs, two hidden layers of 128.
+References: PPO of Stable-Baselines3, MaskablePPO of sb3_contrib, and the PPO in PyTorch of this
+file. Each runs on one core and steps the farms through aquafarm_gym, with the settings of the
+program bench_ppo: paper.yaml with 81 features, 256 farms x 64 steps per rollout, minibatches of
+2,048, two epochs, two hidden layers of 128 units.
 """
 import os
 import sys
@@ -20,7 +21,7 @@ from torch import nn
 
 FARMS, HORIZON, BATCH, EPOCHS, HIDDEN = 256, 64, 2048, 2, 128
 GAMMA, LAMBDA, CLIP, ENTROPY, RATE, NORM = 0.98, 0.95, 0.2, 0.01, 1e-3, 0.5
-ROLLOUTS = int(os.environ.get("AQUAFARM_BENCH_ROLLOUTS", "4"))  # measured, after one to warm up
+ROLLOUTS = int(os.environ.get("AQUAFARM_BENCH_ROLLOUTS", "4"))  # measured after one warm-up
 OURS = "ppo_training_steps"
 
 
@@ -29,8 +30,10 @@ def make_farms():
 
 
 def make_sb3_farms():
-    """The farms as Stable-Baselines3 takes environments: all of them in one call a step. The step
-    that starts an episode passes as a step of reward 0, which costs the references nothing."""
+    """Returns the farms as a VecEnv of Stable-Baselines3, which steps all of them in one call.
+
+    The first step after the end of an episode only resets the farm. Here it counts as a step with
+    reward 0, which does not slow down the references."""
     from stable_baselines3.common.vec_env import VecEnv
 
     class Farms(VecEnv):
@@ -110,7 +113,7 @@ class ActorCritic(nn.Module):
 
 
 class TorchPpo:
-    """The same algorithm as ours with automatic differentiation."""
+    """Implements the same algorithm as ours with PyTorch's automatic differentiation."""
 
     def __init__(self):
         torch.manual_seed(1)

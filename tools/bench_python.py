@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures how fast the environments of aquafarm_gym step, and prints 'metric value unit' lines.
 
-usage: bench_python.py [REPETITIONS]      (the Python of an environment that contains the package)
+usage: bench_python.py [REPETITIONS]      (with the Python of an environment that has aquafarm_gym)
 
-Each figure is the median of the repetitions, per second of processor time of one thread; the spread
-is the min and max. Actions are drawn before. Stable-Baselines3's part needs that package.
+Each figure is the median of the repetitions, per second of processor time; min and max follow in
+parentheses. The actions are drawn before the measurement. Figures that need PettingZoo or
+Stable-Baselines3 are left out if these packages are not installed.
 """
 import importlib.util
 import sys
@@ -18,7 +19,7 @@ STEPS = 200
 
 
 def measure(name, unit, count, repetitions, call):
-    """Prints the rate of `call`, which makes `count` steps."""
+    """Prints the rate of `call`, which makes `count` steps. Calls it once more to warm up."""
     call()
     rates = []
     for _ in range(repetitions):
@@ -30,7 +31,7 @@ def measure(name, unit, count, repetitions, call):
 
 
 def play(envs, actions):
-    """Returns a call that steps a vector environment with each row of actions."""
+    """Resets a vector environment; returns a function that steps it with each row of actions."""
     envs.reset(seed=1)
 
     def call():

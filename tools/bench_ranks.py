@@ -4,9 +4,11 @@
 
 Usage: bench_ranks.py AQUAFARM_TRAIN [--steps N] [--repetitions N]
 
-Runs take turns, so that other programs disturb them alike. Prints a table, then the bars (speed and
-share of exchanges of two ranks, with 95 % intervals, and whether the policies have equal bytes), then
-one line `name value unit` per figure. Ends with code 1 if the policies of different ranks differ.
+The trainings with one, two and four ranks alternate, so that other programs disturb all of them
+alike. Prints a table; then, for each batch size, whether two ranks meet the targets for speed and
+for the share of time in exchanges, with 95 % intervals; then one line `name value unit` per figure.
+Exit code 1: a training failed, or trainings with different numbers of ranks wrote different
+policies.
 """
 
 import argparse
@@ -30,13 +32,14 @@ ROLLOUT = 16384  # agent steps
 EPOCHS = 2
 BATCHES = (256, 2048)
 RANKS = (1, 2, 4)
-MIN_SPEED = 1.8  # bars of two ranks on two cores
-MAX_EXCHANGE = 0.08
+MIN_SPEED = 1.8  # target: speed of two ranks on two cores relative to one rank
+MAX_EXCHANGE = 0.08  # target: share of the training time of two ranks in exchanges
 
 
 def train(program, ranks, batch, steps, folder):
-    """Returns (seconds of training, fraction of them in exchanges, peak memory of a rank in MiB,
-    processor seconds of all ranks, start included)."""
+    """Runs one training on as many cores as ranks, if there are so many. Returns (training time
+    [s], fraction of it in exchanges, peak memory of the largest process [MiB], processor time of
+    all processes including their start [s]). Ends this program if the training fails."""
     cores = sorted(os.sched_getaffinity(0))[:ranks]
     command = ["taskset", "-c", ",".join(map(str, cores)), "/usr/bin/env", "OMP_NUM_THREADS=1",
                program, "paper", "-a", "ppo", "--ranks", str(ranks), "-n", str(steps),
@@ -57,7 +60,8 @@ def train(program, ranks, batch, steps, folder):
 
 
 def peak_memory(process):
-    """Waits for the process. Returns the largest resident memory of it and its ranks in MiB."""
+    """Waits for a process to end. Returns the max of the peak resident memories of the process and
+    of each of its children [MiB]."""
     peak = 0
     while True:
         try:
@@ -86,7 +90,8 @@ def policy(folder):
 
 
 def measure(program, steps, repetitions, batch):
-    """Returns by number of ranks the results of train(), one for each repetition."""
+    """Returns {number of ranks: list of the results of train(), one per repetition}. Ends this
+    program if the policy of several ranks differs from that of one rank."""
     results = {ranks: [] for ranks in RANKS}
     for _ in range(repetitions):
         with tempfile.TemporaryDirectory() as top:
@@ -99,7 +104,8 @@ def measure(program, steps, repetitions, batch):
 
 
 def bars(batch, one, two, cores):
-    """Returns a line: the bars of two ranks, met or missed. @param one, two results of train()"""
+    """Returns a line that compares two ranks with the targets. @param one, two the results of
+    train() with one and two ranks"""
     speed = paired_ratio([run[0] for run in one], [run[0] for run in two])
     share = mean([run[1] for run in two])
     speed_met = "met" if speed[0] >= MIN_SPEED else "missed"
@@ -125,7 +131,8 @@ def main():
         middle = {ranks: [statistics.median(column) for column in zip(*results[ranks])]
                   for ranks in RANKS}
         compute = middle[1][0] / arguments.steps
-        # One exchange of gradients per minibatch and doubling of ranks; the rest is negligible.
+        # The model has one exchange of gradients per minibatch and per doubling of the ranks. The
+        # time of other exchanges is negligible.
         per_step = EPOCHS / batch
         exchange = middle[2][0] * middle[2][1] / arguments.steps / per_step
         for ranks in RANKS:

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures the cost of recording every step (record:=all) in a single-ship training through ROS.
+"""Measures the cost of recording every episode (record:=all) of a single-ship training through ROS.
 
-Runs pairs of trainings, alternately without and with recording, so that both see the same machine
-load. Prints `metric value unit` lines: the median of each kind, and of the ratio within pairs.
-Needs a built workspace in the environment; starts its own master."""
+Runs pairs of trainings, one without and one with recording, in alternating order, so that both
+kinds see the same load of the machine. Prints lines `metric value unit`: the median times of each
+kind, and the median and quartiles of the slowdown within pairs. The setup.bash of a built workspace
+must be sourced. Starts its own ROS master."""
 import argparse
 import os
 import pathlib
@@ -19,11 +20,11 @@ import roslib.packages
 from campaigns.ros import free_port
 
 LIMIT_S = 300.0  # max duration of a training
-END_S = 60.0  # max time for a node to end, including its remaining output
+END_S = 60.0  # max time for a node to end and to write its remaining bags
 
 
 def program(package, name):
-    """Path of an executable of a package."""
+    """Returns the path of an executable of a package; ends this program if there is none."""
     found = roslib.packages.find_node(package, name)
     if not found:
         raise SystemExit(f"bench_recording: {package} has no {name}; run ./aquafarm build")
@@ -31,7 +32,8 @@ def program(package, name):
 
 
 def cpu_s(process, limit_s):
-    """Waits for the end of a process and returns its processor time [s]."""
+    """Waits for the end of a process and returns its processor time [s]. Ends this program if the
+    process takes longer than `limit_s`."""
     end = time.monotonic() + limit_s
     while True:
         pid, status, usage = os.wait4(process.pid, os.WNOHANG)
@@ -45,7 +47,7 @@ def cpu_s(process, limit_s):
 
 
 def end_all(processes):
-    """Kills the processes that still run."""
+    """Kills the processes that are still running."""
     for process in processes:
         if process.returncode is None:
             process.kill()
@@ -53,10 +55,10 @@ def end_all(processes):
 
 
 def train(folder, keep, steps, environment):
-    """Runs one training; returns wall time of its steps [s], processor time of farm and learner [s]
-    and the number of bags.
+    """Runs one training. Returns the wall time of its steps [s], the processor time of sim node and
+    learner [s], and the number of bags.
 
-    The processor time includes the output that the recorder writes after the training."""
+    The processor time includes the bags that the sim node writes after the training."""
     namespace = f"/bench_{folder.name}"
     common = {"env": environment, "stderr": subprocess.DEVNULL}
     log = folder / "train.log"

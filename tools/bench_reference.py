@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures a well-known reference and prints the ratio of a benchmark's figure to it.
+"""Measures the speed of a well-known reference and prints the ratio of a benchmark's figure to it.
 
 usage: bench_reference.py taxi | numpy | sb3 | torch BENCH_OUTPUT, a file with 'metric value unit'
-lines. Each uses one core. Except for Taxi the references have environments without computing cost,
-which is in their favour.
+lines. Each reference uses one core. Except for Taxi, a reference does not simulate an environment,
+which makes it faster than a real training.
 """
 import sys
 import time
@@ -36,8 +36,8 @@ def taxi_steps_per_second():
 
 
 def numpy_steps_per_second():
-    """Q-learning as a NumPy loop with precomputed states and rewards instead of an environment,
-    which is in its favour; returns training steps per second."""
+    """Runs Q-learning as a NumPy loop on precomputed states and rewards; returns training steps per
+    second. The missing environment makes it faster than a real training."""
     rng = numpy.random.default_rng(1)
     table = numpy.zeros((STATES, ACTIONS), numpy.float32)
     states = rng.integers(0, STATES, CHUNK + 1).tolist()
@@ -56,8 +56,8 @@ def numpy_steps_per_second():
 
 
 def sb3_updates_per_second():
-    """Stable-Baselines3's DQN with the hyperparameters of bench_deep, on 16 environments with a
-    constant observation; returns updates per second, with 4 farm steps per update."""
+    """Trains Stable-Baselines3's DQN with the hyperparameters of bench_deep on 16 environments with
+    a constant observation; returns updates per second, with four environment steps per update."""
     import gymnasium
     import torch
     from stable_baselines3 import DQN
@@ -87,9 +87,9 @@ def sb3_updates_per_second():
 
 
 def torch_updates_per_second():
-    """Only the updates of a recurrent Q-network in PyTorch: 32 sampled sequences of 16 steps after
-    a burn-in of 8, LSTM of 64 units between two layers, Double DQN, Huber loss, Adam; returns
-    updates per second."""
+    """Runs updates of a recurrent Q-network in PyTorch without an environment; returns updates per
+    second. Each update has 32 sampled sequences of 16 steps after a burn-in of 8 steps, an LSTM of
+    64 units between linear layers, Double DQN, Huber loss and Adam."""
     import torch
     from torch import nn
     torch.set_num_threads(1)
@@ -133,7 +133,7 @@ def torch_updates_per_second():
     return updates / (time.perf_counter() - begin)
 
 
-# Function, name, and the metric of this suite that is compared with it, for each reference.
+# For each reference: its function, its name, and the metric of aquafarm to compare with it.
 REFERENCES = {
     "taxi": (taxi_steps_per_second, "taxi_v3", "farm_steps_tabular"),
     "numpy": (numpy_steps_per_second, "numpy_q_learning", "q_learning_training_steps"),

@@ -54,7 +54,8 @@ int main(int argc, char** argv) {
       "Exit code 0: compared; 1: a state does not follow from its actions, or steps are missing;\n"
       "2: the bag or the policy cannot be used; 3: the bag could not be written.",
       "bag_policy");
-  app.add_option("bag", bag, "bag with spec and every state")->required();
+  app.add_option("bag", bag, "bag with the topic spec and every message of the topic state")
+      ->required();
   app.add_option("policy", policy,
                  "run folder, checkpoint file, FILE.py, FILE.zip (docs/python.md), random, "
                  "planner, clairvoyant, do_nothing or fetch_by_value")

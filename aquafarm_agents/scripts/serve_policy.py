@@ -7,21 +7,24 @@
 POLICY is FILE.py or FILE.py:FUNCTION with a function of this form, or FILE.zip, a model saved by
 Stable-Baselines3 or sb3-contrib:
 
-    OBSERVATION = "features"            # or "planes" or "index"; "features" if left out
+    OBSERVATION = "features"            # or "planes" or "index"; default: "features"
 
     def act(observations, masks):       # [n, …] and int8 [n, 10]; 1: legal
         return actions                  # [n], each in [0, 9]
 
-The function is called once per step with all farms and agents. It must not keep a state, because
-several threads of the program may play different farms at the same time.
+The function is called once per step with the observations of all n agents of all farms. It must not
+keep a state, because several threads of the program may play different farms at the same time.
 
-Messages on SOCKET, in the byte order of the machine. First this process writes one line: the kind
-of observations, or an error. Then for each request it reads
+SOCKET is the descriptor of a socket. Numbers have the byte order of the machine. First this process
+writes one line: the kind of observations, or an error. Then it reads, for each request,
 
     u32 n, shape[3] | n observations (float32, uint8 or uint32) | n masks (u16, bit a: action a)
 
-and answers u32 0 | n actions (u8), or u32 length | error of that length. It ends when the program
-closes the socket.
+where shape is that of an observation, and writes as response
+
+    u32 0 | n actions (u8)          or an error:   u32 length in bytes | text
+
+It ends when the program closes the socket.
 """
 import importlib.util
 import json
@@ -38,7 +41,7 @@ TYPES = {"features": np.float32, "planes": np.uint8, "index": np.uint32}
 ACTIONS = 10
 MAX_WORDS = 4000  # bytes of an error; the program reads at most 4,096
 
-# Modules of the policies in saved models, with the classes that load them.
+# Modules of the policy classes in saved models, with package and class that load such a model.
 MODELS = {
     "stable_baselines3.common.policies": ("stable_baselines3", "PPO"),  # also A2C
     "stable_baselines3.dqn.policies": ("stable_baselines3", "DQN"),
@@ -48,11 +51,12 @@ MODELS = {
 
 
 class BadPolicy(Exception):
-    """Wrong policy, described in one line."""
+    """The policy cannot be used. The message is one line."""
 
 
 def load_function(path, name):
-    """Returns the kind of observations and the function of a file."""
+    """Returns the kind of observations and the function `name` of a Python file. Raises
+    BadPolicy."""
     if not path.is_file():
         raise BadPolicy(f"got no file {path}, expected a Python file with {name}(observations, masks)")
     sys.path.insert(0, str(path.parent))
@@ -69,7 +73,8 @@ def load_function(path, name):
 
 
 def load_model(path):
-    """Returns the kind of observations and the function of a model of Stable-Baselines3."""
+    """Returns the kind of observations and the function of a model that Stable-Baselines3 saved.
+    Raises BadPolicy."""
     try:
         with zipfile.ZipFile(path) as archive:
             module = json.loads(archive.read("data"))["policy_class"]["__module__"]
@@ -111,7 +116,8 @@ def load(where):
 
 
 def choose(act, kind, shape, observations, masks):
-    """Returns the actions as bytes. Raises BadPolicy if the function returns anything else."""
+    """Calls the function and returns the actions as bytes. Raises BadPolicy if the function returns
+    anything other than n actions in [0, 9]."""
     shape = {"features": shape[:1], "planes": shape, "index": ()}[kind]
     observations = np.frombuffer(observations, TYPES[kind]).reshape(-1, *shape)
     if kind == "index":
@@ -128,7 +134,7 @@ def choose(act, kind, shape, observations, masks):
 
 
 def words_of(error):
-    """Returns an exception in one line of at most MAX_WORDS bytes."""
+    """Returns the message of an exception as one line of at most MAX_WORDS bytes."""
     text = str(error) if isinstance(error, BadPolicy) else f"{type(error).__name__}: {error}"
     words = " ".join(text.split()).encode(errors="replace")[:MAX_WORDS]
     return words.decode(errors="ignore").encode()  # without a part of a character at its end

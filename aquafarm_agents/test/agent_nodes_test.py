@@ -181,11 +181,12 @@ class AgentNodesTest(unittest.TestCase):
                          lambda array: told.append(array.status[0].message))
         words = self.die_and_join_again("_late_ships_hold:=true", "_barrier_timeout_s:=0.5",
                                         warning="no command from ship 1")
-        self.ranch.wait_for(lambda: "back: ship 1" in words(), "a word of its return")
+        self.ranch.wait_for(lambda: "returned: ship 1" in words(), "a word of its return")
         self.assertEqual(1, words().count(
-            "no command from ship 1 within ~barrier_timeout_s, 0.5 s; it holds until it returns"))
-        expected = {"not waiting until their next command: ship 1",
-                    "held without a command in time, and returned: ship 1"}
+            "no command from ship 1 within ~barrier_timeout_s, 0.5 s; it holds until its next "
+            "command"))
+        expected = {"late ships that the farm does not wait for until their next command: 1",
+                    "late ships that have returned: 1"}
         self.ranch.wait_for(lambda: expected.intersection(told), "a diagnosis of its absence")
 
     def test_one_that_dies_holds_its_ship_only_and_joins_again_when_paced(self):

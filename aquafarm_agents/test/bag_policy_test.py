@@ -197,7 +197,7 @@ class BagPolicyTest(unittest.TestCase):
                      "expected aquafarm_msgs/FarmSpec; ", 2, self.changed(
                          bag, lambda topic, message: PolicyChoice() if topic.endswith("/spec")
                          else message), policy)
-        self.refused("no state follows its spec", 2, self.changed(
+        self.refused("got no state of an episode with a spec", 2, self.changed(
             bag, lambda topic, message: None if topic.endswith("/state") else message), policy)
         self.refused("no ranch /other/, there is: /aquafarm/", 2, bag, policy, "--ns", "/other")
         self.refused("is the input bag, expected another file", 2, bag, policy, "-o", bag)

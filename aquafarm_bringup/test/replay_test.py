@@ -28,8 +28,8 @@ SCRIPTS = pathlib.Path(__file__).resolve().parent.parent / "scripts"
 SCRIPT = SCRIPTS.parent.parent / "aquafarm"
 LIMIT_S = 60
 DEAD_DISPLAY = ":65432"
-DEAD = f"cannot connect to display {DEAD_DISPLAY}, or not to us"
-WAY_OUT = (": give headless:=true or rviz:=false and look at the topic image, or draw a bag with "
+DEAD = f"cannot connect to display {DEAD_DISPLAY}"
+WAY_OUT = (": set headless:=true or rviz:=false and view the topic image, or draw a bag with "
            "'./aquafarm render'")
 
 

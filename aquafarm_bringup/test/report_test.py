@@ -451,7 +451,7 @@ class ReportTest(unittest.TestCase):
                          (code, words))
         code, words = run("aquafarm_sim", "episode_bag", own, other, "-o", bag)
         self.assertEqual(2, code)
-        self.assertIn(f"episode_bag: {other}: no route: ", words)
+        self.assertIn(f"episode_bag: {other}: is not a route: ", words)
         code, words = run("aquafarm_sim", "episode_bag", own, route)
         self.assertEqual(2, code)
         self.assertIn("--output is required", words)

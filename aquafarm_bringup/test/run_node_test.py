@@ -59,7 +59,7 @@ class RunNodeTest(unittest.TestCase):
         done = self.run_node("--restarts=1", "sh", "-c",
                              f"test -e {mark} && exit 5; touch {mark}; kill -9 $$")
         self.assertEqual(5, done.returncode)
-        self.assertIn("starting it again, 0 more possible", done.stdout)
+        self.assertIn("starting it again; restarts left: 0", done.stdout)
 
     def test_an_interrupted_server_leaves_no_exit_code(self):
         process = subprocess.Popen([str(RUN_NODE), f"--exit-file={self.exit_file}", "--restarts=3",

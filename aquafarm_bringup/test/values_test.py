@@ -165,7 +165,7 @@ class ValuesTest(unittest.TestCase):
     def test_another_file_is_refused(self):
         path = pathlib.Path(self.folder.name) / "x.json"
         path.write_text("{}", encoding="utf-8")
-        with self.assertRaisesRegex(ValuesError, "x.json: got no values of aquafarm_evaluate"):
+        with self.assertRaisesRegex(ValuesError, "x.json: not a file of aquafarm_evaluate"):
             read(path)
         path = written(self.folder.name, slope(), {"warmth": slope(5, 5)})
         with self.assertRaisesRegex(ValuesError, "maps of different sizes"):

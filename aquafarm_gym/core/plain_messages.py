@@ -3,8 +3,9 @@
 
     plain_messages.py MSG_FOLDER OUTPUT_FOLDER
 
-The structs have the names, fields and constants that ROS generates, so that code which only reads
-and fills messages compiles with either. Types of other packages are declared, but not defined.
+The structs have the names, fields and constants that ROS generates. Code that only reads and fills
+messages therefore compiles with both kinds of structs. Of the types of other packages, only
+std_msgs/Header is defined; the others are declared.
 """
 import pathlib
 import re
@@ -54,7 +55,7 @@ LINE = re.compile(r"(?P<type>[\w/]+)(?P<array>\[\d*\])?\s+(?P<name>\w+)\s*(=\s*(
 
 
 def struct_of(name, text):
-    """Returns the C++ header of a message."""
+    """Returns the C++ header of a message. Exits with an error if a line cannot be parsed."""
     includes, constants, fields = {"ros/time.h"}, [], []
     for number, line in enumerate(text.splitlines(), 1):
         line = line.split("#")[0].strip()
@@ -94,7 +95,7 @@ def main():
     for path, text in headers.items():
         header = target / f"{path}.h"
         header.parent.mkdir(parents=True, exist_ok=True)
-        if not header.is_file() or header.read_text("utf-8") != text:  # keeps the time of others
+        if not header.is_file() or header.read_text("utf-8") != text:  # keeps dates
             header.write_text(text, "utf-8")
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A learner of Stable-Baselines3 as a row of the benchmark:
+"""Adds a learner of Stable-Baselines3 to the benchmark:
 
     ./aquafarm benchmark learner:="sb3_ppo=python3 benchmark_learner.py"
 """
@@ -12,14 +12,15 @@ from sb3_contrib import MaskablePPO
 
 
 class Learner:
-    """MaskablePPO with scaled rewards; 10^9 steps, because the environment ends the training."""
+    """MaskablePPO for unscaled rewards, which are in the tens, so that the entropy bonus is
+    large."""
 
     def __init__(self, env, seed):
         self.model = MaskablePPO("MlpPolicy", env, seed=seed, n_steps=512, learning_rate=1e-3,
                                  gamma=0.97, ent_coef=0.5)
 
     def train(self):
-        """Plays until the benchmark's episodes are over."""
+        """Learns until the environment ends the training by an exception."""
         self.model.learn(10**9)
 
     def act(self, observation, mask):

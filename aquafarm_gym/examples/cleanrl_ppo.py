@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""PPO with an action mask in one file, in the style of CleanRL (Huang et al. 2022): copy and change.
+"""PPO with an action mask in one file, in the style of CleanRL (Huang et al. 2022): copy and
+change.
 
     python3 cleanrl_ppo.py [--scenario paper] [--steps 1500000] [--farms 64] [--seed 1]
 
 after: pip install './aquafarm_gym[sb3]' (torch). The farms step together in C++ and write into the
-arrays that torch reads; nothing is copied between them.
+arrays that torch reads, without copies.
 """
 import argparse
 import time
@@ -23,7 +24,8 @@ GAMMA, LAMBDA, CLIP, ENTROPY, RATE, REWARD_SCALE = 0.98, 0.95, 0.2, 0.02, 1e-3, 
 
 
 class Farms:
-    """N farms of one ship as torch tensors. A farm that is over starts its next episode at once."""
+    """N farms with one ship each, as torch tensors. If an episode ends, the next one starts in the
+    same step."""
 
     def __init__(self, scenario, count):
         self.batch = core.FarmBatch(aquafarm_gym.find_scenario(scenario), count,
@@ -39,8 +41,9 @@ class Farms:
         return torch.from_numpy(action_mask(self.legal).astype(bool))
 
     def step(self, actions):
-        """Returns (rewards [N], features after the step [N, F], last [N]: the episode is over,
-        terminated [N])."""
+        """Takes one step. Returns (rewards [N], features after the step [N, F], last [N],
+        terminated [N]). last: whether the episode has ended. terminated: whether it ended before
+        the step limit."""
         self.batch.step(actions.numpy().astype(np.uint8)[:, None])
         rewards, after = torch.from_numpy(self.rewards.copy()), self.features.clone()
         last = self.end_reasons != 0
@@ -83,8 +86,9 @@ def orthogonal(layer, gain):
 
 
 def advantages(rewards, values, lasts, after):
-    """Generalized advantage estimation (Schulman et al. 2016), all [T, N]. `after` is V of the state
-    after each step; 0 if it is terminal, but not if the step limit ended the episode."""
+    """Returns advantages by generalized advantage estimation (Schulman et al. 2016). All arrays are
+    [T, N]. after: V of the state after each step; 0 if the state is terminal, but not if the step
+    limit ended the episode."""
     result, running = torch.zeros_like(rewards), 0.0
     for t in reversed(range(len(rewards))):
         delta = rewards[t] + GAMMA * after[t] - values[t]

@@ -4,8 +4,8 @@
 
     python3 jax_policy_gradient.py [--scenario paper] [--updates 300] [--farms 256]
 
-after: pip install ./aquafarm_gym jax optax. jax.experimental.io_callback calls the farms, in order,
-from a jitted lax.scan: one call per joint step of all farms.
+after: pip install ./aquafarm_gym jax optax. A jitted lax.scan steps the farms through
+jax.experimental.io_callback, with one call for each step of all farms.
 """
 import argparse
 import functools
@@ -23,7 +23,7 @@ HORIZON, GAMMA, LAMBDA, ENTROPY, REWARD_SCALE = 32, 0.98, 0.95, 0.02, 0.05
 
 
 class Farms:
-    """N farms of one ship whose step is a function of JAX arrays."""
+    """N farms with one ship each. Their step is a function of JAX arrays."""
 
     def __init__(self, scenario, count):
         self.batch = core.FarmBatch(aquafarm_gym.find_scenario(scenario), count,
@@ -74,7 +74,7 @@ def apply(weights, x):
 
 
 def log_probs(weights, features, mask):
-    """Returns the logarithms of the probabilities; illegal actions have probability 0."""
+    """Returns the log probabilities of the actions; illegal actions have probability 0."""
     return jax.nn.log_softmax(jnp.where(mask, 0.1 * apply(weights["actor"], features), -1e9))
 
 
@@ -95,11 +95,12 @@ def rollout(farms, weights, features, mask, key):
 
 
 def loss_of(weights, played, last_features):
-    """The loss of advantage actor-critic (A2C) with generalized advantage estimation."""
+    """Returns the loss of advantage actor-critic (A2C) with generalized advantage estimation."""
     features, masks, actions, rewards, over = played
     values = value(weights, features)
     after = jnp.concatenate([values[1:], value(weights, last_features)[None]])
-    # An end by the step limit counts as an end here; PPO in cleanrl_ppo.py treats it exactly.
+    # Here a truncation at the step limit counts as a termination. cleanrl_ppo.py distinguishes
+    # them.
     deltas = rewards + GAMMA * jnp.where(over, 0.0, after) - values
 
     def back(running, row):

@@ -34,8 +34,8 @@ class DecayEntropy(BaseCallback):
 
 
 def make_model(envs, seed, rollout=16384, batch=512):
-    """Returns the learner, with the options of the suite's own PPO (docs/algorithms.md). rollout: steps
-    of all farms between two updates."""
+    """Returns the learner, with the options of this suite's PPO (docs/algorithms.md). rollout:
+    number of steps between two updates, summed over all environments."""
     return MaskablePPO("MlpPolicy", envs, seed=seed, n_steps=rollout // envs.num_envs,
                        batch_size=batch, n_epochs=2, gamma=GAMMA,
                        learning_rate=lambda remaining: 1e-3 * remaining,

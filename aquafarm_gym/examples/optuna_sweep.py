@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Searches hyperparameters of MaskablePPO with Optuna; bad trials end early.
+"""Searches hyperparameters of MaskablePPO with Optuna, which ends bad trials early.
 
     python3 optuna_sweep.py [--scenario paper] [--trials 20] [--steps 200000] [--storage FILE.db]
 
-after: pip install './aquafarm_gym[sb3]' optuna. With --storage several processes share one study.
+after: pip install './aquafarm_gym[sb3]' optuna. With --storage, several processes can share one
+study.
 """
 import argparse
 

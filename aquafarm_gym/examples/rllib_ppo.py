@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trains PPO of RLlib with an action mask, on farms in this process or in several processes.
+"""Trains PPO of RLlib with an action mask. The farms run in this process or in worker processes.
 
     python3 rllib_ppo.py [--scenario paper] [--steps 1000000] [--workers 0] [--seed 1]
 
-after: pip install ./aquafarm_gym 'ray[rllib]' torch. The wrapper ActionMaskInObservation puts the mask
-into the observation; the module below excludes the actions that it forbids.
+after: pip install ./aquafarm_gym 'ray[rllib]' torch. The wrapper ActionMaskInObservation adds the
+mask to the observation. MaskedModule gives forbidden actions the probability 0.
 """
 import argparse
 import time
@@ -71,8 +71,8 @@ def evaluate(module, scenario, episodes):
 
 
 def main(scenario="paper", steps=1_000_000, seed=1, workers=0, farms=16, episodes=50):
-    """Trains and evaluates; returns (mean return, success rate). workers: processes with farms of
-    their own; 0: the farms step in this process."""
+    """Trains and evaluates; returns (mean return, success rate). workers: number of processes that
+    step farms; 0 if the farms step in this process."""
     register_env("farm", make_env)
     config = (PPOConfig().environment("farm", env_config={"scenario": scenario})
               .env_runners(num_env_runners=workers, num_envs_per_env_runner=farms)

@@ -4,9 +4,10 @@
 
     python3 shared_policy.py [--scenario two_squads] [--steps 2000000] [--seed 1]
 
-after: pip install './aquafarm_gym[sb3,pettingzoo]'. In training each ship of each farm is an
-environment of MaskablePPO, as with SuperSuit's vector environments, but stepped in C++ and with
-action masks. Parameter sharing: Gupta et al. 2017, Terry et al. 2020.
+after: pip install './aquafarm_gym[sb3,pettingzoo]'. In training, each ship of each farm is a
+separate environment for MaskablePPO, as with the vector environments of SuperSuit. Here, however,
+the farms step in C++ and provide action masks. Gupta et al. 2017 and Terry et al. 2020 describe
+such parameter sharing.
 """
 import argparse
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trains Stable-Baselines3's PPO to retrieve one device, and evaluates the greedy policy.
+"""Trains PPO of Stable-Baselines3 to retrieve one device, then evaluates the greedy policy.
 
     python3 train_sb3.py [STEPS]       after: pip install gymnasium stable-baselines3
 """
@@ -14,7 +14,7 @@ from stable_baselines3.common.monitor import Monitor
 
 STEPS = 15000
 
-# A small ranch near a red tide: half a minute of training is enough.
+# A small ranch near a red tide, for which half a minute of training is enough.
 SCENARIO = """
 name: small
 grid: {width: 4, height: 4, cell_size_m: 1000}

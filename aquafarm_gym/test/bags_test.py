@@ -101,8 +101,8 @@ class BagsTest(unittest.TestCase):
         sys.argv = ["bags", "aquafarm/tiny-v1", BAG, "--observation", "index"]
         with contextlib.redirect_stdout(io.StringIO()) as said:
             self.assertEqual(bags.main(), 0)
-        self.assertEqual(said.getvalue(), "aquafarm/tiny-v1: 1 episodes, 8 steps; every reward was "
-                         "repeated\n")
+        self.assertEqual(said.getvalue(), "aquafarm/tiny-v1: 1 episodes, 8 steps; the replay "
+                         "reproduced every reward\n")
 
 
 if __name__ == "__main__":

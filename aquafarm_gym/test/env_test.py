@@ -264,6 +264,24 @@ view: {mode: partial, monitoring_radius: 4, kinds: true}
                 np.testing.assert_array_equal(seen[1, k], observation)
                 self.assertEqual(infos["agent_rewards"][1, k], alone_rewards[agent])
 
+    def test_the_rewards_of_a_team_add_up_to_the_return_of_the_episode(self):
+        for sharing in ("individual", "team"):
+            text = pathlib.Path(REEF).read_text("utf-8").replace("step_limit: 400", "step_limit: 60")
+            text += f"rewards: {{sharing: {sharing}}}\n"
+            envs = TeamVectorEnv(2, core.Scenario.parse(text, sharing))
+            self.assertEqual(envs.farms.has_team_rewards, sharing == "team")
+            envs.reset(seed=6)
+            returns, rng = np.zeros(2), np.random.default_rng(1)
+            for _ in range(60):
+                _, rewards, terminated, truncated, _ = envs.step(rng.integers(0, 10, (2, 3)))
+                returns += rewards
+                if (terminated | truncated).any():
+                    break
+            ended = np.flatnonzero(terminated | truncated)
+            self.assertGreater(len(ended), 0)
+            for farm, one in zip(ended, envs.farms.finished()):
+                self.assertAlmostEqual(returns[farm], one["episode_return"], places=2)
+
     def test_everything_that_star_imports_is_there(self):
         names = {}
         exec("from aquafarm_gym import *", names)  # as a user without ROS does

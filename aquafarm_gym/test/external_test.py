@@ -25,6 +25,16 @@ if not WHY_NOT:
     from aquafarm_gym import external
 
 
+# Nothing in it is drawn: all episodes start alike.
+STILL = """
+name: still
+grid: {width: 7, height: 6}
+time: {step_limit: 50}
+layout: {mode: fixed, seed: 1, ports: {count: 1}, devices: {count: 1}}
+ships: {count: 1}
+"""
+
+
 class Sample:
     """Explores with random actions, and takes the last legal action when it is evaluated."""
 
@@ -106,6 +116,19 @@ class ExternalTest(unittest.TestCase):
         self.assertEqual([one["episode_return"] for one in records],
                          [-462, -814, -463, -651, -587])
         self.assertEqual(starts, 5)
+
+    def test_equal_starts_count_as_one_distinct_episode(self):
+        scenario = external.with_limit(core.Scenario.parse(STILL, "still"), 4)
+        learner = Sample(aquafarm_gym.FarmEnv(scenario), 1)
+        _, starts = external.evaluate(learner, scenario, "features", 5, 3)
+        self.assertEqual(starts, 1)
+
+    def test_the_health_of_deliveries_is_a_mean_over_episodes_with_one(self):
+        other = {name: 1.0 for name in ("episode_return", "steps", "success", "crashes",
+                                        "steps_in_disaster", "energy", "distance")}
+        records = [{**other, "delivered": count, "delivered_health": health}
+                   for count, health in ((1, 0.5), (3, 1.0), (0, 0.0))]
+        self.assertAlmostEqual(external.summary_of(records)["delivered_health"], 0.75)
 
     def test_a_learner_that_stops_early_has_no_row_in_the_benchmark(self):
         code, said = self.learn("paper", "--episodes", "3", "--max-steps", "50", make=Lazy)

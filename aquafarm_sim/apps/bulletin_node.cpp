@@ -106,7 +106,7 @@ class BulletinNode {
     const std::string name = storm.name.empty() ? storm.id : storm.name;
     if (storm.fixes.front().time < 0) {
       throw aquafarm::InputError(path + ": " + name + ": got positions before 1970, expected " +
-                                 "later ones: ROS time begins in 1970");
+                                 "later ones, because ROS time begins in 1970");
     }
     const auto call = std::make_shared<Call>();
     call->message.request.farm = -1;
@@ -125,7 +125,7 @@ class BulletinNode {
       answer.wait_for(kEndLimit);
     }
     if (answer.wait_for(std::chrono::seconds(0)) != std::future_status::ready || !answer.get()) {
-      throw NoAnswer(path + ": the ranch did not answer; it is sent again");
+      throw NoAnswer(path + ": the ranch did not answer; the file is sent again");
     }
     const auto& response = call->message.response;
     if (!response.ok) throw aquafarm::InputError(path + ": refused: " + response.message);
@@ -143,8 +143,8 @@ class BulletinNode {
             .held;
     if (held > 0) {
       ROS_WARN(
-          "%s: stretches of the storm's track without a known wind at both ends: %d; the larger "
-          "radii of both ends hold there; send a bulletin with a wind at each point",
+          "%s: stretches of the storm's track in which the wind cannot be interpolated: %d; they "
+          "have the larger radii of both ends; send a bulletin with a wind at each point",
           path.c_str(), held);
     }
     const std::string id = std::to_string(params_.id);

@@ -31,7 +31,7 @@ void Write(const std::string& scenario_path, const std::string& route_path,
     log.episode = route.at("episode");
     log.actions = route.at("actions").get<std::vector<std::uint8_t>>();
   } catch (const nlohmann::json::exception& error) {
-    throw InputError(route_path + ": no route: " + error.what());
+    throw InputError(route_path + ": is not a route: " + error.what());
   }
   if (hash != scenario->hash) {
     throw InputError(route_path + ": belongs to another scenario than " + scenario_path);

@@ -15,7 +15,8 @@ int main(int argc, char** argv) {
       "Simulates recorded episodes again from seed and actions and compares every step.\n"
       "Exit code 0: identical; 1: a bag differs; 2: a bag cannot be checked.",
       "verify_bag");
-  app.add_option("bags", bags, "bags with spec and every state")->required();
+  app.add_option("bags", bags, "bags with the topic spec and every message of the topic state")
+      ->required();
   app.add_option("--ns", ns, "namespace of the ranch (default: the only one in the bag)");
   try {
     app.parse(argc, argv);

@@ -422,7 +422,7 @@ TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
   EXPECT_NE(std::string::npos, Refusal(bag, "/lake").find("no ranch /lake/, there is: /ranch/"));
   EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
                                  return spec != nullptr;
-                               })).find("no state follows its spec"));
+                               })).find("got no state of an episode with a spec"));
 }
 
 TEST_F(EpisodeBag, AnEpisodeWithoutItsEndSaysSo) {

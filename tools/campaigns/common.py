@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What all campaigns share: limits, counts, programs and processes."""
+"""Common code of the campaigns: limits, counts, programs and processes."""
 import collections
 import os
 import pathlib
@@ -11,7 +11,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENARIOS = ROOT / "aquafarm_sim" / "scenarios"
-MOST_SHOWN = 20  # failures that are printed whole
+MOST_SHOWN = 20  # max number of failures that are printed; further ones are only counted
 
 
 class NotBuilt(Exception):
@@ -23,7 +23,7 @@ class WrongKind(Exception):
 
 
 class Campaign:
-    """One run of a campaign: its limits, its random numbers and its counts."""
+    """Limits, random numbers and counts of one run of a campaign."""
 
     def __init__(self, name, seconds, count, seed, workspace, only=(), stop_s=5.0,
                  kills=0):
@@ -44,22 +44,22 @@ class Campaign:
         return time.monotonic() - self._begin
 
     def more(self, done):
-        """Whether to begin try number `done`."""
+        """Returns whether to start another try after `done` tries."""
         return done < self.count if self.count else self.elapsed() < self.seconds
 
     def kinds(self, all_kinds):
-        """The kinds of tries to make: those of --only, or all. @raises WrongKind"""
+        """Returns the kinds of tries to make: those of --only, or all. @raises WrongKind"""
         for kind in self.only:
             if kind not in all_kinds:
                 raise WrongKind(f"--only: got '{kind}', expected one of: {', '.join(all_kinds)}")
         return self.only or list(all_kinds)
 
     def attempt(self, what, number=1):
-        """Counts tries of a kind."""
+        """Adds `number` to the count of `what`."""
         self.tried[what] += number
 
     def fail(self, what):
-        """Records a failure; the text must say how to repeat it."""
+        """Records a failure. The text must contain what is needed to repeat it, such as a seed."""
         self.failures.append(what)
         if len(self.failures) <= MOST_SHOWN:
             print(f"FAILED {what}", file=sys.stderr, flush=True)
@@ -71,7 +71,7 @@ class Campaign:
         return holds
 
     def program(self, name):
-        """Path of a built program: of a core, or of the workspace."""
+        """Returns the path of a program built by a core or by the workspace. @raises NotBuilt"""
         for place in ("core/aquafarm_sim", "core/aquafarm_agents", "devel/lib/aquafarm_sim",
                       "devel/lib/aquafarm_agents"):
             path = self.workspace / place / name
@@ -81,7 +81,7 @@ class Campaign:
                        "or ./aquafarm build, or give --workspace")
 
     def report(self):
-        """Prints what was tried and what failed; returns the exit code."""
+        """Prints the counts and the number of failures; returns the exit code."""
         for what, number in sorted(self.tried.items()):
             print(f"{self.name}: {number:,} {what}")
         hidden = len(self.failures) - MOST_SHOWN
@@ -95,7 +95,8 @@ class Campaign:
 
 
 def execute(*command, seconds=60, **options):
-    """Runs a command; returns (exit code, output), with code None after the time limit."""
+    """Runs a command for at most `seconds`; returns (exit code, output). The exit code is None if
+    the time limit ended the command, and -N if signal N did."""
     try:
         done = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=seconds,
@@ -106,7 +107,7 @@ def execute(*command, seconds=60, **options):
 
 
 def left_over(folder):
-    """Temporary files in a folder and below."""
+    """Returns the paths of the temporary files in a folder and its subfolders."""
     return sorted(str(path) for path in pathlib.Path(folder).rglob("*")
                   if path.name.endswith((".tmp", ".active", ".part", ".partial", ".swp")))
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two farms on one master are trained at the same time, with 200 subscribers and one that never
-reads. The results must equal those of a training alone, and the sim node's memory must stay flat."""
+"""Runs two trainings at the same time, each with its own sim node on one master. One sim node has 200
+subscribers that read and one that never reads. The results must equal those of a training that runs
+alone, and the memory of that sim node must grow by less than 64 MiB."""
 import contextlib
 import pathlib
 import select
@@ -15,12 +16,13 @@ from campaigns import ros
 SUBSCRIBERS = 200
 STEPS = 16_000
 LIMIT_S = 1200
-MOST_GROWTH = 64 << 20  # of the sim node with all its subscribers: each has a queue of messages
+# Max growth of the memory of the sim node with the subscribers, each of which has a message queue.
+MOST_GROWTH = 64 << 20
 TYPE = "aquafarm_msgs/FarmState"
 
 
 class Subscribers:
-    """Connections to the topic `state` of a sim node; the first one never reads."""
+    """201 connections to the topic `state` of a sim node. The first one never reads."""
 
     def __init__(self, ranch, namespace, checksum):
         self.bytes_read = 0
@@ -55,7 +57,7 @@ class Subscribers:
 
 
 def alone(campaign, folder):
-    """Results of a training with nothing else on its master."""
+    """Runs one training alone on its master; returns its results, or None after a failure."""
     folder.mkdir()
     with ros.Ros(campaign, folder) as ranch:
         ranch.sim("one")
@@ -65,7 +67,7 @@ def alone(campaign, folder):
 
 
 def together(campaign, folder, expected):
-    """Two trainings at the same time, watched by many."""
+    """Runs two trainings at the same time with the subscribers, and checks results and memory."""
     folder.mkdir()
     with ros.Ros(campaign, folder) as ranch:
         sims = {name: ranch.sim(name, "_publish_hz:=50") for name in ("one", "two")}
@@ -90,7 +92,7 @@ def together(campaign, folder, expected):
 
 
 def run(campaign):
-    """Count is the number of pairs of trainings."""
+    """Runs pairs of trainings; campaign.count is the number of pairs."""
     with tempfile.TemporaryDirectory(prefix="aquafarm_concurrency_") as place:
         place = pathlib.Path(place)
         expected = alone(campaign, place / "alone")

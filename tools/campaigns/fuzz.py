@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gives readers mutated and huge files. The fuzz targets of the cores read mutated samples (libFuzzer
-if they were built with AQUAFARM_FUZZ, else fuzz/mutate.cpp); the programs read huge ones."""
+"""Gives mutated and huge files to readers. The fuzz targets read mutated samples, which libFuzzer
+makes if the targets were built with AQUAFARM_FUZZ, else fuzz/mutate.cpp. The program
+aquafarm_scenario reads huge files."""
 import json
 import os
 import pathlib
@@ -15,22 +16,23 @@ TARGETS = ("chart", "hazard_file", "map_yaml", "preset", "scenario", "sea", "che
            "bag", "request")
 ROUND_S = 30        # libFuzzer's time for each target in a round
 CHANGES = 20_000    # mutations of a target in a round, without libFuzzer
-SLOW = {"bag": 500, "checkpoint": 500, "request": 2_000}  # mutations of targets that are slow
-LENGTH = 1024       # longest input that libFuzzer makes; the longer, the fewer
+SLOW = {"bag": 500, "checkpoint": 500, "request": 2_000}  # the same for slow targets
+LENGTH = 1024       # max input size of libFuzzer [bytes]; longer inputs take more time
 LENGTHS = {"preset": 96, "map_yaml": 256, "fleet": 400, "request": 400, "bag": 60_000,
            "checkpoint": 16_384}
-# Weights of inputs by rare features take half of the time of a fast target. Undefined behaviour ends a
-# target as a bad address does. Short stacks and a small quarantine are faster.
+# Without -entropic=0, libFuzzer weights inputs by rare features, which takes half of the time of a
+# fast target. halt_on_error makes undefined behaviour end a target, as an invalid address does. Short
+# stack traces and a small quarantine save time.
 QUICK = ("-entropic=0", "-reduce_inputs=0")
 SANITIZERS = {"UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
               "ASAN_OPTIONS": "malloc_context_size=2:quarantine_size_mb=8"}
-MOST_S = 20         # a program may read a file for so long [s of a processor]
-MOST_MEMORY = 1 << 30
+MOST_S = 20         # max processor time to read one file [s]
+MOST_MEMORY = 1 << 30  # [bytes]
 DATA = common.ROOT / "aquafarm_sim" / "core" / "test"
 
 
 def corpus(name):
-    """Folders with samples for a target, as in the CMakeLists.txt of its core."""
+    """Returns the folders of samples for a target, the same as in its CMakeLists.txt."""
     if name == "checkpoint":
         old = common.ROOT / "aquafarm_agents" / "core" / "test" / "data" / "version_0_1_0"
         return [*(old / run for run in ("dqn", "lstm_dqn", "maddpg", "q_learning", "sarsa")),
@@ -45,8 +47,9 @@ def corpus(name):
 
 
 def run_target(campaign, name, seed, place):
-    """Runs a target for one round and counts the inputs. Rounds share the folder `place`, in which
-    libFuzzer keeps inputs that reach further."""
+    """Runs a target for one round and counts the inputs. After a failure, copies the inputs that
+    caused it to the working directory. Rounds share the folder `place`, in which libFuzzer keeps
+    inputs that reach new code."""
     program = campaign.program(f"fuzz_{name}")
     grown = place / name
     grown.mkdir(exist_ok=True)
@@ -63,7 +66,7 @@ def run_target(campaign, name, seed, place):
                      if inputs else 0)
     if not campaign.check(code == 0, f"fuzz_{name}: seed {seed}: exit code {code}: "
                           f"{output[-600:]}"):
-        # mutate.cpp leaves no file; targets that write their input to a file leave it there.
+        # mutate.cpp does not write a file. Targets that read a file leave their input in /dev/shm.
         left = pathlib.Path("/dev/shm").glob(f"fuzz_{name}.*")
         kinds = ("crash-*", "leak-*", "oom-*", "timeout-*")
         for found in [*(path for kind in kinds for path in place.glob(kind)), *left]:
@@ -74,13 +77,13 @@ def run_target(campaign, name, seed, place):
 
 
 def bulletin(points):
-    """A bulletin with a storm of so many points, of which each but the first is refused."""
+    """Returns a bulletin with a storm of `points` points, which all have the same, invalid time."""
     point = json.dumps({"time": "2021-07-25T14:00:00", "lat": 30, "lng": 122, "pressure": 50})
     return ('[{"tfbh": "202106", "points": [' + ",\n".join([point] * points) + "]}]").encode()
 
 
 def huge_files():
-    """Yields (name, arguments, bytes) of files that once took minutes or gigabytes."""
+    """Yields (name, arguments, bytes) of files that earlier versions read in minutes or gigabytes."""
     yield "bulletin.json", ["--track", "--center", "30,122"], bulletin(150_000_000 // 75)
     yield "line.json", ["--track", "--center", "30,122"], b"[" + b" " * 500_000_000 + b"]"
     yield "deep.json", ["--chart", "--center", "30,122"], b"[" * 100_000_000
@@ -93,12 +96,13 @@ def huge_files():
 
 
 def limit_memory():
-    """Lets this process have MOST_MEMORY of address space; a program that needs more fails."""
+    """Limits the address space of this process to MOST_MEMORY; larger allocations fail."""
     resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
 
 
 def read_huge(campaign, name, arguments, content):
-    """One program reads one huge file; it must end in time, in memory and with a line."""
+    """Runs aquafarm_scenario on one huge file. It must exit with code 0 or 2 within MOST_S seconds
+    of processor time and within MOST_MEMORY."""
     with tempfile.TemporaryDirectory(prefix="aquafarm_fuzz_") as place:
         path = pathlib.Path(place) / name
         path.write_bytes(content)
@@ -123,7 +127,8 @@ def read_huge(campaign, name, arguments, content):
 
 
 def run(campaign):
-    """Count is the number of rounds over the targets; huge files are read in the first."""
+    """Runs rounds over the targets, then reads the huge files once unless --only is given;
+    campaign.count is the number of rounds."""
     with tempfile.TemporaryDirectory(prefix="aquafarm_fuzz_") as place:
         number = 0
         while campaign.more(number):

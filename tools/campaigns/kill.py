@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Kills programs (SIGKILL) at random moments and starts them again until they end by themselves. The
-result must equal that of an uninterrupted run bit for bit, everything must stay readable, and no
-temporary file may be left.
+result must equal that of an uninterrupted run bit for bit, and no temporary file may be left.
 
-tables, networks   a trainer in one process
-sim_node           the sim node of a training, with its trainer; or alone: the trainer then saves,
-                   and is resumed with new episodes, so that its result may differ
-recorder           a sim node that keeps every episode as a bag
-benchmark          a benchmark, alone or with its trainings
-ranks, workers     kill_cluster.py
+tables, networks   kills a trainer that runs in one process
+sim_node           kills the sim node of a training, either with its trainer or alone. If it is killed
+                   alone, the trainer saves and resumes with new episodes: its result may differ, but
+                   the policy must be readable
+recorder           kills a sim node that keeps every episode as a bag; the bags must pass verify_bag
+benchmark          kills a benchmark, alone or with its trainings
+ranks, workers     see kill_cluster.py
 """
 import os
 import pathlib
@@ -19,7 +19,7 @@ import time
 
 from campaigns import common, ros
 
-# Scenario and arguments of each learner. Each takes about a second.
+# Scenario and arguments of each learner. Each training takes about a second.
 TABLES = {name: ["paper", "-n", "400000"] for name in ("q_learning", "sarsa", "random")}
 REPLAY = ["-n", "3000", "-o", "hidden_size=16", "-o", "learning_starts=200", "-o", "buffer_size=2000"]
 ROLLOUT = ["-f", "16", "-o", "hidden_size=16", "-o", "rollout_size=512", "-o", "batch_size=128"]
@@ -28,9 +28,9 @@ NETWORKS = {"dqn": ["paper", *REPLAY],
             "maddpg": ["two_squads", *REPLAY],
             "mappo": ["two_squads", "-n", "8000", *ROLLOUT],
             "ppo": ["paper", "-n", "8000", *ROLLOUT]}
-MOST_KILLS = 30      # in one run, unless --kills is given; the last attempt is left to end
+MOST_KILLS = 30      # max kills of one run unless --kills is given; then the run may end by itself
 LIMIT_S = 300
-SIM_STEPS = 64_000   # of a training through a sim node; each call steps 16 farms
+SIM_STEPS = 64_000   # length of a training through a sim node; each call steps 16 farms
 SIM_KILLS = 5
 RECORDER_KILLS = 4
 TINY = common.ROOT / "aquafarm_agents" / "test" / "data" / "tiny.yaml"
@@ -48,12 +48,12 @@ def holds_run(folder):
 
 
 def results(folder):
-    """The files that an interruption must not change."""
+    """Returns {name: bytes} of the files that an interruption must not change."""
     return {name: (folder / name).read_bytes() for name in ("policy.ckpt", "metrics.csv")}
 
 
 def compare(campaign, what, folder, expected, got):
-    """The files must be equal, and no temporary file may be left."""
+    """Records a failure if a file differs from the uninterrupted run or a temporary file is left."""
     campaign.attempt(f"runs of {what} compared")
     for file, content in expected.items():
         campaign.check(got[file] == content,
@@ -62,8 +62,11 @@ def compare(campaign, what, folder, expected, got):
 
 
 def interrupted_run(campaign, what, arguments_of, longest_s, whole_group=False):
-    """Runs until the end with a kill at random moments. Returns whether it ended well.
-    @param arguments_of function that returns the command of the next start"""
+    """Starts a program, kills it at a random moment, and repeats this until it ends by itself.
+    Returns whether it ended with exit code 0.
+    @param arguments_of function that returns the command of the next start
+    @param longest_s max time from a start to the kill [s]
+    @param whole_group kill the whole process group, not only the process, in half of the cases"""
     most = campaign.kills or MOST_KILLS
     for kills in range(most + 1):
         process = subprocess.Popen(arguments_of(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -84,7 +87,7 @@ def interrupted_run(campaign, what, arguments_of, longest_s, whole_group=False):
 
 
 class Trainers:
-    """Trainers of some learners in one process."""
+    """Kills trainings of some learners, each of which runs in one process."""
 
     def __init__(self, campaign, place, what, learners):
         self.campaign = campaign
@@ -92,7 +95,7 @@ class Trainers:
         self.what = what
         self.learners = learners
         self.trainer = campaign.program("aquafarm_train")
-        self.expected = {}  # by learner: results of an uninterrupted run, and its duration
+        self.expected = {}  # learner -> (results of an uninterrupted run, its duration [s])
 
     def reference(self, name):
         if name not in self.expected:
@@ -118,7 +121,7 @@ class Trainers:
 
 
 class SimNode:
-    """A training whose sim node is killed, with the trainer or alone; both are started again."""
+    """Kills the sim node of a training, with the trainer or alone, and starts both again."""
 
     def __init__(self, campaign, place):
         self.campaign = campaign
@@ -138,7 +141,8 @@ class SimNode:
                 self.expected = ranch.results("run")
 
     def attempt(self, ranch, alone, last):
-        """One start of both. Returns whether the training is complete, or None after a failure."""
+        """Starts both and kills the sim node unless this is the `last` attempt. Returns whether the
+        training is complete, or None after a failure."""
         sim = ranch.sim("aquafarm")
         train = ranch.train("aquafarm", "run", SIM_STEPS, "_checkpoint_period_s:=0.05",
                             "_sim_timeout_s:=1",
@@ -189,7 +193,8 @@ class SimNode:
 
 
 class Recorder:
-    """A sim node that keeps each episode as a bag. All bags must be readable and identical."""
+    """Kills a sim node that keeps each episode as a bag. A sample of up to 60 bags must pass
+    verify_bag, which simulates them again."""
 
     def __init__(self, campaign, place):
         self.campaign = campaign
@@ -197,7 +202,7 @@ class Recorder:
         self.verify = campaign.program("verify_bag")
 
     def session(self, ranch, kill):
-        """Records some of a training; kills the sim node, or ends it."""
+        """Records a training until a new bag is complete. Then kills the sim node or ends it."""
         sim = ranch.sim("aquafarm", "_keep:=all", "_keep_dir:=episodes")
         train = ranch.train("aquafarm", f"run_{len(ranch.processes)}", 10**9, "_sim_timeout_s:=1")
         bags = ranch.folder / "episodes"
@@ -232,7 +237,7 @@ class Recorder:
 
 
 class Benchmark:
-    """A benchmark of two trainings. Killed, it is run again with the same command."""
+    """Kills a benchmark of two trainings, and starts it again with the same command."""
 
     TABLES = ("runs.csv", "table.csv", "table.md")
 
@@ -281,8 +286,8 @@ KINDS = {
 
 
 def run(campaign):
-    """Count is the number of runs; the kinds take turns."""
-    from campaigns import kill_cluster  # which uses this module
+    """Runs the kinds in turn until a failure; campaign.count is the number of runs."""
+    from campaigns import kill_cluster  # imports this module
     made, all_kinds = {}, {**KINDS, "ranks": kill_cluster.Ranks, "workers": kill_cluster.Workers}
     with tempfile.TemporaryDirectory(prefix="aquafarm_kill_") as place:
         kinds = campaign.kinds(all_kinds)

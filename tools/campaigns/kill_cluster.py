@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Kinds of the campaign kill for programs that consist of several processes.
 
-ranks      a training in several ranks, of which one is killed; the others must end with exit code 6.
-           Another number of ranks resumes it
-workers    a benchmark on two workers of Dask; a worker or the scheduler is killed and replaced while
-           the benchmark continues. Its tables must be those of an undisturbed one
+ranks      kills one rank of a training in several ranks, which must then end with exit code 6, and
+           resumes the training with a random number of ranks
+workers    kills and replaces a worker or the scheduler of a benchmark on two Dask workers while the
+           benchmark continues. Its tables must equal those of an undisturbed benchmark
 """
 import os
 import signal
@@ -15,11 +15,11 @@ from campaigns import common, kill, ros
 
 RANK_LOST = 6        # exit code
 BAD_INPUT = 2        # exit code
-NO_SCHEDULER = "which does not answer within"  # of a client that has not met its scheduler yet
-KILLS = 5            # in one run, unless --kills is given; the last attempt is left to end
-STOP_S = 30.0        # on an idle machine the other ranks stop within this time
-BUSY_STOP_S = 180.0  # a busy one needs longer to start processes
-STARTS = 5           # of a benchmark whose scheduler was killed before the first contact
+NO_SCHEDULER = "which does not answer within"  # error of a client that never reached its scheduler
+KILLS = 5            # max kills of one run unless --kills is given; then the run may end by itself
+STOP_S = 30.0        # max time for the other ranks to stop on an idle machine
+BUSY_STOP_S = 180.0  # the same for a busy machine, which starts processes more slowly
+STARTS = 5           # max starts of a benchmark whose scheduler is killed before the first contact
 LIMIT_S = 600
 ARGUMENTS = ["paper", "-n", "40000", *kill.ROLLOUT, "-o", "shards=8"]
 
@@ -34,7 +34,7 @@ def children(pid):
 
 
 class Ranks:
-    """A training in two, four or eight ranks; a random one is killed."""
+    """Kills a random rank of a training in two, four or eight ranks."""
 
     def __init__(self, campaign, place):
         self.campaign = campaign
@@ -55,7 +55,8 @@ class Ranks:
             self.expected = kill.results(folder)
 
     def attempt(self, folder, is_last):
-        """One start. Returns whether the training is complete, or None after a failure."""
+        """Starts the training and kills a rank unless this is the last attempt. Returns whether the
+        training is complete, or None after a failure."""
         ranks = self.campaign.rng.choice((2, 4, 8))
         process = subprocess.Popen(self.command(folder, ranks), stdin=subprocess.DEVNULL,
                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -100,7 +101,7 @@ class Ranks:
 
 
 class Workers(kill.Benchmark):
-    """A benchmark on the workers of a Dask scheduler, which are killed and replaced."""
+    """Kills and replaces the workers and the Dask scheduler of a benchmark."""
 
     def __init__(self, campaign, place):
         super().__init__(campaign, place)
@@ -121,7 +122,8 @@ class Workers(kill.Benchmark):
         self.processes[number].wait()
 
     def disturb(self, process):
-        """Kills and replaces until the benchmark ends; returns its output."""
+        """Kills and replaces random workers and the scheduler, then waits until the benchmark ends;
+        returns its output."""
         for _ in range(self.campaign.kills or KILLS):
             try:
                 return process.communicate(timeout=self.campaign.rng.uniform(1.0, self.seconds))[0]
@@ -138,7 +140,8 @@ class Workers(kill.Benchmark):
         return self.outlast(process)
 
     def outlast(self, process):
-        """Replaces workers that end with a killed scheduler until the benchmark ends."""
+        """Waits until the benchmark ends; returns its output. Replaces workers that ended because
+        their scheduler was killed. Kills the benchmark after LIMIT_S."""
         end = time.monotonic() + LIMIT_S
         while time.monotonic() < end:
             try:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Helpers shared by the programs: scenario lookup and Ctrl-C.
+// Helpers of the programs: scenario lookup, Ctrl-C and exit codes.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -25,16 +25,19 @@
 
 namespace aquafarm::agents {
 
+/// Whether Ctrl-C or SIGTERM has requested the end of the program.
 inline std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // set in a signal handler
 
-/// When SIGINT [0] and SIGTERM [1] arrived first; 0: not yet.
+/// Time of the first SIGINT [0] and SIGTERM [1] on the monotonic clock [ms]; 0 before.
 inline std::array<std::atomic<std::int64_t>, 2> first_signal_ms{};
 static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 
-/// The first Ctrl-C requests saving and exit; one more, at least half a second later, exits
-/// immediately. Sooner it counts as the first: if the benchmark is killed, the kernel signals its
-/// programs (PR_SET_PDEATHSIG) once for each thread that dies and hands them to the next.
+/// Installs handlers for SIGINT (Ctrl-C) and SIGTERM. The first signal sets stop_requested, so that
+/// the program saves and exits. The same signal ends the program at once if it arrives at least
+/// half a second later; an earlier repetition is ignored. Repetitions within half a second occur if
+/// a benchmark is killed: the kernel then signals its programs (PR_SET_PDEATHSIG) once for each
+/// thread of the benchmark that ends.
 inline void StopOnSignals() {
   const auto handler = [](int signal) {
     constexpr std::int64_t kSame_ms = 500;
@@ -54,8 +57,8 @@ inline void StopOnSignals() {
   std::signal(SIGTERM, handler);
 }
 
-/// Folder of the shipped scenarios: in the workspace that this program is installed in, else in the
-/// sources.
+/// Returns the folder of the shipped scenarios: that of the workspace in which this program is
+/// installed, else that of the sources.
 inline std::string ScenarioFolder() {
   namespace fs = std::filesystem;
   std::error_code ignored;
@@ -65,7 +68,8 @@ inline std::string ScenarioFolder() {
   return fs::is_directory(installed, ignored) ? installed.string() : AQUAFARM_SCENARIO_DIR;
 }
 
-/// Loads a scenario by path, or by name from `folder`.
+/// Loads a scenario by path, or by name from `folder` or `folder`/families.
+/// @throws InputError if there is no such scenario or it is invalid
 inline Scenario FindScenario(const std::string& name, const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code ignored;
@@ -92,30 +96,33 @@ inline Scenario FindScenario(const std::string& name, const std::string& folder)
 struct ScenarioChoice {
   std::string name{"paper"};
   std::string folder{ScenarioFolder()};
-  std::int32_t max_steps{};  ///< step limit of an episode; 0: that of the scenario
-  bool tokens{};             ///< features are entity tokens, whatever the scenario has
+  std::int32_t max_steps{};  ///< step limit of an episode; 0: the scenario's own
+  bool tokens{};             ///< whether to observe by entity tokens even if the scenario does not
 
+  /// Loads the scenario and applies the options. @throws InputError as FindScenario
   std::shared_ptr<const Scenario> Load() const {
     Scenario scenario = FindScenario(name, folder);
     if (tokens && !scenario.view.tokens) {
-      scenario.view.tokens = true;  // changes no farm, so keeps the hash
+      scenario.view.tokens = true;  // the hash stays, because the farms do not change
       ValidateScenario(scenario);
     }
     if (max_steps == 0) return std::make_shared<const Scenario>(std::move(scenario));
     scenario.step_limit = max_steps;
-    // Parsed from its text like a file, so that the hash is that of the text.
+    // Parsing the text of the scenario sets the hash to that of the text, as for a file.
     return std::make_shared<const Scenario>(ParseScenario(ToYaml(scenario), scenario.name));
   }
 };
 
+/// Adds the options that set `choice`, except the name of the scenario.
 inline void AddScenarioOptions(CLI::App& app, ScenarioChoice& choice) {
   app.add_option("--max-steps", choice.max_steps, "step limit of an episode; 0: the scenario's own")
       ->check(CLI::Range(0, 1000000000));
   app.add_option("--scenarios", choice.folder, "folder of the shipped scenarios");
 }
 
-/// Runs the body of a program, which parses the arguments and returns the exit code. An error is
-/// printed as one line and becomes the exit code of bad input, of storage or of an internal error.
+/// Runs `body`, which parses the arguments, runs the program and returns its exit code. An
+/// exception is printed as one line, and the exit code of bad input, storage or an internal error
+/// is returned.
 template <typename Body>
 int RunWithExitCodes(const CLI::App& app, Body body) {
   try {

@@ -45,7 +45,7 @@ struct Arguments {
   EnvironmentOptions environment{64, 0, false, 1};
 };
 
-// Path or name of the scenario. The default is the scenario in the policy's run folder.
+// Returns the path or name of the scenario. The default is the scenario in the policy's run folder.
 std::string ScenarioOf(const Arguments& arguments, const SavedPolicy& saved) {
   namespace fs = std::filesystem;
   if (!arguments.scenario.name.empty()) return arguments.scenario.name;
@@ -58,7 +58,7 @@ std::string ScenarioOf(const Arguments& arguments, const SavedPolicy& saved) {
   throw InputError("scenario: got none, and there is no scenario.yaml next to " + saved.path);
 }
 
-// Mean bound of the played episodes.
+// Returns the mean of TeamBound over the played episodes.
 double MeanBound(const std::shared_ptr<const Scenario>& scenario, const Evaluation& evaluation) {
   const auto count = static_cast<std::int32_t>(evaluation.episodes.size());
   double sum = 0.0;
@@ -70,7 +70,7 @@ double MeanBound(const std::shared_ptr<const Scenario>& scenario, const Evaluati
   return sum / count;
 }
 
-// These need one ranch.
+// Throws InputError if a given option needs one ranch but the scenario is a family.
 void RefuseForFamily(const Arguments& arguments, const Scenario& scenario) {
   if (!scenario.family) return;
   const auto refuse = [&scenario](bool is_given, const char* option) {
@@ -84,7 +84,7 @@ void RefuseForFamily(const Arguments& arguments, const Scenario& scenario) {
   refuse(!arguments.route.empty(), "--route");
 }
 
-// Episodes like those that were evaluated.
+// Returns a farm at the start of an episode.
 Farm StartOf(const std::shared_ptr<const Scenario>& scenario, std::uint64_t seed,
              std::uint64_t episode) {
   if (scenario->family) return MakeRanch(*scenario, seed, episode);
@@ -93,8 +93,8 @@ Farm StartOf(const std::shared_ptr<const Scenario>& scenario, std::uint64_t seed
   return farm;
 }
 
-// Writes the ranch of an episode of a family as a scenario of its own, in which the episode with
-// the same seed and number is the same.
+// Writes the ranch of an episode of a family as a separate scenario. The episode with the same seed
+// and number is the same in both.
 void WriteRanch(const Arguments& arguments, const std::shared_ptr<const Scenario>& family) {
   if (!family->family) {
     throw InputError("--ranch: scenario " + family->name + " is one ranch, expected a family");
@@ -195,7 +195,7 @@ ExitCode Run(Arguments arguments) {
   const SavedPolicy saved = FindPolicy(arguments.policy);
   arguments.environment.observation_types = saved.observation_types;
   arguments.scenario.name = ScenarioOf(arguments, saved);
-  if (ReadsTokens(saved.checkpoint)) {  // tokens are cheaper than states
+  if (ReadsTokens(saved.checkpoint)) {  // cheaper than tokens computed from the states
     arguments.scenario.tokens = true;
     arguments.environment.observation_types &= static_cast<std::uint8_t>(~kStatesBit);
   }
@@ -232,7 +232,8 @@ void AddEpisodeOptions(CLI::App& app, Arguments& arguments) {
       ->required();
   app.add_option("scenario", arguments.scenario.name,
                  "scenario file or name; empty: the one in the policy's run folder");
-  app.add_option("-e,--episodes", arguments.episodes, "episodes")->check(CLI::Range(1, 10000000));
+  app.add_option("-e,--episodes", arguments.episodes, "number of episodes")
+      ->check(CLI::Range(1, 10000000));
   app.add_option("-s,--seed", arguments.seed, "seed of the episodes");
   app.add_option("--policy-seed", arguments.policy_seed,
                  "seed of a policy that draws its actions, such as RANDOM; default: that of the "
@@ -251,11 +252,11 @@ void AddOutputOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--route-episode", arguments.route_episode,
                  "episode of --route, --values and --ranch");
   app.add_option("--ranch", arguments.ranch,
-                 "write the ranch of an episode of a family as a scenario of its own to this YAML "
-                 "file; empty: nothing");
+                 "write the ranch that a family draws for one episode to this YAML file, as a "
+                 "scenario; empty: nothing");
   app.add_option(
       "--values", arguments.values,
-      "write the return of an episode from every cell, by playing it, and the scenario's sea "
+      "play an episode from each start cell of ship 0 and write the returns and the scenario's sea "
       "to this JSON file; empty: nothing");
   app.add_option("--values-episodes", arguments.values_episodes, "episodes that --values averages")
       ->check(CLI::Range(1, 10000));
@@ -268,8 +269,8 @@ void AddOutputOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--matrix-policy", arguments.matrix_policy,
                  "policy of --matrices: epsilon_greedy:ε (0 is greedy) or boltzmann:T");
   app.add_flag("--bound", arguments.bound,
-               "print the share of an upper bound: each device is fetched by its best ship, "
-               "without conflicts, with known disasters");
+               "print the return as a share of an upper bound, in which the best ship fetches each "
+               "device, without conflicts and with known disasters");
   app.add_option(
       "--optimum", arguments.optimum,
       "print the share of the clairvoyant optimum over the episodes whose plans have at most "
@@ -279,7 +280,8 @@ void AddOutputOptions(CLI::App& app, Arguments& arguments) {
 int Main(int argc, char** argv) {
   Arguments arguments;
   arguments.scenario.name.clear();
-  CLI::App app("Plays a saved policy greedily on episodes of evaluation seeds, and reports.");
+  CLI::App app(
+      "Plays a saved policy greedily on episodes of evaluation seeds and reports the results.");
   app.footer("exit codes: 0 played, 2 bad argument or policy, 3 storage, 130 interrupted");
   app.option_defaults()->always_capture_default();
   AddEpisodeOptions(app, arguments);

@@ -55,7 +55,7 @@ pid_t StartRank(int rank, int ranks, int port, char** argv) {
     processors = ProcessorsOf(processors, rank, ranks);
     sched_setaffinity(0, sizeof(processors), &processors);
   }
-  setpgid(0, 0);  // Ctrl-C reaches it through the parent, once
+  setpgid(0, 0);  // the parent forwards Ctrl-C, so that it arrives once
   setenv("RANK", std::to_string(rank).c_str(), 1);
   setenv("WORLD_SIZE", std::to_string(ranks).c_str(), 1);
   setenv("LOCAL_WORLD_SIZE", std::to_string(ranks).c_str(), 1);
@@ -65,8 +65,9 @@ pid_t StartRank(int rank, int ranks, int port, char** argv) {
   _exit(static_cast<int>(ExitCode::kInternal));
 }
 
-// The ranks of one training. After one was ended by a signal, the others see it within seconds,
-// except those that still wait for it at the start: they are ended after kLongestWait.
+// The ranks of one training. If a signal ends one of them, the others detect it within seconds and
+// exit. Ranks that still wait for it at the start do not detect it; they are ended after
+// kLongestWait.
 class LocalRanks {
  public:
   LocalRanks(int ranks, char** argv) {
@@ -118,7 +119,7 @@ class LocalRanks {
     Signal(SIGKILL);
   }
 
-  // Notes the end of a rank.
+  // Records the exit code of a rank if it has ended.
   void Look(std::size_t rank) {
     pid_t& pid = pids_[rank];
     int status = 0;
@@ -143,8 +144,8 @@ class LocalRanks {
     End();
   }
 
-  std::vector<pid_t> pids_;                     // of the ranks, 0 after the end
-  std::optional<Clock::time_point> killed_at_;  // the first rank that was ended by a signal
+  std::vector<pid_t> pids_;                     // by rank; 0 after the process has ended
+  std::optional<Clock::time_point> killed_at_;  // when a signal ended the first rank
   bool is_forwarded_{};
   bool is_ending_{};
   int result_{};

@@ -5,9 +5,10 @@
 
 namespace aquafarm::agents {
 
-/// Starts this program again as `ranks` processes and waits for all of them.
-/// @param argv of this program
-/// @returns the exit code of the first rank that failed
+/// Starts this program `ranks` times, with the same arguments, and waits until all processes end.
+/// @param argv arguments of this program
+/// @returns the exit code of the first rank that failed; 0 if there is none
+/// @throws InputError if there is no free TCP port
 int RunLocalRanks(int ranks, char** argv);
 
 }  // namespace aquafarm::agents

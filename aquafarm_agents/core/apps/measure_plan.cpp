@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares rescue plans with simulated and recorded storms: are the promised chances kept, what do
-// the plans save? docs/results/rescue_plans.md has the results. No ROS.
+// Compares rescue plans with simulated and recorded storms: how often the promised chances come
+// true, and which value the plans save. docs/results/rescue_plans.md has the results. Works without
+// ROS.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -58,7 +59,8 @@ void Print(const char* name, const PromiseBin& bin) {
               static_cast<long long>(bin.count));
 }
 
-// Prints the bars of issue 22 and returns them with the diagram.
+// Prints how often promises of 5 to 55 %, and of about 20, 50, 80 and 95 %, were kept. Returns
+// these numbers and a reliability diagram with 20 bins.
 Json Calibration(const char* title, const std::vector<std::vector<Promise>>& promises,
                  const Groups& tracks) {
   std::printf("%s\n", title);
@@ -96,7 +98,7 @@ Json Value(const std::vector<TrialResult>& trials, const Groups& tracks) {
   for (std::size_t policy = 0; policy < kTrialPolicyCount; ++policy) {
     const std::vector<double> saved = of(policy);
     if (std::any_of(saved.begin(), saved.end(), [](double one) { return std::isnan(one); })) {
-      continue;  // not for these ships and devices
+      continue;  // the policy does not support these ships and devices
     }
     std::vector<double> ahead;
     for (std::size_t i = 0; i < plan.size(); ++i) ahead.push_back(plan[i] - saved[i]);
@@ -149,7 +151,7 @@ Json RunStorms(Arguments& arguments) {
   std::vector<TrialResult> results;
   std::vector<std::vector<Promise>> home;
   std::vector<std::vector<Promise>> gales;
-  std::vector<std::vector<Promise>> weak;  // as gales, of bulletins without winds of a gale
+  std::vector<std::vector<Promise>> weak;  // as gales; empty if the bulletin has a gale
   Groups groups;
   for (std::int32_t i = 0; i < arguments.storms; ++i) {
     const TrialStorm storm =
@@ -267,10 +269,12 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--scenarios", arguments.scenarios, "folder of the shipped scenarios");
   app.add_option("--devices", arguments.request.devices, "CSV, as for aquafarm_plan");
   app.add_option("--ships", arguments.request.ships, "number of ships")->check(CLI::Range(1, 16));
-  app.add_option("--speed", arguments.request.speed_kn, "knots")->check(CLI::Range(0.1, 60.0));
-  app.add_option("--members", arguments.request.members, "of the plan's ensemble")
+  app.add_option("--speed", arguments.request.speed_kn, "speed of the ships in knots")
+      ->check(CLI::Range(0.1, 60.0));
+  app.add_option("--members", arguments.request.members, "number of members of the plan's ensemble")
       ->check(CLI::Range(10, 20000));
-  app.add_option("--storms", arguments.storms, "simulated storms")->check(CLI::Range(2, 1000000));
+  app.add_option("--storms", arguments.storms, "number of simulated storms")
+      ->check(CLI::Range(2, 1000000));
   app.add_option("--errors", arguments.error_scale, "factor of all errors of the forecast")
       ->check(CLI::Range(0.0, 5.0));
   app.add_option("--position-errors", arguments.position_errors,
@@ -280,16 +284,17 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(0.0, 5.0));
   app.add_option("--size-errors", arguments.size_errors, "factor of the errors of radii")
       ->check(CLI::Range(0.0, 5.0));
-  app.add_option("--seed", arguments.trial.seed, "of the simulated storms");
-  app.add_option("--min-lead", arguments.trial.min_lead_h, "hours before the closest approach");
-  app.add_option("--max-lead", arguments.trial.max_lead_h, "hours before the closest approach");
+  app.add_option("--seed", arguments.trial.seed, "seed of the simulated storms");
+  app.add_option("--min-lead", arguments.trial.min_lead_h, "min hours before the closest approach");
+  app.add_option("--max-lead", arguments.trial.max_lead_h, "max hours before the closest approach");
   app.add_option("--every", arguments.trial.bulletin_h, "hours between two bulletins of a storm")
       ->check(CLI::Range(0.5, 120.0));
   app.add_option("--lead", arguments.lead_h, "back_test: hours before the closest approach");
-  app.add_option("--bulletins", arguments.bulletins, "back_test: drawn for each storm")
+  app.add_option("--bulletins", arguments.bulletins,
+                 "back_test: number of bulletins drawn for each storm")
       ->check(CLI::Range(1, 10000));
   app.add_option("--since", arguments.first_year, "back_test: first year");
-  app.add_option("--within", arguments.within_km, "back_test: distance [km]");
+  app.add_option("--within", arguments.within_km, "back_test: max distance of the storms [km]");
   app.add_flag("--winds-about-bulletin", arguments.trial.winds_about_bulletin,
                "storms: the true winds are the bulletin's with an error, instead of the reverse");
   app.add_flag("!--no-reacting", arguments.reacts,

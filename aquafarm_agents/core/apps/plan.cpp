@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plans which ship fetches which device before a storm, and how likely it succeeds. No ROS.
+// Plans which ship fetches which device before a storm, and computes how likely each device is
+// saved. Works without ROS.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -30,7 +31,7 @@ struct Arguments {
   std::string command;
   std::string scenarios{ScenarioFolder()};
   RescueRequest request;
-  std::vector<RescueWarning> warnings;  // about the ranch, such as a port that is moved
+  std::vector<RescueWarning> warnings;  // about the ranch, such as a port that was moved
 };
 
 GeoPoint Place(const std::string& option, const std::string& text) {
@@ -51,7 +52,7 @@ double Seconds(const std::string& option, const std::string& text) {
   const std::size_t unit = text.find_first_not_of("0123456789.", from);
   const std::string word = unit == std::string::npos ? "" : text.substr(unit);
   if (word != "h" && word != "min") {
-    throw InputError(option + ": got '" + text + "', expected a time as +6h or +90min");
+    throw InputError(option + ": got '" + text + "', expected a time such as +6h or +90min");
   }
   return ParseNumber(text.substr(from, unit - from), option) * (word == "h" ? 3600.0 : 60.0);
 }
@@ -80,7 +81,7 @@ std::shared_ptr<const Scenario> LoadRanch(Arguments& arguments) {
   return std::make_shared<const Scenario>(built.scenario);
 }
 
-// Notes the ports that were not given.
+// Adds a note with the chosen ports if none were given.
 void NoteChosenPorts(const Arguments& arguments, RescueCase& rescue) {
   if (arguments.coast.empty() || !arguments.ports.empty()) return;
   std::string places;
@@ -148,10 +149,11 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--cell", arguments.cell_m, "metres per cell, with --coast")
       ->check(CLI::Range(10.0, 10000.0));
   app.add_option("--bulletin", request.bulletin, "bulletins of the storm with its forecast");
-  app.add_option("--storm", request.storm, "recorded track: plans as at --at (a hindcast)");
+  app.add_option("--storm", request.storm,
+                 "file of a recorded track; the plan starts at --at (a hindcast)");
   app.add_option("--storm-name", request.storm_name, "storm in that file, if it has several");
   app.add_option("--at", arguments.at,
-                 "start of the plan, UTC as 2021-07-24T12:00Z; default: now, or the newest "
+                 "start of the plan, UTC such as 2021-07-24T12:00Z; default: now, or the newest "
                  "report of an old bulletin");
   app.add_option("--devices", request.devices,
                  "CSV: name,latitude,longitude,kind,value[,damaged]; default: those of the ranch");
@@ -159,21 +161,25 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "CSV: name,latitude,longitude[,speed_kn,capacity,ready]");
   app.add_option("--ships", request.ships, "number of ships, spread over the ports")
       ->check(CLI::Range(0, 64));
-  app.add_option("--speed", request.speed_kn, "knots")->check(CLI::Range(0.1, 60.0));
-  app.add_option("--capacity", request.capacity, "devices aboard")->check(CLI::Range(1, 100));
-  app.add_option("--depart", arguments.depart, "earliest departure after the start, as +6h");
+  app.add_option("--speed", request.speed_kn, "speed of the ships in knots")
+      ->check(CLI::Range(0.1, 60.0));
+  app.add_option("--capacity", request.capacity, "max devices aboard a ship")
+      ->check(CLI::Range(1, 100));
+  app.add_option("--depart", arguments.depart, "earliest departure after the start, such as +6h");
   app.add_option("--abort-wind", request.abort_wind_kt, "knots of wind at which ships stop")
       ->check(CLI::Range(10.0, 100.0));
-  app.add_option("--members", request.members, "possible storms")->check(CLI::Range(10, 20000));
-  app.add_option("--seed", request.seed, "of the possible storms");
-  app.add_option("--risk-averse", request.risk_averse,
-                 "share of the worst cases whose mean loss is minimized, as 0.05; 0: the mean")
+  app.add_option("--members", request.members, "number of possible storms")
+      ->check(CLI::Range(10, 20000));
+  app.add_option("--seed", request.seed, "seed of the possible storms");
+  app.add_option(
+         "--risk-averse", request.risk_averse,
+         "share of the worst cases whose mean loss is minimized, such as 0.05; 0: the mean of all")
       ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--currency", request.currency, "of the devices' values, as CNY");
+  app.add_option("--currency", request.currency, "currency of the devices' values, such as CNY");
   app.add_option("--utc-offset", arguments.utc_offset_h,
-                 "hours of the local time; default: by longitude")
+                 "hours of the local time ahead of UTC; default: by longitude")
       ->check(CLI::Range(-14.0, 14.0));
-  app.add_option("--json", arguments.json, "write plan.json here");
+  app.add_option("--json", arguments.json, "write the plan to this JSON file");
   app.add_option("--scenarios", arguments.scenarios, "folder of the shipped scenarios");
 }
 

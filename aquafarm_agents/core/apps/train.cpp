@@ -61,11 +61,11 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("scenario", arguments.scenario.name,
                  "scenario file, or the name of a shipped one");
   app.add_option("-a,--algorithm", options.algorithm, "learner by name, or auto");
-  app.add_option("-e,--episodes", options.episodes, "limit of episodes; 0: none");
+  app.add_option("-e,--episodes", options.episodes, "max number of episodes; 0: no limit");
   app.add_option(
       "-n,--steps", options.steps,
-      "limit of farm steps; 0: none, or without any limit the algorithm's default, but at "
-      "least eight per state of a large table");
+      "max number of steps, summed over all farms; 0: no limit if --episodes is set, else the "
+      "algorithm's default, but at least eight steps per state of a large table");
   app.add_option("-s,--seed", options.seed, "seed of episodes and exploration");
   app.add_option("-f,--farms", arguments.environment.farms,
                  "number of parallel farms; 0: the algorithm's default, 256 for ppo and mappo, 16 "
@@ -77,17 +77,16 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("-d,--run-dir", options.run_dir, "run folder; empty: a new one under ./runs");
   app.add_flag("-r,--resume", options.resume,
                "resume from the newest checkpoint in the run folder");
-  app.add_option(
-      "-x,--exploration", options.exploration,
-      "such as epsilon_greedy:linear:1:0.05:0.5, boltzmann:1 or icm+boltzmann:1; empty: the "
-      "algorithm's");
+  app.add_option("-x,--exploration", options.exploration,
+                 "exploration strategy, such as epsilon_greedy:linear:1:0.05:0.5, boltzmann:1 or "
+                 "icm+boltzmann:1; empty: the algorithm's default");
   app.add_option("-o,--set", arguments.settings, "option of the learner, key=value");
   app.add_option("--init", options.init,
                  "run folder, checkpoint or generalist whose weights the learner begins with "
                  "(ppo, mappo); empty: random weights");
   app.add_option("--credit", options.credit,
-                 "if the scenario shares the reward, agents learn from their own part of it, or "
-                 "from the sum: own, shared");
+                 "reward that each agent learns from if the scenario shares the reward of several "
+                 "agents: own (its own reward) or shared (the sum)");
   app.add_option("--checkpoint-period", options.checkpoint_period_s, "seconds between checkpoints");
   app.add_option("--evaluate", options.evaluation_episodes,
                  "greedy evaluation episodes at the end; 0 disables them");
@@ -95,8 +94,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "RANDOM episodes for comparison; 0 disables them");
   app.add_option(
          "--ranks", arguments.ranks,
-         "number of processes of this host that train together, a power of two; up to 8 have "
-         "the result of --ranks 1, more of them with the same option shards. 0: one "
+         "number of processes on this host that train together, a power of two; up to 8 give the "
+         "result of --ranks 1, and more do if all runs have the same option shards. 0: one "
          "process, or the processes that mpirun, srun or torchrun started")
       ->check(CLI::Range(0, 4096));
   app.add_option("--rank-start", arguments.times.start_s,
@@ -108,7 +107,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   AddScenarioOptions(app, arguments.scenario);
 }
 
-// Trains with the farms in this process, or with its share of them if there are several ranks.
+// Trains with all farms in this process, or with its share of the farms if there are several ranks.
 RunReport TrainHere(Arguments& arguments, ProcessGroup* group) {
   const RunOptions& options = arguments.options;
   EnvironmentOptions& environment = arguments.environment;

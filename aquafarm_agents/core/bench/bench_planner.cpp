@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time of the clairvoyant plan of one episode of paper.yaml, and decisions per second of the
-// planner that replans each step from the forecast. One thread, episodes of different seeds.
+// Measures the time of the clairvoyant plan of one episode of paper.yaml, and decisions per second
+// of the planner that replans in each step without knowing the future. One thread; the episodes
+// differ.
 #include <benchmark/benchmark.h>
 
 #include <memory>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Farm steps a second of PPO in training on paper.yaml (81 features), 256 farms, one thread,
-// rollouts of 16,384 steps, minibatches of 2,048, two epochs: feed-forward with 2 x 128 units and
-// recurrent with an LSTM of 128. tools/bench_ppo.py measures the references.
+// Measures farm steps per second of PPO in training on paper.yaml (81 features) with 256 farms, one
+// thread, rollouts of 16,384 steps, minibatches of 2,048 and two epochs. The network is
+// feed-forward with 2 x 128 units, or recurrent with an LSTM of 128. tools/bench_ppo.py measures
+// the references.
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -26,7 +27,7 @@ std::shared_ptr<const Scenario> Paper() {
   return std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"));
 }
 
-// One learner for all repetitions, past its first update.
+// All repetitions share one learner, which has made its first update.
 void Ppo(benchmark::State& state) {
   static TrainingLoop training("ppo", "batch_size=2048", Paper(), kFarms, kStepsPerRollout);
   Train(state, training);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Training steps per second of the tabular learners on paper.yaml, one thread, and the time until
-// the farm is solved. Ratios are relative to the same farms under RANDOM.
+// Measures training steps per second of the tabular learners on paper.yaml with one thread, their
+// ratio to steps with RANDOM, and the time and success of a complete training.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ LocalEnvironment Paper() {
           {kFarms, kIndexBit, false, 1}};
 }
 
-// Trains from the start of the schedules; items are farm steps.
+// Trains from the start of the schedules. Google Benchmark counts farm steps as items.
 void TrainSteps(benchmark::State& state, const char* algorithm, const char* options) {
   LocalEnvironment environment = Paper();
   const Algorithm& entry = FindAlgorithm(algorithm);
@@ -59,8 +59,8 @@ BENCHMARK(Sarsa);
 BENCHMARK(Boltzmann);
 
 struct Solution {
-  double seconds{};  ///< training time with the defaults
-  double success{};  ///< success rate of the greedy policy over kEvaluationEpisodes unseen seeds
+  double seconds{};  ///< training time with the default options
+  double success{};  ///< success rate of the greedy policy in kEvaluationEpisodes unseen episodes
 };
 
 Solution Solve(const char* algorithm, std::uint64_t seed) {

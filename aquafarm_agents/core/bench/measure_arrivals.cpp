@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures whether a trained network avoids a disaster that arrives in mid-episode as well as one
-// that it knows from the start.
+// Measures whether a trained network avoids a disaster that is announced in mid-episode as well as
+// one that is announced at the start.
 //
 // One ship fetches three devices on 12 × 12 cells, with a new layout in each episode. A storm
-// crosses the farm from step 20 on; it is known from step 0, or arrives by SetDisaster at a step in
-// [8, 20]. PPO trains on episodes of both sorts and then plays pairs of episodes that differ only
-// in the step of arrival. "unseen" plays the same episodes with all slots set to 0.
+// crosses the farm around step 48. It is announced (SetDisaster) at step 0, or later, at a step in
+// [8, 20]. PPO trains on episodes of both kinds, then plays pairs of episodes that differ only in
+// the step of the announcement. "unseen" plays the same episodes with the disaster slots of the
+// observation set to 0.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -93,7 +94,7 @@ class Farms {
     return arrival_ == Arrival::kStart ? 0 : later;
   }
 
-  // Announces the storms whose step has come and writes the observations again.
+  // Announces the storms that are due at this step, then writes the observations again.
   void Arrive() {
     for (std::int32_t i = 0; i < batch_.farms(); ++i) {
       Farm& farm = batch_.farm(i);
@@ -130,11 +131,12 @@ class Farms {
 };
 
 struct Played {
-  std::vector<double> in_disaster;  // steps, by episode
-  std::vector<double> delivered;
+  std::vector<double> in_disaster;  // steps in the disaster, by episode
+  std::vector<double> delivered;    // delivered devices, by episode
 };
 
-// Plays `episodes` episodes, each farm one after the other. @param unseen sets all slots to 0
+// Plays `episodes` episodes, rounded up to a multiple of the farms. @param unseen whether to set
+// the disaster slots of the observation to 0
 Played Play(const std::shared_ptr<const Scenario>& scenario, Policy& policy, Arrival arrival,
             std::int32_t episodes, bool unseen) {
   constexpr std::int32_t kFarms = 256;
@@ -173,7 +175,7 @@ double Mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-// Prints the ratio of two paired means with its 95 % interval (linearised, Cochran 1977).
+// Prints the ratio of two paired means with its 95 % interval (by linearization, Cochran 1977).
 void PrintRatio(const char* what, const Played& known, const Played& other) {
   const double of_known = Mean(known.in_disaster);
   const double ratio = Mean(other.in_disaster) / of_known;

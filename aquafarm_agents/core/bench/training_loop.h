@@ -14,7 +14,7 @@ namespace aquafarm::agents {
 /// A learner and its farms, which run in one thread.
 class TrainingLoop {
  public:
-  /// @param first_steps taken at once, until updates have started
+  /// @param first_steps number of steps that the constructor takes, so that updates have started
   TrainingLoop(const char* algorithm, const std::string& options,
                std::shared_ptr<const Scenario> scenario, std::int32_t farms, int first_steps)
       : environment_(std::move(scenario),
@@ -24,6 +24,7 @@ class TrainingLoop {
     Run(first_steps);
   }
 
+  /// Takes `steps` steps, at progress 0.3 of the schedules.
   void Run(int steps) {
     for (int i = 0; i < steps; ++i) {
       learner_->Step(*results_, 0.3, actions_);

@@ -16,18 +16,20 @@
 
 namespace aquafarm::agents::test {
 
+/// Returns the scenario as if it were read from a file, with the hash of its text.
 inline std::shared_ptr<const Scenario> Share(Scenario scenario) {
-  // Parsed from its text like a file, so that the hash is that of the text.
   return std::make_shared<const Scenario>(ParseScenario(ToYaml(scenario), scenario.name));
 }
 
-/// One device two steps from a port, with a step limit that RANDOM rarely meets.
+/// Returns a farm of 5 × 5 cells with one device, two moves from the port. RANDOM rarely delivers
+/// the device within the default step limit.
 inline std::shared_ptr<const Scenario> TinyFarm(std::int32_t step_limit = 60) {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = step_limit;
   return Share(scenario);
 }
 
+/// Returns the scenario of the paper.
 inline std::shared_ptr<const Scenario> Paper() {
   return std::make_shared<const Scenario>(
       LoadScenario(std::string(AQUAFARM_SCENARIO_DIR) + "/paper.yaml"));
@@ -44,7 +46,7 @@ class FolderTest : public ::testing::Test {
   std::string folder_;
 };
 
-/// Message of the exception that `act` throws; empty if it does not throw.
+/// Returns the message of the `Exception` that `act` throws; empty if it throws nothing.
 template <typename Exception, typename Act>
 std::string MessageOf(Act&& act) {
   try {

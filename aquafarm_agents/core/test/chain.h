@@ -9,7 +9,7 @@
 
 namespace aquafarm::agents::test {
 
-/// A chain of three states with hand-made results.
+/// One agent in an environment of three tabular states. The test sets each state and reward.
 struct Chain {
   EnvironmentSpec spec;
   StepResults results;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Contract test of the Environment interface, for every implementation.
+// Tests that every implementation of the Environment interface must pass.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 
 namespace aquafarm::agents::test {
 
-/// Random actions that are reproducible by seed.
+/// Random actions of the learners' action space; equal seeds give equal actions.
 class RandomActions {
  public:
   explicit RandomActions(std::uint64_t seed)
@@ -31,7 +31,8 @@ class RandomActions {
   RandomStream stream_;
 };
 
-/// Compares all fields except `finished`.
+/// Compares most fields. The excluded fields are `finished`, `terms`, `energy`, `distance` and
+/// `states`.
 inline void ExpectSame(const StepResults& a, const StepResults& b) {
   EXPECT_EQ(a.rewards, b.rewards);
   EXPECT_EQ(a.outcomes, b.outcomes);
@@ -57,7 +58,10 @@ inline void ExpectFirstObservations(const EnvironmentSpec& spec, const StepResul
   EXPECT_TRUE(results.finished.empty());
 }
 
-/// Checks that the outcome of a pickup or drop-off agrees with the mask before the step.
+/// Checks that a pickup or drop-off was illegal if and only if the mask before the step excluded
+/// it.
+/// @param before mask of legal actions before the step
+/// @param outcome Outcome of the action
 inline void ExpectMaskHeld(std::uint8_t action, ActionMask before, std::uint8_t outcome) {
   if (action < kMoveCount || outcome == static_cast<std::uint8_t>(Outcome::kOutOfPlay)) return;
   const bool illegal = outcome == static_cast<std::uint8_t>(Outcome::kIllegalPickup) ||
@@ -65,7 +69,7 @@ inline void ExpectMaskHeld(std::uint8_t action, ActionMask before, std::uint8_t 
   EXPECT_EQ(illegal, ((before >> action) & 1U) == 0) << "action " << +action;
 }
 
-/// Plays random actions and checks each step against the previous one.
+/// Plays random actions and checks the results of each step, partly against the previous step.
 inline void ExpectStepsKeepTheRules(Environment& environment, std::uint64_t seed, int steps,
                                     bool one_ship_masks) {
   const EnvironmentSpec& spec = environment.spec();
@@ -172,10 +176,11 @@ inline void ExpectBadBytesAreRefused(Environment& environment) {
   ExpectSame(environment.Step(actions), after);
 }
 
-/// Runs the contract test.
-/// @param environment must provide hashes
-/// @param one_ship_masks true to check outcomes against masks, which requires that no other ship
-///        can act in between
+/// Runs all tests on an environment.
+/// @param environment its results must contain hashes
+/// @param steps number of random steps in the test of the rules
+/// @param one_ship_masks whether to compare outcomes with masks. This requires that no other ship
+///   acts between the computation of a mask and the action, for example that a farm has one agent
 inline void RunEnvironmentContract(Environment& environment, int steps = 600,
                                    bool one_ship_masks = true) {
   const EnvironmentSpec& spec = environment.spec();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Runs a program as a child process of the test, with time limits.
+// Runs a program as a child process of a test, with time limits.
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -17,9 +17,12 @@
 
 namespace aquafarm::agents::test {
 
+/// A child process. The destructor kills it if Wait has not seen its end.
 class Process {
  public:
-  /// @param output file that receives the output of the program
+  /// Starts a program.
+  /// @param arguments path of the program, then its arguments
+  /// @param output path of the file that receives stdout and stderr
   Process(std::vector<std::string> arguments, const std::string& output) {
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -42,15 +45,15 @@ class Process {
 
   void Kill(int signal) const { kill(pid_, signal); }
 
-  /// The processes that the program has started and that have not ended, in order of their start.
+  /// Returns the running child processes of the program.
   std::vector<pid_t> Children() const {
     const std::string id = std::to_string(pid_);
     std::ifstream file("/proc/" + id + "/task/" + id + "/children");
     return {std::istream_iterator<pid_t>(file), {}};
   }
 
-  /// Waits for the end of the program. @returns its exit code, minus the number of the signal that
-  /// ended it, or −1000 if it did not end within the limit
+  /// Waits for the end of the program.
+  /// @returns its exit code; −n if signal n ended it; −1000 if it did not end within the limit
   int Wait(double limit_s = 60.0) {
     const auto start = std::chrono::steady_clock::now();
     int status = 0;
@@ -68,7 +71,7 @@ class Process {
   pid_t pid_{};
 };
 
-/// Polls until `condition` holds. @returns false after the time limit
+/// Polls until condition() returns true. Returns false if it does not within the time limit.
 template <typename Condition>
 bool WaitUntil(Condition&& condition, double limit_s = 30.0) {
   const auto start = std::chrono::steady_clock::now();

@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The evaluation protocol of §4.2: trains, evaluates, compares and draws.
+"""The evaluation protocol of the paper (§4.2): trains, evaluates, compares and draws.
 
-protocol  the learners, the length of their trainings, and the paper's results
-runs      the trainings, in parallel, each resumable
-cluster   the Dask workers that execute them: of this machine, a scheduler or Slurm
-worker    the part of a run that executes on a worker
-measures  convergence, stability, EA, interquartile means and intervals
-results   the table and the result files of a benchmark
-figures   Figs. 12 to 14 and the learning curves; route_figure: Fig. 11
+cli           the program aquafarm_benchmark
+protocol      the learners, the length of their trainings, and the paper's results
+runs          executes trainings and evaluations in parallel; they can be resumed
+cluster       the Dask workers that execute them: on this machine, of a scheduler, or by Slurm
+worker        the part of a run that executes on a worker
+measures      convergence, stability, EA, interquartile means and intervals
+losses        losses of money in evaluated episodes
+human         episodes that people played, as a row of the benchmark
+results       the tables and result files of a benchmark
+figures       Figs. 12 to 14 of the paper, and other charts of the results
+route_figure  Fig. 11 of the paper, and other charts of routes
+sweep, many   the programs aquafarm_sweep and aquafarm_many
 """

@@ -27,7 +27,7 @@ _LOCK_LIMIT_S = 15.0  # time for the trainings of a killed benchmark to save and
 
 
 class BadInput(ValueError):
-    """Wrong input, described in one line: the given and the expected value."""
+    """Wrong input. The message is one line with the given and the expected value."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -41,8 +41,9 @@ def _parser():
     parser = _Parser(
         prog="aquafarm_benchmark", epilog=_EPILOG,
         description="Trains every learner several times, measures them as the paper's §4.2 does, "
-        "and ends with Table 1 next to ours and the figures. Killed or interrupted, the same "
-        "command resumes: finished runs are kept, others continue from their checkpoints.")
+        "and writes a table with the paper's Table 1 next to the results, and figures. After an "
+        "interruption the same command resumes: finished runs are kept, others continue from "
+        "their checkpoints.")
     parser.add_argument("scenario", nargs="?", default="paper",
                         help="scenario file, or the name of a shipped one (default: paper)")
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("benchmark"),
@@ -54,16 +55,18 @@ def _parser():
                         help="rows that take part, separated by commas (default: all those of "
                         f"the profile; full has {','.join(_default_names(PROFILES['full']))})")
     parser.add_argument("--runs", type=int, default=0,
-                        help="trainings of each, with seeds 1, 2, … (default: the profile's)")
+                        help="trainings of each learner, with seeds 1, 2, … (default: the "
+                        "profile's)")
     parser.add_argument("--episodes", type=int, default=0,
                         help="episodes of a training (default: the profile's)")
     parser.add_argument("--evaluation-episodes", type=int, default=0,
-                        help="greedy episodes never trained on (default: the profile's)")
+                        help="greedy episodes, none of which is used in training (default: the "
+                        "profile's)")
     parser.add_argument("--max-steps", type=int, default=0,
                         help="step limit of an episode (default: the profile's; 0: the "
                         "scenario's)")
     parser.add_argument("--evaluation-seed", type=int, default=1000,
-                        help="seed of those episodes, the same for all (default: 1000)")
+                        help="seed of these episodes, the same for all learners (default: 1000)")
     parser.add_argument("--jobs", type=int, default=0,
                         help="runs in parallel, of --scheduler local and slurm (default: one per "
                         "core)")
@@ -82,7 +85,8 @@ def _parser():
 
 
 def parse(arguments):
-    """Parses the arguments; unset numbers are those of the profile."""
+    """Parses the arguments. Numbers that are 0 or not given are those of the profile. Raises
+    BadInput."""
     options = _parser().parse_args(arguments)
     if options.profile not in PROFILES:
         raise BadInput(f"profile: got '{options.profile}', expected one of: "
@@ -119,7 +123,7 @@ _EXTERNAL_COLOURS = ("#8c564b", "#e377c2", "#9467bd", "#393b79")
 
 
 def _external(text, number):
-    """Returns the row of 'NAME=COMMAND'."""
+    """Returns the row of 'NAME=COMMAND' or 'NAME=FILE.so'. number: index of its colour"""
     name, _, command = text.partition("=")
     try:
         words = tuple(shlex.split(command))
@@ -139,7 +143,8 @@ def _external(text, number):
 
 
 def _load_in_programs(contestants):
-    """Makes the programs of this benchmark load the libraries of its learners."""
+    """Sets AQUAFARM_LEARNERS, so that the programs of this benchmark load the libraries of its
+    learners."""
     libraries = [one.library for one in contestants if one.library]
     if libraries:
         there = os.environ.get("AQUAFARM_LEARNERS", "")
@@ -147,8 +152,9 @@ def _load_in_programs(contestants):
 
 
 def _own_packages(program):
-    """Returns words before a command. The PYTHONPATH of a workspace would hide the packages of a
-    virtual environment; one that contains this suite's Python package does not need it."""
+    """Returns the words to put before the command of a program. If the program belongs to a virtual
+    environment that contains aquafarm_core, they remove the workspace from PYTHONPATH, where it
+    would hide packages of the environment."""
     home = pathlib.Path(shutil.which(program) or program).parent.parent
     if not (home / "pyvenv.cfg").is_file() or not any(
             home.glob("lib/python*/site-packages/aquafarm_core")):
@@ -171,7 +177,7 @@ def _default_names(profile):
 
 
 def _require_paper(options):
-    """Rejects a scenario with profile paper, whose rows have their own scenarios."""
+    """Raises BadInput for profile paper with another scenario: its rows name their scenarios."""
     if options.profile == "paper" and options.scenario != "paper":
         raise BadInput(f"scenario: got '{options.scenario}' with profile paper, expected paper, "
                        "whose rows have scenarios of their own; use profile full for another "
@@ -179,7 +185,8 @@ def _require_paper(options):
 
 
 def find_program(name, folder, package="aquafarm_agents"):
-    """Returns the path of a program of the core."""
+    """Returns the path of a program: in `folder` if set, else in the workspace or on PATH. Raises
+    BadInput if there is none."""
     places = [folder] if folder else [
         pathlib.Path(prefix) / "lib" / package
         for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":") if prefix]
@@ -194,7 +201,8 @@ def find_program(name, folder, package="aquafarm_agents"):
 
 
 def make_jobs(options, contestants, folder):
-    """Returns the jobs: one per contestant and seed; one in total if the seed has no effect."""
+    """Returns the jobs: one per contestant and seed; only one for a contestant whose results do not
+    depend on the seed."""
     train = find_program("aquafarm_train", options.programs)
     evaluate = find_program("aquafarm_evaluate", options.programs)
     jobs = []
@@ -228,7 +236,8 @@ def make_jobs(options, contestants, folder):
 
 
 def settings_of(options, contestants, farm):
-    """Returns the settings that affect the results. All results of a folder have the same ones."""
+    """Returns the settings that affect the results. All results in a folder must have the same
+    settings."""
     return {**farm, "runs": options.runs, "episodes": options.episodes,
             "evaluation_episodes": options.evaluation_episodes, "max_steps": options.max_steps,
             "evaluation_seed": options.evaluation_seed, "farms": FARMS,
@@ -249,9 +258,10 @@ def _settings_of_one(one):
 
 
 def claim(folder, settings):
-    """Creates the folder; raises BadInput if it contains another benchmark or is in use.
+    """Creates or locks the folder of a benchmark, and writes its settings. Raises BadInput if the
+    folder contains another benchmark or other files, or is in use.
 
-    Returns the descriptor of its lock, which is held until this process ends."""
+    Returns the descriptor of the lock, which this process holds until it ends."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "benchmark.json"
     there = None
@@ -265,7 +275,7 @@ def claim(folder, settings):
     lock = _lock(folder)
     if there is not None:
         for key, value in settings.items():
-            if key in ("runs", "learners"):  # more of either may be added
+            if key in ("runs", "learners"):  # runs and learners may be added
                 continue
             if there.get(key) != value:
                 raise BadInput(f"{folder}: holds a benchmark with {key} {there.get(key)}, got "
@@ -298,7 +308,7 @@ def _lock(folder):
 
 
 def read_people(folder, farm):
-    """Returns the people whose bags are in a folder, with their episodes."""
+    """Returns the people whose bags are in a folder, with their episodes. Raises BadInput."""
     try:
         people = human.find(pathlib.Path(folder))
         human.verify(people, find_program("verify_bag", None, "aquafarm_sim"))
@@ -382,11 +392,11 @@ def _run_jobs(jobs, options, folder):
 
 
 def _summarise(one, of_one, best, settings, people):
-    """Returns the row of a contestant; best is the run of the optimum, None without one."""
+    """Returns the row of a contestant. best: run of the optimum; None if there is none"""
     is_human = one.name == human.HUMAN.name
     yardstick = None
     if best is not None:
-        # Some contestants play other episodes: compare them with the optimum of the same ones.
+        # A contestant is compared with the optimum of the episodes that it played.
         table = best["folder"] / "evaluation.csv"
         yardstick = (
             human.optimum_of_the_same(people, settings["evaluation_seed"], table) if is_human
@@ -398,7 +408,7 @@ def _summarise(one, of_one, best, settings, people):
 
 
 def _conclude(folder, contestants, found, settings, people):
-    # matplotlib takes a second that --help need not wait
+    # Imported here, because matplotlib takes a second to load, which would delay --help.
     from aquafarm_benchmark import figures, route_figure
 
     everyone = [*contestants, *([human.contestant(people)] if people else []),
@@ -429,7 +439,7 @@ def _conclude(folder, contestants, found, settings, people):
         figures.draw_losses(pictures / "losses.png", everyone, rows)
     for one in everyone:
         route = folder / "runs" / one.name / "seed_1" / "route.json"
-        if route.is_file():  # not of people, nor of learners of another package
+        if route.is_file():  # people and learners of other packages have no route
             route_figure.draw_route(pictures / f"route_{one.name}.png", one.label, route)
     print(results.table(rows) + results.money_table(rows))
 
@@ -448,8 +458,8 @@ def _say(text):
 
 
 def exit_code(name, command):
-    """Runs a command of this package and returns its exit code; what ends it early is printed in
-    one line. SIGTERM saves and exits as SIGINT does."""
+    """Runs a command of this package and returns its exit code. An error is printed in one line.
+    SIGTERM has the same effect as SIGINT: the command saves and exits."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return command()

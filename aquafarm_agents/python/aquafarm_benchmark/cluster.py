@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The workers of Dask that execute runs: of this process, of a scheduler, or of Slurm."""
+"""The Dask workers that execute runs: in this process, of a Dask scheduler, or as jobs of Slurm."""
 import contextlib
 import logging
 import re
@@ -19,26 +19,26 @@ _ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?[^/:\s]+:\d{1,5}")
 
 
 class BadScheduler(ValueError):
-    """The scheduler cannot be used; one line."""
+    """The scheduler cannot be used. The message is one line."""
 
 
 class Lost(RuntimeError):
-    """The scheduler did not come back; one line."""
+    """The scheduler was lost and did not return. The message is one line."""
 
 
 def check(scheduler):
-    """Raises BadScheduler if the text names no scheduler."""
+    """Raises BadScheduler if the text is neither local, slurm nor an address."""
     if scheduler not in (LOCAL, SLURM) and not _ADDRESS.fullmatch(scheduler):
         raise BadScheduler(f"scheduler: got '{scheduler}', expected local, slurm or an address such "
                            "as host:8786")
 
 
 class Cluster:
-    """A connection with the workers, used as a context."""
+    """A connection to the workers, and a context manager that closes it."""
 
     def __init__(self, scheduler=LOCAL, jobs=1):
-        """Connects. jobs is the number of runs in parallel, of local and slurm; a scheduler has
-        workers of its own. Raises BadScheduler."""
+        """Connects to the workers. jobs is the number of parallel runs for local and slurm; it is
+        ignored for the address of a scheduler, which has its own workers. Raises BadScheduler."""
         self._scheduler = scheduler
         self._made = None
         self.client = None
@@ -68,7 +68,8 @@ class Cluster:
         if self._scheduler == LOCAL:
             from dask import config
             from distributed import LocalCluster
-            # Dask always opens its HTTP servers: on the loopback address, without any page.
+            # Dask always opens its HTTP servers. Here they are on the loopback address and serve no
+            # page.
             place = "127.0.0.1:0"
             with config.set({"distributed.scheduler.http.routes": [],
                              "distributed.worker.http.routes": []}):
@@ -96,10 +97,10 @@ class Cluster:
             self._made = SLURMCluster(**chosen,
                                       scheduler_options={"dashboard_address": "127.0.0.1:0"})
             self._made.scale(jobs=jobs)
-            # scale() submits in Dask's thread, which only logs what sbatch refuses.
+            # scale() submits the jobs in Dask's thread, which only logs an error of sbatch.
             self._made.sync(self._made._correct_state, callback_timeout=_SUBMIT_S)
         except (OSError, ValueError, RuntimeError) as error:
-            with contextlib.suppress(AssertionError):  # Dask's, of workers that were never submitted
+            with contextlib.suppress(AssertionError):  # Dask asserts that workers were submitted
                 self.close()
             raise BadScheduler(f"scheduler: got 'slurm', which does not accept a job: "
                                f"{_refusal(error)}; check queue and limits in "
@@ -112,7 +113,8 @@ class Cluster:
         self._identity = self._ask_identity()
 
     def _ask(self, question, **arguments):
-        """Returns the answer of the scheduler. Raises TimeoutError, an OSError, after 10 s."""
+        """Returns the answer of the scheduler. Raises TimeoutError, which is an OSError, after 10
+        s."""
         return self.client.sync(question, **arguments, callback_timeout=10.0)
 
     def _ask_identity(self):
@@ -138,7 +140,7 @@ class Cluster:
                 report(f"the scheduler {self._scheduler} answers again")
                 return
             except (OSError, ValueError):
-                self._close_client()  # of a scheduler that was lost again at this moment
+                self._close_client()  # connected, if the scheduler was lost again just now
                 if time.monotonic() > end:
                     raise Lost(f"the scheduler {self._scheduler} did not come back within "
                                f"{_RETURN_S:.0f} s; the same command resumes") from None
@@ -152,11 +154,11 @@ class Cluster:
             return 0
 
     def cancel(self, futures):
-        """Ends the programs of these futures, unless the scheduler was just lost, as then they
-        end by themselves."""
+        """Ends the programs of these futures. Does nothing if the scheduler was just lost: its
+        programs then end by themselves."""
         try:
             if self.client is not None:
-                self._ask(self.client._cancel, futures=list(futures))  # cancel() has no limit
+                self._ask(self.client._cancel, futures=list(futures))  # cancel() has no timeout
         except OSError:
             pass
 
@@ -166,7 +168,7 @@ class Cluster:
             client.close(timeout=5.0)
 
     def close(self):
-        """Ends the connection, and the workers that it made."""
+        """Closes the connection, and ends the workers that it started."""
         self._close_client()
         if self._made is not None:
             made, self._made = self._made, None
@@ -194,7 +196,8 @@ def _check_slurm():
 
 
 def _refusal(error):
-    """Returns the line of sbatch in an error of dask-jobqueue, or the first line."""
+    """Returns the error line of sbatch in an error of dask-jobqueue; if it has none, its first
+    line."""
     found = re.search(r"^sbatch: (?:error: )?(.+)$", str(error), re.MULTILINE)
     return found[1] if found else _first_line(error)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the figures of §4 as PNG from the data of results.py.
+"""Draws the figures of the paper's §4 as PNG from the data of results.py.
 
-Each plot_… function draws on axes; each draw_… function creates a figure with them and saves it.
+Each function draw_… creates a figure and saves it. The functions plot_… draw on given axes.
 """
 import matplotlib
 
@@ -34,20 +34,20 @@ def _label(axes, title, ylabel, xlabel="episode"):
 
 
 def _smooth(values):
-    """Returns the episodes and values of the moving mean over the protocol's window."""
+    """Returns the moving means over 50 episodes, and the last episode of each, counted from 1."""
     window = min(measures.WINDOW, len(values))
     return np.arange(window, len(values) + 1), measures.moving_mean(values, window)
 
 
 def _range_of(axes):
-    """Returns the lowest and highest values on the axes; single low returns do not count."""
+    """Returns the lowest and highest values on the axes, without the lowest 2 % of each line."""
     shown = [line.get_ydata() for line in axes.lines]
     return min(np.quantile(y, 0.02) for y in shown), max(np.max(y) for y in shown)
 
 
 def _scale_returns(axes):
-    """Sets a scale of returns that is linear above 0 and logarithmic below, because the returns of
-    the first episodes are far below those that differ between policies."""
+    """Sets a scale that is linear above 0 and logarithmic below. Returns of the first episodes are
+    very low; on a linear scale they would hide the differences between learners."""
     low, top = _range_of(axes)
     if top <= 0.0 or low >= 0.0:
         margin = 0.05 * (top - low)
@@ -66,10 +66,11 @@ def _scale_returns(axes):
 
 
 def _draw_returns(path, title, ylabel, plots):
-    """Draws returns on the scale of _scale_returns. Lines are named at their right end.
+    """Draws charts of returns, one below the other, on the scale of _scale_returns. Lines are named
+    at their right end.
 
-    plots: (function that plots on axes and returns the ends of the lines, xlabel) of each chart,
-        from top to bottom
+    plots: for each chart, from top to bottom: (function, xlabel). The function plots on axes and
+        returns the ends of the lines, as _name_ends expects them
     """
     figure, rows = plt.subplots(len(plots), 1, figsize=(8.7, 1.0 + 4.4 * len(plots)),
                                 squeeze=False, layout="constrained")
@@ -83,16 +84,16 @@ def _draw_returns(path, title, ylabel, plots):
     save(figure, path)
 
 
-_LOGARITHMIC = "#eef1f4"  # background of the part of a scale that is logarithmic
-_ALIKE = 0.02  # references that differ by less share one line
+_LOGARITHMIC = "#eef1f4"  # background of the logarithmic part of a scale
+_ALIKE = 0.02  # references whose relative difference is less share one line
 _NAME_PT = 15.0  # height of a name [pt]
 _TEXT = 4.5  # min contrast ratio of names on white (WCAG 2.1, 1.4.3)
 
 
 def spread(places, gap, low=0.0, high=1.0):
-    """Returns ascending places moved apart to at least a gap, each as little as possible (least
-    squares), within [low, high] if they fit."""
-    groups = []  # (mean of the place of the first one, count) of places that touch each other
+    """Moves places apart to distances of at least `gap`, each as little as possible (least
+    squares), and into [low, high] if they fit. Expects and returns them in ascending order."""
+    groups = []  # of places that touch each other: (position of the first one, number of places)
     for i, place in enumerate(places):
         groups.append((place - i * gap, 1))
         while len(groups) > 1 and groups[-2][0] >= groups[-1][0]:
@@ -104,13 +105,13 @@ def spread(places, gap, low=0.0, high=1.0):
 
 
 def _name_ends(axes, ends):
-    """Writes a name to the right of the end of each line, apart from each other, with a line to it that
-    ends before the name.
+    """Writes the name of each line to the right of its end, and connects both. Names do not
+    overlap.
 
     ends: (x, y, colour, name) of each line
     """
     axes.margins(x=0.0)
-    axes.set_ylim(axes.get_ylim())  # stays as it is
+    axes.set_ylim(axes.get_ylim())  # fixes the limits
     ends = sorted(ends, key=lambda end: end[1])
     axes.figure.draw_without_rendering()  # sets the size of the axes
     to_axes = axes.transData + axes.transAxes.inverted()
@@ -137,7 +138,8 @@ def _legible(colour):
 
 
 def _plot_references(axes, references, end, digits=0):
-    """Draws values to compare with, {name: value}, and returns the ends of their lines."""
+    """Draws a horizontal line for each reference value {name: value}. Returns the ends of the
+    lines."""
     ends = []
     for name, value in sorted(references.items(), key=lambda pair: -pair[1]):
         words = f"{name} {value:.{digits}f}"
@@ -150,12 +152,12 @@ def _plot_references(axes, references, end, digits=0):
 
 
 def _line_style(one):
-    """Returns the options of the line of a contestant."""
+    """Returns matplotlib's options for the line of a contestant."""
     return {"color": one.colour, "linestyle": one.linestyle}
 
 
 def _count(contestants, runs):
-    """Returns the number of runs of most contestants."""
+    """Returns the number of runs that most contestants have."""
     counts = [len(runs[one.name]) for one in contestants]
     return max(set(counts), key=counts.count)
 
@@ -165,15 +167,17 @@ def _runs_text(count):
 
 
 def _plot_one_run(axes, one, curve, x):
-    """Plots the 50-episode mean return of a run at x, one for each episode; returns the last
-    point."""
+    """Plots the 50-episode mean return of a run. Returns the end of the line.
+
+    x: position of each episode on the x axis
+    """
     episodes, means = _smooth(curve["return"])
     axes.plot(x[episodes - 1], means, linewidth=1.2, **_line_style(one), label=one.label)
     return x[episodes[-1] - 1], means[-1], one.colour, one.label
 
 
 def plot_rewards_by_steps(axes, contestants, runs, references):
-    """Fig. 12a: 50-episode mean return of the first run by time steps taken so far."""
+    """Plots Fig. 12a: the 50-episode mean return of the first run by time steps taken so far."""
     ends = []
     for one in contestants:
         curve = runs[one.name][0]["curve"]
@@ -183,7 +187,7 @@ def plot_rewards_by_steps(axes, contestants, runs, references):
 
 
 def plot_rewards_by_episodes(axes, contestants, runs, references):
-    """50-episode mean return of the first run by episodes."""
+    """Plots the 50-episode mean return of the first run by episodes."""
     ends = []
     for one in contestants:
         curve = runs[one.name][0]["curve"]
@@ -192,7 +196,7 @@ def plot_rewards_by_episodes(axes, contestants, runs, references):
 
 
 def draw_rewards(path, contestants, runs, references):
-    """Fig. 12a by time steps, next to the same data by episodes."""
+    """Draws Fig. 12a, and below it the same data by episodes."""
     data = (contestants, runs, references)
     _draw_returns(path, f"Return of the first run of each learner (Fig. 12a): mean of "
                   f"{measures.WINDOW} episodes", "return of an episode", [
@@ -202,7 +206,7 @@ def draw_rewards(path, contestants, runs, references):
 
 
 def draw_average_rewards(path, contestants, runs, references):
-    """Fig. 12b: mean return of all episodes so far, over all runs."""
+    """Draws Fig. 12b: the mean return of all episodes so far, over all runs."""
     _draw_returns(path, f"Mean return of all episodes so far (Fig. 12b):\n"
                   f"median of {_runs_text(_count(contestants, runs))}, shaded from the lowest to the "
                   "highest", "mean return so far", [
@@ -210,8 +214,8 @@ def draw_average_rewards(path, contestants, runs, references):
 
 
 def plot_average_rewards(axes, contestants, runs, references):
-    """Mean returns of all episodes so far: the median of the runs, shaded between their lowest and
-    highest value."""
+    """Plots the mean return of all episodes so far: the median of the runs, shaded between their
+    lowest and highest value."""
     ends = []
     for one in contestants:
         curves = _curves(runs[one.name], "return")
@@ -221,7 +225,7 @@ def plot_average_rewards(axes, contestants, runs, references):
 
 
 def draw_square_error(path, contestants, runs):
-    """Fig. 12c: mean square error of the learners' value estimates, over all runs."""
+    """Draws Fig. 12c: the mean square error of the learners' value estimates, over all runs."""
     figure, axes = _axes("Mean square error of the value estimates (Fig. 12c):\nmedian of "
                          f"{_runs_text(_count(contestants, runs))}, shaded from the lowest to the "
                          "highest",
@@ -235,15 +239,15 @@ def draw_square_error(path, contestants, runs):
 
 
 def plot_square_error(axes, contestants, runs):
-    """50-episode means of the squared TD error, without RANDOM: the median of the runs, shaded
-    between their lowest and highest value. Each line ends with its name."""
+    """Plots the 50-episode mean of the squared TD error: the median of the runs, shaded between
+    their lowest and highest value. Omits contestants without updates, such as RANDOM."""
     ends = []
     for one in contestants:
         errors = _curves(runs[one.name], "loss")
         window = min(measures.WINDOW, errors.shape[1])
         smooth = np.array([measures.known_moving_mean(row, window) for row in errors])
         episodes = np.arange(window, errors.shape[1] + 1)
-        smooth = smooth[np.isfinite(smooth).any(axis=1)]  # without runs that had no update
+        smooth = smooth[np.isfinite(smooth).any(axis=1)]  # omits runs without an update
         known = np.isfinite(smooth).all(axis=0) & (smooth > 0.0).all(axis=0)
         if not len(smooth) or not known.any():
             continue
@@ -261,9 +265,10 @@ def plot_square_error(axes, contestants, runs):
 
 
 def draw_mean_score(path, contestants, runs, references):
-    """Fig. 13: mean return per step by episode: (a) LSTM-DQN, (b) SARSA, (c) all learners.
+    """Draws Fig. 13: the mean return per step by episode: (a) LSTM-DQN, (b) SARSA, (c) all
+    learners.
 
-    references: {name: return per step} to compare with
+    references: {name: return per step}, drawn for comparison
     """
     panels = [("a", [one for one in contestants if one.algorithm_name == "lstm_dqn"]),
               ("b", [one for one in contestants if one.algorithm_name == "sarsa"])]
@@ -279,15 +284,18 @@ def draw_mean_score(path, contestants, runs, references):
         _label(all_axes[letter], f"{whose} (Fig. 13{letter})", "return per step")
         limits = None if letter == "c" else all_axes["c"].get_ylim()
         ends = plot_mean_score(all_axes[letter], panel, runs, references, limits)
-        if letter == "c":  # the titles of the others name their lines
+        if letter == "c":  # in the other panels the title names the line
             _name_ends(all_axes[letter], ends)
     save(figure, path)
 
 
 def plot_mean_score(axes, contestants, runs, references, limits=None):
-    """50-episode mean return per step: the median of the runs, shaded between their lowest and highest
-    value, with references {name: return per step}, within limits of y if any; returns the ends of the
-    lines."""
+    """Plots the 50-episode mean return per step: the median of the runs, shaded between their
+    lowest and highest value. Returns the ends of the lines.
+
+    references: {name: return per step}, drawn for comparison
+    limits: limits of the y axis; None: automatic
+    """
     ends = []
     for one in contestants:
         returns, steps = _curves(runs[one.name], "return"), _curves(runs[one.name], "steps")
@@ -304,7 +312,8 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
 
 
 def draw_evaluation(path, contestants, rows):
-    """Mean return of greedy episodes not used for training, with its 95 % interval."""
+    """Draws the return of greedy episodes that are not used for training, with 95 % intervals:
+    above, only the part above 0; below, the whole range."""
     figure, (zoom, whole) = plt.subplots(2, 1, figsize=(8, 6), sharex=True, layout="constrained",
                                          height_ratios=[3, 2])
     _label(zoom, "Return on episodes never trained on", "return of an episode\nenlarged: above 0",
@@ -318,7 +327,8 @@ def draw_evaluation(path, contestants, rows):
 
 
 def plot_evaluation(axes, contestants, rows):
-    """One bar per row: the interquartile mean of the runs and its interval."""
+    """Plots a bar for each contestant: the interquartile mean of its runs, with the 95 %
+    interval."""
     by_name = {row["name"]: row for row in rows}
     for place, one in enumerate(contestants):
         row = by_name[one.name]
@@ -334,7 +344,8 @@ def plot_evaluation(axes, contestants, rows):
 
 
 def draw_losses(path, contestants, rows):
-    """Exceedance curves of the losses, next to the mean loss by kind of device."""
+    """Draws the exceedance curves of the losses, and next to them the mean loss by kind of
+    device."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(13, 4.5), layout="constrained")
     unit = next(row["money"]["currency"] for row in rows if row["money"])
     _label(left, "Exceedance of losses", "probability of a larger loss", f"loss x [{unit}]")
@@ -350,7 +361,8 @@ def _with_money(contestants, rows):
 
 
 def plot_exceedance(axes, contestants, rows):
-    """P(loss > x) by x, a step curve from probability 1 at 0, with CVaR as a mark at 5 %."""
+    """Plots P(loss > x) by x as a step curve that starts at x = 0, and a mark at the CVaR, on the
+    line of 5 %."""
     for one, money in _with_money(contestants, rows):
         x, probability = money["exceedance"]
         axes.step([0.0, *x], [1.0 if x[0] > 0.0 else probability[0], *probability], where="post",
@@ -362,7 +374,8 @@ def plot_exceedance(axes, contestants, rows):
 
 
 def plot_loss_by_kind(axes, contestants, rows):
-    """One group of bars per kind: damaged, and lost on top of it, a bar for each contestant."""
+    """Plots a group of bars for each kind of device, with a bar for each contestant. The lost part
+    is stacked on the damaged part."""
     shown = _with_money(contestants, rows)
     kinds = sorted({kind for _, money in shown for kind in money["by_kind"]})
     width = 0.8 / max(1, len(shown))
@@ -379,7 +392,7 @@ def plot_loss_by_kind(axes, contestants, rows):
 
 
 def draw_repeated(path, contestants, runs, references):
-    """Fig. 14: 50-episode means over all runs, shaded between their lowest and highest value."""
+    """Draws Fig. 14: the 50-episode mean return over all runs."""
     _draw_returns(path, f"Repeated trainings (Fig. 14): median of "
                   f"{_runs_text(_count(contestants, runs))},\nshaded from the lowest to the highest",
                   f"{measures.WINDOW}-episode mean return", [
@@ -387,7 +400,8 @@ def draw_repeated(path, contestants, runs, references):
 
 
 def plot_repeated(axes, contestants, runs, references):
-    """50-episode means: the median of the runs, shaded between their lowest and highest value."""
+    """Plots the 50-episode mean return: the median of the runs, shaded between their lowest and
+    highest value. Returns the ends of the lines."""
     ends = []
     for one in contestants:
         smooth = [_smooth(curve) for curve in _curves(runs[one.name], "return")]
@@ -397,14 +411,14 @@ def plot_repeated(axes, contestants, runs, references):
 
 
 def _shade(axes, x, low, high, colour):
-    """Shades a range. Thin edges separate ranges that overlap."""
+    """Shades a range. Its thin edges stay visible where ranges overlap."""
     axes.fill_between(x, low, high, facecolor=(*colors.to_rgb(colour), 0.16),
                       edgecolor=(*colors.to_rgb(colour), 0.45), linewidth=0.5)
 
 
 def _plot_shaded(axes, episodes, values, one, label):
-    """Plots the median of values [runs, episodes], shaded between their lowest and highest value;
-    returns the last point."""
+    """Plots the median of values [runs, episodes], shaded between their lowest and highest value.
+    Returns the end of the line."""
     median = np.median(values, axis=0)
     axes.plot(episodes, median, **_line_style(one), label=label)
     _shade(axes, episodes, values.min(axis=0), values.max(axis=0), one.colour)
@@ -412,6 +426,7 @@ def _plot_shaded(axes, episodes, values, one, label):
 
 
 def _curves(of_one, column):
-    """Returns [runs, episodes] with the length of the shortest run; lengths may differ slightly."""
+    """Returns a column of all runs, [runs, episodes]. Longer runs are cut to the shortest one, as
+    lengths may differ slightly."""
     length = min(len(run["curve"][column]) for run in of_one)
     return np.array([run["curve"][column][:length] for run in of_one])

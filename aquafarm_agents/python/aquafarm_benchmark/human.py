@@ -25,12 +25,13 @@ ADDED = ("energy_kwh", "distance_km")
 
 
 class BadBag(ValueError):
-    """A bag that cannot be used, described in one line."""
+    """A bag cannot be used. The message is one line."""
 
 
 @dataclasses.dataclass
 class Person:
-    """The finished episodes of one person: rows with COLUMNS and a key of the start."""
+    """The finished episodes of one person: a row with the keys COLUMNS and ADDED, and a key of the
+    start, for each episode."""
     folder: pathlib.Path
     bags: list
     rows: list
@@ -38,7 +39,8 @@ class Person:
 
 
 def find(folder):
-    """Returns a Person without episodes for each folder with bags. Raises BadBag without bags."""
+    """Returns a Person without episodes for each folder with bags. Raises BadBag if there are no
+    bags."""
     if not folder.is_dir():
         raise BadBag(f"human: got {folder}, expected a folder with bags of ./aquafarm play")
     places = [folder, *sorted(path for path in folder.iterdir() if path.is_dir())]
@@ -51,19 +53,20 @@ def find(folder):
 
 
 def verify(people, verify_bag):
-    """Simulates all bags again. Raises BadBag if one differs, or was changed from outside."""
+    """Simulates all bags again with the program verify_bag. Raises BadBag if a bag differs from its
+    simulation, or contains an external change such as a bulletin."""
     for bag in (bag for person in people for bag in person.bags):
         done = subprocess.run([verify_bag, str(bag)], capture_output=True, text=True, check=False)
         words = (done.stdout + done.stderr).strip().splitlines()
         if done.returncode != 0:
             raise BadBag(f"human: {words[-1] if words else bag}")
         if "changed from outside" in words[-1]:
-            raise BadBag(f"human: {words[-1]}; expected a ranch that only commands change; "
+            raise BadBag(f"human: {words[-1]}; expected a ranch that changes only by commands; "
                          "remove the bag")
 
 
 def _start_of(spec, state):
-    """Returns a key of the start: layout, devices, disasters and ships."""
+    """Returns a key that is equal for equal starts: layout, devices, disasters and ships."""
     text = io.BytesIO()
     for one in (*spec.islands, *spec.rocks, *spec.ports, *spec.devices, *spec.disasters):
         one.serialize(text)
@@ -71,8 +74,9 @@ def _start_of(spec, state):
 
 
 def read(people, scenario_hash):
-    """Reads the finished episodes of farm 0. Raises BadBag for another scenario."""
-    import rosbag  # only here: the benchmark of learners needs no ROS
+    """Reads the finished episodes of farm 0. Returns the people who have some. Raises BadBag if no
+    person has any, or if a bag has another scenario."""
+    import rosbag  # imported here, because the benchmark of learners needs no ROS
 
     for person in people:
         for path in person.bags:
@@ -106,7 +110,7 @@ def _row(summary):
         summary.delivered, summary.devices, summary.delivered_health, summary.crashes,
         summary.collisions, summary.steps_in_disaster, _REASONS.get(summary.reason, "none"),
         int(summary.success))))
-    # Bags of version 0.1.0 contain neither.
+    # Bags of version 0.1.0 do not contain these fields.
     return dict(row, energy_kwh=getattr(summary, "energy", None),
                 distance_km=getattr(summary, "distance", None))
 
@@ -116,7 +120,8 @@ def _column(rows, name):
 
 
 def summary_of(person, farm):
-    """Returns the content of evaluation.json, with the definitions of aquafarm_evaluate."""
+    """Returns the content of evaluation.json for a person. The values are defined as those of
+    aquafarm_evaluate."""
     rows = person.rows
     steps = _column(rows, "steps").sum()
     delivering = np.count_nonzero(_column(rows, "delivered"))
@@ -152,7 +157,7 @@ def write_runs(people, farm, folder):
 
 
 def contestant(people):
-    """Returns the row's contestant; its label contains the number of people and episodes."""
+    """Returns the contestant of the row. Its label contains the numbers of people and episodes."""
     episodes = sum(len(person.rows) for person in people)
     count = "" if len(people) == 1 else f"{len(people)} people, "
     label = f"human, {count}{episodes} episode{'' if episodes == 1 else 's'}"
@@ -160,8 +165,8 @@ def contestant(people):
 
 
 def optimum_of_the_same(people, evaluation_seed, evaluation_csv):
-    """Returns the optimum's mean return over the episodes that the people played, None if one of
-    them is not among the evaluation episodes."""
+    """Returns the optimum's mean return over the episodes that the people played: the mean over the
+    people of their means. None if one of the episodes is not an evaluation episode."""
     with open(evaluation_csv, newline="") as file:
         best = {int(row["episode"]): float(row["return"]) for row in csv.DictReader(file)}
     seed = evaluation_seed | _EVALUATION_SEED_BIT
@@ -174,7 +179,7 @@ def optimum_of_the_same(people, evaluation_seed, evaluation_csv):
 
 
 def add_intervals(row, people):
-    """Replaces the 95 % intervals of a single person's row: over episodes, not over runs."""
+    """If there is one person, replaces the 95 % intervals of the row by intervals over episodes."""
     if len(people) > 1:
         return
     rows = people[0].rows

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Losses of evaluated episodes, from the columns of money in evaluation.csv.
+"""Losses of evaluated episodes, computed from the money columns of evaluation.csv.
 
 The definitions are those of aquafarm/agents/evaluation/losses.h: loss = damaged + lost; VaR is the
 smallest x with P(loss > x) <= 5 %; CVaR is the mean loss of the worst 5 % (Rockafellar and Uryasev
-2002). Episodes of several runs are pooled. Episodes with equal starts are drawn together by the
-bootstrap (a cluster bootstrap, Davison and Hinkley 1997) and in the standard error.
+2002). Episodes of several runs are pooled. The bootstrap draws all episodes with an equal start
+together (a cluster bootstrap, Davison and Hinkley 1997), and the standard error treats them as one
+cluster.
 """
 import csv
 import decimal
@@ -21,7 +22,8 @@ def _cents(text):
 
 
 def read(evaluation_csv):
-    """Returns the columns of money as arrays of whole cents, and "start"; None without money."""
+    """Returns the money columns as arrays of whole cents, and the column "start", a number that is
+    equal for equal starts; None without money."""
     with open(evaluation_csv, newline="") as file:
         rows = list(csv.DictReader(file))
     if not rows or "insured" not in rows[0]:
@@ -35,23 +37,24 @@ def read(evaluation_csv):
 
 
 def pool(runs):
-    """Joins the columns of several runs of the same episodes."""
+    """Concatenates the columns of several runs."""
     return {name: np.concatenate([run[name] for run in runs]) for name in runs[0]}
 
 
 def losses_of(columns):
-    """Returns the loss of each episode, in the currency."""
+    """Returns the loss of each episode in the scenario's currency."""
     return (columns["damaged"] + columns["lost"]) / 100.0
 
 
 def exceedance(losses):
-    """Returns x ascending, and P(loss > x) at each x."""
+    """Returns the different losses x in ascending order, and P(loss > x) for each of them."""
     values, counts = np.unique(losses, return_counts=True)
     return values, 1.0 - np.cumsum(counts) / len(losses)
 
 
 def tail(losses, weights=None):
-    """Returns VaR and CVaR at 5 % of losses that count `weights` times each."""
+    """Returns VaR and CVaR at 5 %. Each loss counts as often as its weight states (default:
+    once)."""
     order = np.argsort(-losses, kind="stable")
     losses = losses[order]
     weights = np.ones(len(losses), dtype=np.int64) if weights is None else weights[order]
@@ -88,7 +91,8 @@ def _intervals(losses, starts):
 
 
 def summarise(columns, currency):
-    """Returns the statistics of pooled columns; amounts in the currency, means per episode."""
+    """Returns the statistics of pooled columns. Amounts are in the currency; insured, saved,
+    damaged and lost are means per episode."""
     losses = losses_of(columns)
     var, cvar = tail(losses)
     var_interval, cvar_interval = _intervals(losses, columns["start"])

@@ -32,12 +32,12 @@ _COLUMNS = {
 
 
 def is_planned(result):
-    """Returns whether a plan was written. The program writes it whole or not at all."""
+    """Returns whether a plan was written. The program writes either a complete file or none."""
     return result.is_file()
 
 
 def arguments(words):
-    """Parses the arguments; those of the program follow --."""
+    """Parses the arguments. Those after -- are the arguments of the program. Raises ValueError."""
     words, rest = (words, []) if "--" not in words else (
         words[:words.index("--")], words[words.index("--") + 1:])
     parser = argparse.ArgumentParser(prog="aquafarm_many", description=__doc__,
@@ -65,7 +65,7 @@ def arguments(words):
 
 
 def jobs_of(given):
-    """Returns the jobs, and the first columns of their rows."""
+    """Returns the jobs, and for each job the first columns of its row: ranch, and policy."""
     program = find_program(f"aquafarm_{given.what}", given.programs)
     jobs, rows = [], []
     for number, ranch in enumerate(given.ranches):
@@ -85,7 +85,7 @@ def jobs_of(given):
 
 
 def numbers_of(what, result):
-    """Returns the last columns of a row."""
+    """Returns the last columns of a row, which are read from a result file."""
     found = json.loads(result.read_text("utf-8"))
     if what == _EVALUATE:
         return [found["return_per_episode"], found["success_rate"]]
@@ -107,7 +107,8 @@ def write_tables(folder, columns, rows):
 
 
 def _files(words):
-    """Returns size and time of those words that are files: other content is another task."""
+    """Returns size and time of change of those words that are files. They are part of the task, so
+    that a changed file makes it a different task."""
     return {word: [os.stat(word).st_size, os.stat(word).st_mtime_ns]
             for word in words if os.path.isfile(word)}
 
@@ -134,12 +135,13 @@ def _run(given):
     table = [row + numbers_of(given.what, job.result) for row, job in zip(rows, jobs)
              if complete(job.result)]
     print(f"\n{write_tables(given.output, list(_COLUMNS[given.what]), table)}\n"
-          f"written: {given.output / 'table.md'}, table.csv; {len(table)} of {len(jobs)} are there")
+          f"written: {given.output / 'table.md'}, table.csv; "
+          f"{len(table)} of {len(jobs)} results exist")
     return code
 
 
 def main(words=None):
-    """The command; returns its exit code."""
+    """Runs the program; returns its exit code."""
     words = sys.argv[1:] if words is None else words
     return exit_code("aquafarm_many", lambda: _run(arguments(words)))
 

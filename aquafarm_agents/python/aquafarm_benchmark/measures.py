@@ -5,22 +5,24 @@ import math
 import numpy as np
 
 WINDOW = 50  # episodes in a moving mean
-BAND = 0.05  # half-width of the band of a converged learner, as a fraction of the plateau
-PLATEAU_SHARE = 0.25  # the last part of a training, whose mean is the plateau
+BAND = 0.05  # half-width of the band of a converged learner, as a fraction of the plateau's level
+PLATEAU_SHARE = 0.25  # fraction of a training, at its end, that is the plateau
 NOISE = 3.0  # half-width of the wider band in standard errors
 PLATEAU_SUCCESS = 0.95  # min success rate of a plateau
 WEIGHTS = {"return": 0.1, "success": 0.3, "convergence": 0.2, "stability": 0.4}  # Eq. 16
-BEST_RANK, FAILED_RANK = 4, 1  # of convergence in Table 1
+BEST_RANK, FAILED_RANK = 4, 1  # ranks of convergence in Table 1
 
 
 def moving_mean(values, window=WINDOW):
-    """Returns moving means of `window` values, [n - window + 1]; the first ends at window - 1."""
+    """Returns the means of all `window` successive values, [n - window + 1]. The first one is the
+    mean of the values 0 to window - 1."""
     sums = np.cumsum(np.concatenate(([0.0], np.asarray(values, dtype=float))))
     return (sums[window:] - sums[:-window]) / window
 
 
 def known_moving_mean(values, window=WINDOW):
-    """Returns moving means as moving_mean, of the known values only; NaN where there is none."""
+    """Returns moving means as moving_mean, but only over finite values; NaN for a window without
+    one."""
     values = np.asarray(values, dtype=float)
     known = np.isfinite(values)
     counts = np.convolve(known.astype(float), np.ones(window), mode="valid")
@@ -29,7 +31,7 @@ def known_moving_mean(values, window=WINDOW):
 
 
 def last_quarter(values):
-    """Returns the episodes of the plateau, at least one."""
+    """Returns the values of the plateau: the last quarter, at least one."""
     values = np.asarray(values, dtype=float)
     return values[-max(1, int(len(values) * PLATEAU_SHARE)):]
 
@@ -38,12 +40,13 @@ def convergence(returns, successes, standard_errors=0.0):
     """Returns the episode, counted from 1, from which the 50-episode mean return stays within 5 %
     of its final plateau.
 
-    The result is the last episode of the first such mean. None if the run does not converge: the
-    success rate of the plateau is too low, or the mean leaves the band during the plateau.
+    The result is the last of the 50 episodes of the first such mean. It is None if the run does not
+    converge: it has fewer than 100 episodes, the success rate on the plateau is below 0.95, or the
+    mean is outside the band during the plateau.
 
-    standard_errors: half-width of the band in standard errors of a 50-episode mean on the plateau,
-    used if it is wider than 5 %. Without it, the result of a settled policy whose returns vary by
-    more than a tenth would depend on chance.
+    standard_errors: half-width of a second band, in standard errors of a 50-episode mean on the
+    plateau. The wider band applies. With the 5 % band alone, the result of a policy that no longer
+    changes would depend on chance if its returns vary by more than a tenth.
     """
     if len(returns) < 2 * WINDOW or last_quarter(successes).mean() < PLATEAU_SUCCESS:
         return None
@@ -57,9 +60,10 @@ def convergence(returns, successes, standard_errors=0.0):
 
 
 def interquartile_mean(values):
-    """Returns the mean of the middle half; values at a quarter's edge count with a fraction.
+    """Returns the mean of the middle half of the values. Values at the edges of the half count in
+    part.
 
-    Not scipy's trim_mean, which leaves out whole values only: one of five, not 1.25.
+    scipy's trim_mean differs: it removes only whole values, for example 1 of 5 instead of 1.25.
     """
     values = np.sort(np.asarray(values, dtype=float))
     cut = len(values) / 4.0
@@ -75,7 +79,8 @@ def interquartile_mean(values):
 
 
 def bootstrap_interval(values, statistic=interquartile_mean, level=0.95, draws=2000, seed=1):
-    """Returns the percentile bootstrap (Efron 1979) of a statistic over runs: (low, high)."""
+    """Returns the interval of a statistic over runs by percentile bootstrap (Efron 1979):
+    (low, high). NaN for fewer than two values."""
     if len(values) < 2:
         return (math.nan, math.nan)
     from scipy import stats  # takes a third of a second to load
@@ -87,7 +92,7 @@ def bootstrap_interval(values, statistic=interquartile_mean, level=0.95, draws=2
 
 
 def wilson_interval(hits, count, level=0.95):
-    """Returns the interval of a proportion (Wilson 1927): (low, high)."""
+    """Returns the interval of the proportion hits / count (Wilson 1927): (low, high)."""
     from scipy import stats
 
     found = stats.binomtest(int(hits), count).proportion_ci(level, method="wilson")
@@ -95,22 +100,22 @@ def wilson_interval(hits, count, level=0.95):
 
 
 def return_per_step(returns, steps, window=WINDOW):
-    """Returns the mean return per step in windows of episodes, shaped as moving_mean."""
+    """Returns the mean return per step in each window of episodes, [n - window + 1]."""
     return moving_mean(returns, window) / moving_mean(steps, window)
 
 
 def median_convergence(episodes):
-    """Returns the median over runs. A run without convergence (None) counts as infinity; None if
-    the median is infinite."""
+    """Returns the median of the converged episodes of several runs. A run that has not converged
+    (None) counts as infinity. None if the median is infinite."""
     middle = float(np.median([math.inf if one is None else one for one in episodes]))
     return middle if math.isfinite(middle) else None
 
 
 def convergence_ranks(episodes):
-    """Returns the rank of each learner by its median convergence, as in Table 1: 4 for the first,
-    then 3, then 2; 1 without convergence.
+    """Returns the rank of each learner by its median convergence, as in Table 1: 4 for the
+    earliest, 3 for the next, 2 for all later ones, 1 for learners that do not converge.
 
-    episodes: {name: median episode or None}. Equal episodes get the same rank.
+    episodes: {name: median episode or None}. Learners with equal episodes get the same rank.
     """
     ordered = sorted({episode for episode in episodes.values() if episode is not None})
     ranks = {}

@@ -7,10 +7,10 @@ import typing
 
 @dataclasses.dataclass(frozen=True)
 class PrintedRow:
-    """A row of the paper's Table 1: the text of each cell as printed (CC BY, Song et al. 2023)."""
+    """A row of Table 1 of the paper: the text of each cell as printed (CC BY, Song et al. 2023)."""
     average_return: str
     success: str
-    convergence: str  # with the rank of Eq. 16 in brackets
+    convergence: str  # includes the rank of Eq. 16 in brackets
     stability: str
     ea: str
 
@@ -37,13 +37,13 @@ PAPER_TABLE = {
 
 @dataclasses.dataclass(frozen=True)
 class Contestant:
-    """A row of the benchmark: an algorithm with its settings. Settings may contain {explored}, the
-    fraction of the training in which networks explore, and {last_rate}, their final learning
-    rate."""
-    name: str  # of the row and of its folder
+    """A row of the benchmark: an algorithm with its settings. exploration and options may contain
+    {explored}, the fraction of the training after which the exploration temperature is 1, and
+    {last_rate}, the final learning rate; for_episodes replaces them."""
+    name: str  # name of the row and of its folder
     label: str  # for tables and figures
     colour: str
-    linestyle: str = "solid"  # of matplotlib
+    linestyle: str = "solid"  # as in matplotlib
     algorithm: str = ""  # name for --algorithm and policy; empty: the row's name
     learns: bool = True
     exploration: str = ""  # empty: the algorithm's default
@@ -51,11 +51,11 @@ class Contestant:
     cost: float = 1.0  # estimated duration of a training relative to the others
     episodes: int = 0  # maximum number of evaluation episodes; 0: as many as requested
     repeats: bool = True  # False: one run, since the result does not depend on the seed
-    scenario: str = ""  # empty: the benchmark's
+    scenario: str = ""  # empty: that of the benchmark
     paper_row: str = ""  # key of PAPER_TABLE; empty if Table 1 has no such row
-    named_only: bool = False  # True: takes part only if --algorithms names it
-    command: typing.Tuple[str, ...] = ()  # of a learner of another package; see --learner
-    library: str = ""  # shared library that registers this learner; see --learner
+    named_only: bool = False  # True: all of --algorithms does not include it
+    command: typing.Tuple[str, ...] = ()  # program of a learner of another package; see --learner
+    library: str = ""  # shared library that registers the learner; see --learner
 
     @property
     def algorithm_name(self):
@@ -70,13 +70,14 @@ class Contestant:
             options=tuple(option.format(**numbers) for option in self.options))
 
 
-# The episodes of a training run one after the other, as in §4.2. With many farms at a time, the
-# first recorded episodes would all be exploration, and short episodes would be recorded first.
+# The episodes of a training run one after the other, as in §4.2. If many farms ran at the same
+# time, all of the first recorded episodes would be exploration, and short episodes would be
+# recorded first.
 FARMS = 1
 
-# Trainings run in parallel, one per core, hence device=cpu. Reasons for these numbers:
-# docs/decisions/settling_early.md. Settings count episodes, so that a shorter or longer benchmark
-# starts in the same way.
+# Trainings run in parallel, one per core, so they use device=cpu. docs/decisions/settling_early.md
+# gives the reasons for these numbers. They depend on numbers of episodes, not on the length of the
+# training, so that shorter and longer trainings start in the same way.
 _EXPLORED = 100  # episodes until the temperature is one unit of reward
 _COOLING = "boltzmann:harmonic:20:1:{explored}"
 _FIRST_RATE = 5e-4
@@ -86,7 +87,7 @@ _NETWORK = ("device=cpu", "mask_blocked=true", "target_update_interval=25", "ema
             f"learning_rate=harmonic:{_FIRST_RATE}:{{last_rate}}:1")
 _TABLE_EXPLORATION = "epsilon_greedy:linear:1:0.01:0.5"
 
-# Colours of Okabe and Ito (2008), Color universal design, as far as they go.
+# The first colours are those of Okabe and Ito (2008), Color universal design.
 _RANDOM = Contestant("random", "RANDOM", "#7f7f7f", cost=0.05, options=("actions=reachable",),
                      paper_row="random")
 _Q_LEARNING = Contestant("q_learning", "Q-learning", "#0072b2", cost=0.02,
@@ -100,7 +101,7 @@ _LSTM_DQN = Contestant("lstm_dqn", "LSTM-DQN", "#d55e00", cost=2.5, exploration=
                        options=_NETWORK + ("hidden_size=64", "batch_size=64"),
                        paper_row="lstm_dqn")
 
-# PPO learns from its newest steps only. One farm gives few of them, so each is used ten times.
+# PPO learns only from its newest steps. One farm provides few of them, so each is used ten times.
 _PPO = Contestant("ppo", "PPO", "#cc79a7", cost=0.15,
                   options=("rollout_size=2048", "batch_size=256", "epochs=10",
                            "learning_rate=linear:0.001:0:1"))
@@ -117,7 +118,7 @@ CONTESTANTS = (
     Contestant("planner", "planner", "#009e73", learns=False, cost=0.5, episodes=100,
                repeats=False),
 )
-# The references of losses, which take part if the scenario has money.
+# Policies with which losses are compared. They take part if the scenario has money.
 REFERENCES = (
     Contestant("do_nothing", "do nothing", "#aa3377", learns=False, cost=0.05, repeats=False,
                named_only=True),
@@ -132,15 +133,15 @@ PLAIN_SCENARIO = "paper_plain"
 
 
 def _printed(one, options, cost):
-    """Returns a row with the settings printed in the paper, on the plain observation. Its line has
-    the learner's colour and is dashed."""
+    """Returns a row with the settings that the paper prints, on the scenario with the plain
+    observation. Its line is dashed and has the colour of the tuned learner."""
     return dataclasses.replace(one, name=f"{one.name}_printed", algorithm=one.algorithm_name,
                                label=f"{one.label}, printed", linestyle="dashed", options=options,
                                exploration="", cost=cost, scenario=PLAIN_SCENARIO)
 
 
 def _changed(one, suffix, label, colour, changes=(), scenario=""):
-    """Returns a tuned row with some options changed: one part of the ablation."""
+    """Returns a tuned row with some options or the scenario changed, for the ablation."""
     keys = {change.split("=", 1)[0] for change in changes}
     kept = tuple(option for option in one.options if option.split("=", 1)[0] not in keys)
     return dataclasses.replace(one, name=f"{one.name}_{suffix}", algorithm=one.algorithm_name,
@@ -152,7 +153,8 @@ def _tuned(one):
     return dataclasses.replace(one, label=f"{one.label}, tuned", paper_row="")
 
 
-# The paper's DQN settings where the tuned ones differ; see preset=paper in docs/algorithms.md.
+# The DQN settings of the paper that differ from the tuned ones; see preset=paper in
+# docs/algorithms.md.
 _PAPER_REPLAY = ("priority_exponent=0", "loss=mse", "max_grad_norm=0", "double_dqn=false",
                  "action_gap=0", "ema_rate=0", "reward_scale=1", "gamma=0.99",
                  "target_update_interval=250", "buffer_size=100000",

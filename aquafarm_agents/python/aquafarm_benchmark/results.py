@@ -12,19 +12,19 @@ from aquafarm_benchmark.protocol import PAPER_TABLE
 
 _EVALUATED = ("return_per_episode", "return_per_step", "success_rate", "steps_per_episode",
               "crashes_per_episode", "steps_in_disaster_per_episode", "delivered_health")
-# Absent in evaluations of version 0.1.0.
+# Evaluations of version 0.1.0 do not contain these.
 _ADDED = ("energy_kwh_per_episode", "distance_km_per_episode")
 
 
 def write_atomically(path, text):
-    """Writes a temporary file in the same folder and renames it."""
+    """Writes a file: first a temporary one in the same folder, which is then renamed."""
     temporary = path.with_name(path.name + ".part")
     temporary.write_text(text)
     os.replace(temporary, path)
 
 
 def read_curve(metrics):
-    """Returns the columns of a training's metrics.csv: dict of arrays over episodes."""
+    """Returns columns of a training's metrics.csv: {name: array with an entry per episode}."""
     columns = {"return": [], "steps": [], "success": [], "loss": []}
     with open(metrics, newline="") as file:
         for row in csv.DictReader(file):
@@ -34,7 +34,7 @@ def read_curve(metrics):
 
 
 def read_run(folder):
-    """Returns the results of one seed of one contestant. Without a training, 'curve' is None and
+    """Returns the results of one run of a contestant. If it was not trained, 'curve' is None and
     'training' (the content of run.json) is empty."""
     evaluation = json.loads((folder / "evaluation.json").read_text())
     metrics = folder / "metrics.csv"
@@ -44,7 +44,7 @@ def read_run(folder):
                convergence=None, settled=None, evaluation=evaluation)
     for name in _ADDED:
         run[name] = evaluation.get(name)
-    # Evaluations of version 0.1.0 have no count of distinct starts.
+    # Evaluations of version 0.1.0 do not contain the number of distinct episodes.
     run["distinct_episodes"] = evaluation.get("distinct_episodes")
     run["evaluation_episodes"] = evaluation["episodes"]
     run["money"] = losses.read(folder / "evaluation.csv")
@@ -72,9 +72,10 @@ def _interval(values):
 
 
 def summarise(contestant, runs, optimum, training_episodes):
-    """Returns the measures of a contestant over its runs, except ranks, which need all contestants.
+    """Returns the measures of a contestant over its runs. add_ea adds the ranks, which depend on
+    all contestants.
 
-    optimum: mean return of the clairvoyant on the same evaluation episodes; None if unknown.
+    optimum: mean return of the clairvoyant on the same evaluation episodes; None if it is unknown
     """
     def column(name):
         return np.array([run[name] for run in runs], dtype=float)
@@ -92,7 +93,7 @@ def summarise(contestant, runs, optimum, training_episodes):
     row["return_per_step_interval"] = _interval(column("return_per_step"))
     row["success_interval"] = _interval(column("success_rate"))
     row["share_of_optimum"] = None
-    if optimum is not None and optimum > 0.0:  # the share is undefined for an optimum of 0 or less
+    if optimum is not None and optimum > 0.0:  # for an optimum of 0 or less it is undefined
         row["share_of_optimum"] = row["return_per_episode"] / optimum
     row["stability"] = row["stability_settled"] = row["stability_interval"] = None
     for name, stability in (("convergence", "stability"), ("settled", "stability_settled")):
@@ -117,7 +118,8 @@ def summarise(contestant, runs, optimum, training_episodes):
 
 
 def add_ea(rows):
-    """Adds rank, ea_paper and ea_normalised to the rows of learners."""
+    """Adds rank, ea_paper and ea_normalised to all rows; they are None for rows that did not
+    learn."""
     trained = [row for row in rows if row["stability"] is not None]
     ranks = measures.convergence_ranks({row["name"]: row["convergence"] for row in trained})
     for row in rows:
@@ -145,12 +147,13 @@ def _share(value):
 
 
 def _distinct(row):
-    """Returns "990 of 1000": how many evaluation episodes start differently."""
+    """Returns the number of evaluation episodes with different starts, as "990 of 1000"."""
     return f"{_text(row['distinct_episodes'], '{}')} of {row['evaluation_episodes']}"
 
 
 def table(rows):
-    """Returns the results next to the rows of Table 1, as Markdown."""
+    """Returns the results as a Markdown table. A row of Table 1 follows the row with which it is
+    compared."""
     lines = ["| | return per step | success | converged at | stability | settled at | EA | "
              "EA in [0, 1] | return per episode, 95 % interval | share of the optimum | "
              "distinct episodes |",
@@ -177,7 +180,7 @@ def table(rows):
 
 
 def money_table(rows):
-    """Returns the losses as Markdown; empty without money."""
+    """Returns the losses as a Markdown table; empty without money."""
     rows = [row for row in rows if row["money"]]
     if not rows:
         return ""
@@ -209,8 +212,8 @@ _MONEY_COLUMNS = ("insured", "saved", "damaged", "lost", "loss", "standard_error
 
 
 def write_losses(folder, rows):
-    """Writes losses.csv (a line per row and kind of device; the kind "all" has the tail) and
-    exceedance.csv (points of the curves). Writes nothing without money."""
+    """Writes losses.csv and exceedance.csv (the points of the curves). losses.csv has a line per
+    row and kind of device; only the kind "all" has VaR and CVaR. Writes nothing without money."""
     rows = [row for row in rows if row["money"]]
     if not rows:
         return
@@ -247,8 +250,8 @@ the runs of a learner. The share of the optimum is given if all episodes are eva
 
 
 def write(folder, settings, rows, runs):
-    """Writes results.json (everything), table.csv (a line per row), runs.csv (a line per run) and
-    table.md."""
+    """Writes results.json (all results), table.csv (a line per row), runs.csv (a line per run) and
+    table.md; with money also losses.csv, exceedance.csv and losses.md."""
     columns = ["name", "runs", "return_per_step", "return_per_step_low", "return_per_step_high",
                "success_rate", "success_low", "success_high", "success_worst", "convergence",
                "stability", "stability_low", "stability_high", "settled", "stability_settled", "rank", "ea_paper", "ea_normalised",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws route files as PNG: what a policy prefers in each cell and its route (Fig. 11), and
-episodes that ended with devices at sea."""
+"""Draws route files as PNG: the preferred action of a policy in each cell and its route (Fig. 11),
+and the routes of episodes that ended with devices at sea."""
 import json
 
 import numpy as np
@@ -12,12 +12,12 @@ from aquafarm_benchmark.figures import plt, save
 _DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0),
                "north_west": (-1, 1), "north_east": (1, 1), "south_west": (-1, -1),
                "south_east": (1, -1)}
-_EVERY = 2  # an arrow stands in each second column and row, so that it can be long enough to see
+_EVERY = 2  # arrows are drawn in every second column and row, so that they can be long enough
 _SHOWN_STEPS = 4  # number of steps whose rings are drawn
-_ARROW = 0.48  # length of an arrow, as a share of the distance to the next one
-_RIM = 0.7  # from the middle of the outermost cells to the edge of the axes [cells]
-_LANE = 0.14  # distance of a leg from the middle of its cells; the next leg has the other side
-# Legs by whether something is aboard; colours of Okabe and Ito (2008).
+_ARROW = 0.48  # length of an arrow, as a fraction of the distance to the next one
+_RIM = 0.7  # distance from the centres of the outermost cells to the edge of the axes [cells]
+_LANE = 0.14  # offset of a leg from the centres of its cells [cells]; legs alternate in sign
+# Style of a leg by whether a device is aboard; colours of Okabe and Ito (2008).
 _LEGS = {False: ("#0072b2", (0, (4, 1.5)), "route with nothing aboard"),
          True: ("#d55e00", "solid", "route with a device aboard")}
 _REPEATED = 0.35  # opacity of a path that may overlap itself
@@ -29,7 +29,10 @@ _STOP_STYLE = {"s": 130, "color": "#f0e442", "edgecolor": "black", "linewidth": 
 
 
 def draw_route(path, label, route_file):
-    """Fig. 11: the greedy action as arrows, before and after the first pickup, and the route."""
+    """Draws Fig. 11: the greedy actions at the start and after the first pickup, and the route.
+
+    label: name of the policy
+    """
     route = json.loads(route_file.read_text())
     panels = [("best_moves_at_start", "with nothing aboard"),
               ("best_moves_after_pickup", "with a device aboard")]
@@ -58,7 +61,7 @@ def draw_route(path, label, route_file):
 
 
 def devices_left(route):
-    """Returns the cells [x, y] of the devices that no ship of the route fetched."""
+    """Returns the cells [x, y] of the devices that the ship of the route did not fetch."""
     fetched = [before["cell"] for before, after in zip(route["steps"], route["steps"][1:])
                if after["aboard"] > before["aboard"]]
     return [device["cell"] for device in route["chart"]["devices"]
@@ -66,14 +69,14 @@ def devices_left(route):
 
 
 def draw_unfinished(path, routes, title):
-    """Draws the routes of episodes that ended with devices at sea, with the rings in the last step,
-    at the same scale.
+    """Draws the routes of episodes that ended with devices at sea, and the rings of disasters in
+    the last step. All maps have the same scale.
 
     routes: {name of the ranch: route file}
-    title: what they have in common
+    title: title of the figure
     """
     columns = 3
-    rows = -(-(len(routes) + 1) // columns)  # the last place is for the explanation
+    rows = -(-(len(routes) + 1) // columns)  # the last map is followed by the legend
     routes = {name: json.loads(file.read_text()) for name, file in routes.items()}
     size = [max(route["chart"][side] for route in routes.values()) for side in ("width", "height")]
     figure, all_axes = plt.subplots(
@@ -94,13 +97,14 @@ def draw_unfinished(path, routes, title):
 
 
 def plot_unfinished(axes, name, route, size):
-    """Draws one of these routes on axes for ranches of at most this size (columns, rows)."""
+    """Draws one of these routes. size: columns and rows of the largest ranch, which fills the
+    axes"""
     chart, last = route["chart"], route["steps"][-1]
     left = devices_left(route)
     sea = _chart(axes, chart, size, left)
     axes.set_xlabel("cells to the east")
     axes.set_ylabel("cells to the north")
-    for disaster in route["steps"][-2]["disasters"]:  # they are over in the last state
+    for disaster in route["steps"][-2]["disasters"]:  # in the last state they have ended
         for ring in _rings(disaster):
             inside = axes.add_patch(Polygon(ring, color="#b22222", alpha=0.12, zorder=1))
             outline, = axes.plot(*np.vstack([ring, ring[:1]]).T, color="#b22222", zorder=2,
@@ -112,7 +116,7 @@ def plot_unfinished(axes, name, route, size):
         axes.plot(*np.array(cells, dtype=float).T, color="#5b6b78", linewidth=1.0, zorder=4,
                   alpha=0.7, label="route before")
     colour, kind = _LEGS[loaded][0], f"{'a device' if loaded else 'nothing'} aboard"
-    axes.add_collection(LineCollection(  # one segment per step, so that repeated ones are darker
+    axes.add_collection(LineCollection(  # one segment per step: repeated segments look darker
         [np.array(pair, dtype=float) for pair in zip(last_leg, last_leg[1:])], color=colour,
         linewidth=1.4, zorder=5, alpha=_REPEATED, label=f"last leg, {kind}; darker: repeated"))
     axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black",
@@ -127,7 +131,7 @@ def plot_unfinished(axes, name, route, size):
 
 
 def _symbols(charts):
-    """Returns the symbols of axes by their labels."""
+    """Returns {label: symbol} for the legend of several axes."""
     symbols = {}
     for axes in charts:
         symbols.update(reversed(pair) for pair in zip(*axes.get_legend_handles_labels()))
@@ -135,15 +139,15 @@ def _symbols(charts):
 
 
 def _chart(axes, chart, size=None, left=None):
-    """Draws a ranch on axes for ranches of at most this size; by default, its own. Returns the patch
-    of its sea.
+    """Draws a ranch. Returns the patch of its sea.
 
-    left: the cells of the devices that were not fetched; the others are hollow. If None, all are
-        filled
+    size: columns and rows that fill the axes; None: those of the ranch
+    left: cells of the devices that were not fetched; the symbols of other devices are hollow. None:
+        all symbols are filled
     """
     width, height = size or (chart["width"], chart["height"])
     axes.set_aspect("equal")
-    for spine in axes.spines.values():  # the sea has an edge
+    for spine in axes.spines.values():  # the patch of the sea has an edge
         spine.set_visible(False)
     for axis, count in ((axes.xaxis, chart["width"]), (axes.yaxis, chart["height"])):
         axis.set_ticks(range(0, count, 5 if count <= 30 else 10))
@@ -157,7 +161,7 @@ def _chart(axes, chart, size=None, left=None):
             [Rectangle((x - 0.5, y - 0.5), 1.0, 1.0) for x, y in chart["islands"]],
             facecolor=_LAND, edgecolor=_LAND, zorder=1))
         axes.scatter([], [], color=_LAND, marker="s", s=200, label="island")
-    area = 4900.0 / max(width, height)  # of a marker that fills a cell
+    area = 4900.0 / max(width, height)  # area of a marker that fills a cell [pt²]
     devices = [device["cell"] for device in chart["devices"]]
     fetched = [] if left is None else [cell for cell in devices if cell not in left]
     for cells, style, share, label in (
@@ -174,8 +178,8 @@ def _chart(axes, chart, size=None, left=None):
 
 
 def plot_moves(axes, moves, chart):
-    """Draws the preferred move as an arrow in each _EVERY-th column and row, except at ports and
-    devices, and marks each preferred stop."""
+    """Draws the preferred action of cells: a move as an arrow, in every second column and row
+    except at ports and devices; a pickup or drop-off as a mark."""
     taken = [*chart["ports"], *(device["cell"] for device in chart["devices"])]
     pointed = [(x, y, *_DIRECTIONS[action]) for x, y, action in moves
                if action in _DIRECTIONS and x % _EVERY == 0 and y % _EVERY == 0
@@ -192,7 +196,7 @@ def plot_moves(axes, moves, chart):
 
 
 def legs(steps):
-    """Splits a route at its pickups and drop-offs: [(anything aboard, cells of the leg)]."""
+    """Splits a route at its pickups and drop-offs into [(is a device aboard, cells of the leg)]."""
     found = []
     for before, after in zip(steps, steps[1:]):
         if not found or before["action"] in _STOPS:
@@ -207,7 +211,7 @@ def _plot_legs(axes, steps):
         colour, dashes, name = _LEGS[loaded]
         x, y = np.array(cells, dtype=float).T
         lane = np.full(len(x), _LANE if i % 2 else -_LANE)
-        for end in (cells[0], cells[-1]):  # legs meet in the middle of a cell
+        for end in (cells[0], cells[-1]):  # legs meet in the centre of a cell
             lane[[cell == end for cell in cells]] = 0.0
         axes.plot(x + lane, y - lane, color=colour, linestyle=dashes, linewidth=2.2, zorder=5,
                   label=name if i < len(_LEGS) else "_leg")
@@ -215,7 +219,7 @@ def _plot_legs(axes, steps):
 
 
 def _point_along(axes, x, y, colour):
-    """Draws an arrowhead in the middle of a line, if it has a length."""
+    """Draws an arrowhead in the middle of a line, unless the line has no length there."""
     middle = len(x) // 2
     if len(x) > 2 and (x[middle - 1], y[middle - 1]) != (x[middle], y[middle]):
         axes.annotate("", (x[middle], y[middle]), (x[middle - 1], y[middle - 1]), zorder=6,
@@ -224,7 +228,7 @@ def _point_along(axes, x, y, colour):
 
 
 def plot_route(axes, steps):
-    """Draws the legs and numbers the stops of a route; returns (number, stop, step) of each."""
+    """Draws the legs of a route and numbers its stops. Returns [(number, action, step)]."""
     _plot_legs(axes, steps)
     axes.scatter(*steps[0]["cell"], s=170, facecolor="none", edgecolor="black", linewidth=1.8,
                  zorder=6, label="start")
@@ -233,7 +237,7 @@ def plot_route(axes, steps):
         if step.get("action") in _STOPS:
             stops.append((len(stops) + 1, _STOPS[step["action"]][1], at))
             here.setdefault(tuple(step["cell"]), []).append(len(stops))
-    for cell, numbers in here.items():  # a cell may be the place of several stops
+    for cell, numbers in here.items():  # a cell may have several stops
         axes.annotate(", ".join(map(str, numbers)), cell, xytext=(-10, 0), zorder=8,
                       textcoords="offset points", ha="right", va="center", fontsize=10,
                       weight="bold", bbox={"boxstyle": "round,pad=0.15,rounding_size=0.5",
@@ -242,7 +246,7 @@ def plot_route(axes, steps):
 
 
 def _explain(empty, charts, stops, has_moves):
-    """Explains the symbols of the other axes on empty ones."""
+    """Writes the legend and the table of stops on empty axes."""
     symbols = _symbols(charts)
     empty.legend(symbols.values(), symbols.keys(), loc="upper left", frameon=False, fontsize=11,
                  bbox_to_anchor=(0.0, 1.0), labelspacing=0.7, ncols=2)
@@ -260,17 +264,19 @@ def _explain(empty, charts, stops, has_moves):
 
 
 def _rings(disaster):
-    """Yields the outlines of a disaster's rings, which may have a radius for each quadrant."""
+    """Yields the outline of each ring of a disaster, [360, 2]. A ring may have a radius for each
+    quadrant."""
     bearings = np.radians(np.arange(360.0))
     quadrants = disaster.get("quadrants") or [[radius] * 4 for radius in disaster["radii"]]
     for ring in quadrants:
-        radii = np.repeat(ring, 90)  # north-east first, clockwise like bearings
+        radii = np.repeat(ring, 90)  # quadrants are clockwise from north-east, as bearings
         yield np.column_stack([disaster["x"] + radii * np.sin(bearings),
                                disaster["y"] + radii * np.cos(bearings)])
 
 
 def _disasters(axes, steps, sea):
-    """Draws the rings at the start strongly and the outermost ones of some later steps faintly."""
+    """Draws all rings at the start, and in thinner lines the outermost rings in some later
+    steps."""
     stops = np.array([step["cell"] for step in steps if step.get("action") in _STOPS],
                      dtype=float).reshape(-1, 2)
     inside = axes.viewLim.padded(-1.5)
@@ -284,7 +290,7 @@ def _disasters(axes, steps, sea):
             seen = [point for point in outer[::15] if inside.contains(*point)]
             if not seen:
                 continue
-            # Where the route does not stop.
+            # The label is at the point that is farthest from the stops of the route.
             best = max(seen, key=lambda point: min(np.hypot(*(stops - point).T), default=0.0))
             axes.annotate(f"step {at}", best, color="#b22222", fontsize=9, ha="center", va="center",
                           zorder=7, bbox={"boxstyle": "round,pad=0.1", "facecolor": _SEA,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trainings and evaluations as programs on the workers of Dask: parallel, resumable, executed again
-when a worker or the scheduler is lost, and terminated on an interrupt."""
+"""Executes trainings and evaluations as programs on Dask workers, in parallel. Runs can be resumed.
+They are executed again if a worker or the scheduler is lost, and terminated by an interrupt."""
 import dataclasses
 import fcntl
 import json
@@ -20,37 +20,37 @@ from aquafarm_benchmark.worker import has_begun, last_line
 _REFUSED = 2  # exit code of a program for invalid input
 _LINGER_S = 12.0  # time for programs to save after Ctrl-C; roslaunch allows 15
 _PERIOD_S = 5.0  # between two checks of the scheduler
-_LOSSES = 5  # times that a run is submitted again after Dask gave it up with its workers
-_RECOVERIES = 20  # losses of the scheduler in a row, without a run that completes in between
+_LOSSES = 5  # max number of times that a run is submitted again after Dask gave it up
+_RECOVERIES = 20  # max number of losses of the scheduler without a completed run in between
 _DONE = re.compile(r"(?:steps|episodes) ([\d,]+) / ([\d,]+)")
 # Variables of this process that change results or the output of programs.
 _PASSED_ON = re.compile(r"OPENBLAS_\w+|OMP_\w+|AQUAFARM_\w+")
 
 
 class RunFailed(RuntimeError):
-    """Some runs failed; the text lists them with the reasons."""
+    """Some runs failed. The message lists them with the reasons."""
 
 
 class Interrupted(RuntimeError):
-    """Ctrl-C; complete runs are kept."""
+    """Ctrl-C was pressed. Complete runs are kept."""
 
 
 @dataclasses.dataclass
 class Job:
-    """Commands that run one after the other and write `result`."""
+    """A run: commands that are executed one after the other and write `result`."""
     contestant: str
     name: str
     folder: pathlib.Path
     result: pathlib.Path
     commands: typing.List[typing.List[str]]
     cost: float
-    resumable: bool = False  # the first command resumes a run with --resume
-    good_codes: typing.Tuple[int, ...] = (0,)  # exit codes of the last command with a result
-    resumes: bool = False  # it was started with --resume
-    started: typing.Optional[float] = None
-    command: int = 0  # number of the command that runs, from 1
-    losses: int = 0
-    done_at_start: float = 0.0
+    resumable: bool = False  # the first command can resume a run, with --resume
+    good_codes: typing.Tuple[int, ...] = (0,)  # exit codes of the last command that mean success
+    resumes: bool = False  # True: the first command was started with --resume
+    started: typing.Optional[float] = None  # time.monotonic of the start; None: not started
+    command: int = 0  # number of the command that is executing, from 1
+    losses: int = 0  # number of times that Dask gave the run up
+    done_at_start: float = 0.0  # completed fraction when the run was resumed
 
     @property
     def log(self):
@@ -58,19 +58,19 @@ class Job:
 
     @property
     def has_begun(self):
-        """Whether its folder contains a run that it will resume."""
+        """True if the folder contains a run that this job will resume."""
         return self.resumable and has_begun(self.folder)
 
     def note_start(self, event):
-        """Takes over that a worker has started a command."""
+        """Records that a worker has started a command. event: see worker.perform"""
         self.command, self.resumes = event["command"], event["resumes"]
         if self.command == 1:
             self.done_at_start = self.done() if self.resumes else 0.0
             self.started = time.monotonic()
 
     def done(self):
-        """Returns the completed fraction of the training, read from the log's last line: 0 before
-        the training, 1 after it."""
+        """Returns the completed fraction of the first command, which is read from the last line of
+        the log; 1 after this command."""
         if self.command > 1:
             return 1.0
         found = [(int(done.replace(",", "")) / max(1, int(limit.replace(",", ""))))
@@ -79,7 +79,7 @@ class Job:
 
 
 def is_complete(result):
-    """Returns whether an evaluation was written and is complete."""
+    """Returns whether an evaluation file exists and is complete."""
     try:
         return bool(json.loads(result.read_text())["complete"])
     except (OSError, ValueError, KeyError):
@@ -87,14 +87,16 @@ def is_complete(result):
 
 
 def run_all(jobs, cluster, report, period_s=10.0, complete=is_complete):
-    """Runs the jobs without a result on the workers of a cluster.Cluster, the longest first.
+    """Executes the jobs that have no result on the workers of a cluster.Cluster, the longest first.
 
-    report(text) is called with the progress every period_s seconds. Returns {contestant: reason}
-    for contestants whose first program rejects its input (exit code 2, such as a table on a farm
-    with too many states). Such an exit after the first command, or after a complete run of the
-    contestant, is a failure. complete(path) returns whether a result is complete. Raises RunFailed
-    if some runs failed (the others run nevertheless), Interrupted on Ctrl-C after every program has
-    saved and exited, cluster.Lost if the scheduler is lost for good.
+    report(text): called with the progress every period_s seconds, and with each failure
+    complete(path): returns whether a result is complete
+
+    Returns {contestant: reason} for the contestants that are not suitable: their first command
+    exits with code 2 (invalid input), for example a table on a farm with too many states. Exit code
+    2 is a failure if it comes from a later command, or if the contestant has a complete run. Raises
+    RunFailed if some runs failed, after all others have ended; Interrupted on Ctrl-C, after every
+    program has saved and exited; cluster.Lost if the scheduler does not return.
     """
     return _Runs(jobs, cluster, report, complete).run(period_s)
 
@@ -110,8 +112,8 @@ class _Runs:
                                key=lambda job: -job.cost)
         self._took_part = {job.contestant for job in jobs if complete(job.result)}
         self._over = len(jobs) - len(self._waiting)
-        self._futures = {}  # submitted: {future: job}
-        self._jobs = {}  # by key of their future, for events
+        self._futures = {}  # submitted runs that have not ended: {future: job}
+        self._jobs = {}  # {key of a future: job}, for events
         self._failures, self._declined = [], {}
         self._recoveries = 0
         self._progress = _Progress(jobs, self._over)
@@ -149,7 +151,7 @@ class _Runs:
             return
         import cloudpickle
         from aquafarm_benchmark import worker
-        cloudpickle.register_pickle_by_value(worker)  # a remote worker lacks the module
+        cloudpickle.register_pickle_by_value(worker)  # remote workers do not have the module
         self._cluster.client.subscribe_topic(worker.TOPIC, self._note)
         if not self._cluster.workers():
             self._report("the scheduler has no worker yet; the runs wait for one")
@@ -178,9 +180,9 @@ class _Runs:
         job.note_start(message)
 
     def _settle(self, future):
-        """Takes over the end of a run, which may be that of its worker."""
+        """Processes the end of a run, or the loss of its worker."""
         job = self._futures.pop(future)
-        if future.status == "cancelled":  # with the scheduler, or below
+        if future.status == "cancelled":  # by the loss of the scheduler, or below
             if job.contestant not in self._declined:
                 self._submit_again(future, job)
             return
@@ -189,7 +191,8 @@ class _Runs:
             return
         try:
             outcome = future.result(timeout=_PERIOD_S)
-        # It was lost with worker or scheduler. Dask raises the one or the other CancelledError.
+        # The result was lost with the worker or the scheduler. Dask raises one of two
+        # CancelledError.
         except (OSError, TimeoutError, CancelledError, futures.CancelledError):
             self._futures[future] = job
             return
@@ -211,7 +214,7 @@ class _Runs:
             self._fail(f"{job.name}: exit code {code}: {outcome['words']} ({job.log})")
 
     def _submit_again(self, future, job):
-        """As _submit. Keeps the ended future for _recover if the scheduler was lost."""
+        """Submits a job again. If the scheduler was lost, keeps the ended future for _recover."""
         try:
             self._submit(job)
         except Exception:  # Dask raises several types
@@ -232,7 +235,7 @@ class _Runs:
         self._report("failed: " + text)
 
     def _recover(self):
-        """Submits what is left to the scheduler that has replaced the one that was lost."""
+        """Waits until the lost scheduler is back, and submits the remaining jobs to it."""
         left = list(self._futures.values())
         while True:
             self._recoveries += 1
@@ -245,14 +248,14 @@ class _Runs:
             try:
                 self._submit_all([job for job in left if not self._complete(job.result)])
                 return
-            except Exception:  # Dask raises several types if the scheduler is lost at this moment
+            except Exception:  # Dask raises several types if the scheduler is lost again just now
                 if self._cluster.is_alive():
                     raise
 
     def _end(self):
         """Ends all programs and waits until they have saved."""
         numbers = (signal.SIGINT, signal.SIGTERM)
-        # Ignore repeated interrupts: this ends soon.
+        # Repeated interrupts are ignored, because this function ends soon.
         before = [signal.signal(number, signal.SIG_IGN) for number in numbers]
         self._cluster.cancel(list(self._futures))
         end = time.monotonic() + _LINGER_S
@@ -264,7 +267,7 @@ class _Runs:
 
 
 def is_written(log):
-    """Returns whether a program of a run still writes its log, which it keeps locked."""
+    """Returns whether a program of a run is still running. It keeps its log locked."""
     try:
         with open(log, "rb") as file:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -276,7 +279,7 @@ def is_written(log):
 
 
 class _Progress:
-    """Progress of all runs, and an estimate of the remaining time from complete runs."""
+    """The progress of all runs, and an estimate of the remaining time."""
 
     def __init__(self, jobs, over):
         self._count = len(jobs)
@@ -290,7 +293,11 @@ class _Progress:
             self._took.setdefault(job.contestant, []).append(time.monotonic() - job.started)
 
     def describe(self, left, at_once):
-        """Returns one line. left are the jobs that are not over, at_once those in parallel."""
+        """Returns the progress in one line.
+
+        left: jobs that have not ended
+        at_once: number of jobs that are executed in parallel
+        """
         now = time.monotonic()
         seconds = {name: sum(took) / len(took) for name, took in self._took.items()}
         running = [job for job in left if job.started is not None]
@@ -310,7 +317,7 @@ class _Progress:
 
 
 def describe_seconds(seconds):
-    """Returns '45 s', '7 min', '2 h 05 min'."""
+    """Returns a duration as text: '45 s', '7 min' or '2 h 05 min'."""
     if seconds < 90.0:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)

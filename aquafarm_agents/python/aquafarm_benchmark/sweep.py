@@ -4,9 +4,10 @@
     aquafarm_sweep SCENARIO ALGORITHM --set gamma=0.95,0.98 --set hidden_size=64,128 --seeds 1-5
                    --output FOLDER [--steps N] [--jobs 2]
 
-Each combination of the values is a row of FOLDER/table.md and FOLDER/table.csv: mean return and
-success of a greedy evaluation on seeds not used for training, over the seeds of the training, best
-row first. FOLDER/runs has the run folders. After Ctrl-C the same command resumes.
+Each combination of the values is a row of FOLDER/table.md and FOLDER/table.csv. It has the return
+and success rate of greedy evaluations on episodes that are not used for training, as means over the
+seeds of the trainings. The best row is first. FOLDER/runs has the run folders. After Ctrl-C the
+same command resumes.
 """
 import argparse
 import csv
@@ -22,14 +23,15 @@ from aquafarm_benchmark import cluster
 from aquafarm_benchmark.cli import exit_code, find_program
 from aquafarm_benchmark.runs import Job, RunFailed, run_all
 
-# 97.5 % quantiles of Student's t with 1 to 30 degrees of freedom; 1.96 beyond.
+# 97.5 % quantiles of Student's t with 1 to 30 degrees of freedom. For more, 1.96 is used.
 STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179,
            2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064,
            2.060, 2.056, 2.052, 2.048, 2.045, 2.042)
 
 
 def parse_option(text):
-    """Returns (key, values) of 'key=a,b'. A colon schedule such as linear:1:0 is one value."""
+    """Returns (key, values) of 'key=a,b'. A schedule with colons, such as linear:1:0, is one value.
+    Raises ValueError."""
     key, equals, values = text.partition("=")
     if not equals or not key or not all(values.split(",")):
         raise ValueError(f"--set: got '{text}', expected key=value,value,…")
@@ -37,7 +39,7 @@ def parse_option(text):
 
 
 def parse_seeds(text):
-    """Returns the seeds of '1-5' or '1,3,8'."""
+    """Returns the seeds of '1-5' or '1,3,8'. Raises ValueError."""
     try:
         seeds = []
         for part in text.split(","):
@@ -51,7 +53,8 @@ def parse_seeds(text):
 
 
 def combinations(options):
-    """Returns every combination of the values as a list of 'key=value' lists, in order."""
+    """Returns all combinations of the values, each as a list of 'key=value'. The values of the last
+    key change fastest. Raises ValueError if a key occurs twice."""
     keys = [key for key, _ in options]
     if len(set(keys)) != len(keys):
         raise ValueError(f"--set: got {', '.join(keys)}, expected each key once; write its values "
@@ -104,7 +107,7 @@ def table_of(settings, results):
 
 
 def markdown_of(title, rows):
-    """Returns the table for people."""
+    """Returns the table as Markdown."""
     lines = [title, "", "| options | seeds | return | ± 95 % | success |",
              "| --- | ---: | ---: | ---: | ---: |"]
     for options, seeds, mean, half, success in rows:
@@ -114,7 +117,7 @@ def markdown_of(title, rows):
 
 
 def csv_of(rows):
-    """Returns the table for programs."""
+    """Returns the table as CSV."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["options", "seeds", "return", "return_half_width_95", "success"])
@@ -130,7 +133,8 @@ def arguments(words):
     parser.add_argument("--set", action="append", default=[], metavar="KEY=A,B,…",
                         help="option of the learner with its values; several --set are combined")
     parser.add_argument("--seeds", default="1-3", help="seeds of the trainings, such as 1-5 or 1,3,8")
-    parser.add_argument("--steps", type=int, default=0, help="per training; 0: the algorithm's default")
+    parser.add_argument("--steps", type=int, default=0,
+                        help="farm steps per training; 0: the algorithm's default")
     parser.add_argument("--episodes", type=int, default=200, help="number of evaluation episodes")
     parser.add_argument("--output", type=pathlib.Path, required=True,
                         help="folder for runs and tables")
@@ -149,7 +153,8 @@ def arguments(words):
 
 
 def require_same(folder, name, task, advice=""):
-    """Writes the task of a folder into its file `name`; refuses a folder of another task."""
+    """Writes the task of a folder to its file `name`. Raises ValueError if the file contains
+    another task."""
     text = json.dumps(task, indent=1)
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / name
@@ -160,7 +165,8 @@ def require_same(folder, name, task, advice=""):
 
 
 def check_plan(given, settings):
-    """Writes what the folder compares; refuses a folder of another comparison."""
+    """Writes the comparison to the output folder. Raises ValueError if the folder contains another
+    comparison."""
     require_same(given.output, "sweep.json",
                  {"scenario": given.scenario, "algorithm": given.algorithm, "steps": given.steps,
                   "episodes": given.episodes, "options": settings},
@@ -199,8 +205,8 @@ def _run(words):
 
 
 def main(words=None):
-    """The command; returns its exit code: 0, 2 wrong argument, 3 storage, 4 failed runs, 130
-    interrupted."""
+    """Runs the program; returns its exit code: 0, 2 wrong argument or option, 3 storage, 4 failed
+    runs, 130 interrupted."""
     return exit_code("aquafarm_sweep", lambda: _run(words))
 
 

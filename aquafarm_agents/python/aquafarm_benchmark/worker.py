@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The part of a run that executes on a worker of Dask: its commands, one after the other.
+"""The part of a run that executes on a Dask worker: its commands, one after the other.
 
-The module is sent to the workers by value. They need Debian's python3-distributed, the programs
-and the run folders under the paths of the client, but no workspace.
+The client sends this module to the workers by value. Workers need no workspace, but Debian's
+python3-distributed, and the programs and run folders under the same paths as on the client.
 """
 import ctypes
 import fcntl
@@ -15,16 +15,18 @@ import subprocess
 import time
 
 
-TOPIC = "aquafarm"  # of the events that report each started command
+TOPIC = "aquafarm"  # Dask topic of the events that report each started command
 
 _LINGER_S = 10.0  # time for a program to save after it was interrupted
 _LOCK_LIMIT_S = 60.0  # time for the programs of a lost worker to end
 _POLL_S = 0.05
-# A worker that srun or mpirun has started is not a rank of the trainings that it executes.
+# These variables of srun and mpirun describe the worker. Its trainings must not use them, because
+# they would train in ranks.
 _OF_LAUNCHERS = re.compile(r"RANK|WORLD_SIZE|MASTER_\w+|OMPI_\w+|PMIX?_\w+|SLURM_PROCID|SLURM_STEP_\w+")
 _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
-# A run has one core. The threads of PyTorch's OpenMP wait actively for each other, so that a learner
-# of another package would be slower by orders of magnitude next to other runs.
+# A run has one core. Without this, PyTorch would use several threads in a learner of another
+# package. They wait actively for each other, so that parallel runs would be slower by orders of
+# magnitude.
 _ONE_CORE = {"OMP_NUM_THREADS": "1"}
 
 
@@ -35,21 +37,21 @@ def has_begun(folder):
 
 
 def last_line(log):
-    """Returns the last line of a log."""
+    """Returns the last line of a log; "no output" if it is empty or does not exist."""
     text = log.read_text(errors="replace") if log.exists() else ""
     lines = text.strip().splitlines()
     return lines[-1] if lines else "no output"
 
 
 def _started(command, log, cwd, environment):
-    """Starts a program that saves and exits as on Ctrl-C if this worker is killed."""
+    """Starts a program. If this worker is killed, the program receives SIGINT, saves and exits."""
     libc, parent = ctypes.CDLL(None), os.getpid()
     own = {name: value for name, value in os.environ.items() if not _OF_LAUNCHERS.fullmatch(name)}
 
     def end_with_the_worker():
         libc.prctl(_PR_SET_PDEATHSIG, signal.SIGINT)
         if os.getppid() != parent:
-            os._exit(1)  # the worker was killed before the call
+            os._exit(1)  # the worker was killed before prctl
 
     return subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT,
                             stdin=subprocess.DEVNULL, start_new_session=True, cwd=cwd,
@@ -66,7 +68,8 @@ def _end(process):
 
 
 def _lock(log, is_wanted):
-    """Waits until no other program writes this log. Programs hold the lock until they end."""
+    """Locks a log, which its programs keep locked until they end. Waits for other programs; raises
+    RuntimeError after _LOCK_LIMIT_S. Returns False if the run is no longer wanted."""
     end = time.monotonic() + _LOCK_LIMIT_S
     while is_wanted():
         try:
@@ -81,11 +84,12 @@ def _lock(log, is_wanted):
 
 
 def perform(folder, commands, resumable, cwd, environment):
-    """Executes the commands of a run until one fails. The client has made the run folder.
+    """Executes the commands of a run until one fails. The run folder must exist.
 
-    A resumable run whose folder contains a run gets --resume. Returns {code, commands (started),
-    resumes, words (last line of the log)}, or None once no client wants the run any more. Raises
-    RuntimeError, one line, if this worker cannot execute the run.
+    If the run is resumable and its folder contains a run, the first command gets --resume. Returns
+    {code: exit code of the last command, commands: number of started commands, resumes, words: last
+    line of the log}, or None if no client wants the run any more. Raises RuntimeError, one line, if
+    this worker cannot execute the run.
     """
     from distributed import get_worker  # takes a third of a second to load
 

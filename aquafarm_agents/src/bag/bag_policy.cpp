@@ -45,7 +45,7 @@ using Key = std::pair<std::uint64_t, std::uint64_t>;  // seed and episode
 
 std::string Number(std::uint64_t value) { return std::to_string(value); }
 
-/// Scenario of a spec. @param path of the bag, for error messages
+/// Returns the scenario of a spec. @param path path of the bag, for error messages
 std::shared_ptr<const aquafarm::Scenario> ScenarioOf(const FarmSpec& spec,
                                                      const std::string& path) {
   return aquafarm_sim::NamingBag(path, [&] {
@@ -54,11 +54,12 @@ std::shared_ptr<const aquafarm::Scenario> ScenarioOf(const FarmSpec& spec,
   });
 }
 
-/// Replays a recorded farm and queries a policy at each state.
+/// Simulates a recorded farm again and queries a policy at each state.
 class PolicyProbe {
  public:
-  /// @param path of the bag, for error messages
-  /// @param rewinds true if states may be changed from outside; earlier states are then stored
+  /// @param path path of the bag, for error messages
+  /// @param rewinds true if the recording may contain external changes; the probe then stores all
+  ///        states of the episode
   /// @throws InputError if the spec contains no valid scenario, or the policy does not fit it
   PolicyProbe(const FarmSpec& spec, const std::string& path, const agents::SavedPolicy& saved,
               bool rewinds)
@@ -76,7 +77,7 @@ class PolicyProbe {
     episode_.value_at_start = std::nanf("");
   }
 
-  /// Loads a state that was set from outside. @returns an error message, or an empty string
+  /// Loads a state after an external change. @returns an error message, or an empty string
   std::string Load(const SavedState& saved) {
     const std::uint64_t step = Step();
     if (begun_ && saved.step > step) return Missing(seen_ ? step + 1 : step, saved.step);
@@ -94,7 +95,8 @@ class PolicyProbe {
     return "";
   }
 
-  /// Simulates the recording up to a state. @returns an error message, or an empty string
+  /// Simulates the recording up to a state, and compares the hash of the state.
+  /// @returns an error message, or an empty string
   std::string Follow(const FarmState& state) {
     const std::uint64_t step = Step();
     const std::uint64_t expected = seen_ ? step + 1 : step;
@@ -114,8 +116,8 @@ class PolicyProbe {
     return asked_ > 0 && choice_.step == state.step && asked_hash_ == state.hash;
   }
 
-  /// Queries the policy at the current state of the farm. A repeated state is queried only once. If
-  /// the state was changed from outside, the query uses the recurrent state before that step.
+  /// Queries the policy at the current state of the farm. A repeated state is queried only once.
+  /// After an external change the query uses the recurrent state from before this step.
   const PolicyChoice& Ask(const FarmState& state) {
     choice_.header = state.header;
     if (HasAsked(state)) return choice_;
@@ -171,7 +173,7 @@ class PolicyProbe {
     --asked_;
   }
 
-  /// Simulates the step to a state with the recorded actions.
+  /// Simulates one step with the actions that its resulting state contains.
   std::string Take(const FarmState& state) {
     if (over()) return "the episode is over since step " + Number(Step());
     const auto& ships = farms_.farm(0).ships();
@@ -201,11 +203,11 @@ class PolicyProbe {
   aquafarm::FarmBatch farms_;
   agents::LocalEnvironment environment_;
   std::unique_ptr<agents::Policy> policy_;
-  std::unique_ptr<agents::Policy> elsewhere_;  // for the maps: it has a separate recurrent state
+  std::unique_ptr<agents::Policy> elsewhere_;  // for the maps; has a separate recurrent state
   PolicyChoice choice_;
   EpisodeChoices episode_;
   bool begun_{};  // a message of this episode was read, so `farms_` is at its state
-  bool seen_{};   // the current state was read, and queried unless the episode is over
+  bool seen_{};   // the current state was read and, unless the episode is over, queried
   std::uint64_t asked_{};
   std::uint64_t asked_hash_{};  // hash of the state of choice_
   std::vector<std::string> asked_states_;
@@ -288,7 +290,8 @@ std::map<Key, FarmSpec> ReadSpecs(const rosbag::Bag& bag, const std::string& top
   return specs;
 }
 
-/// Reason why a policy gives no maps of values and moves on farms of a scenario; empty if it does.
+/// Returns the reason why a policy has no maps of values and actions on farms of a scenario; empty
+/// if it has them.
 std::string WhyNoMaps(const agents::SavedPolicy& saved, const aquafarm::Scenario& scenario) {
   const std::string& name = saved.checkpoint.algorithm;
   if (saved.observation_types == 0)
@@ -337,7 +340,7 @@ class Walk {
   BagChoices End() {
     EndEpisode();
     if (result_.episodes.empty() && result_.difference.empty()) {
-      throw InputError(path_ + ": no state follows its spec");
+      throw InputError(path_ + ": got no state of an episode with a spec, expected at least one");
     }
     if (output_ && result_.difference.empty()) output_->Close();
     return std::move(result_);

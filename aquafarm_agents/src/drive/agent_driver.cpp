@@ -29,13 +29,13 @@ namespace aquafarm_agents {
 namespace {
 
 namespace names = aquafarm_sim::names;
-using namespace aquafarm::agents;  // NOLINT: this file speaks of nothing else
+using namespace aquafarm::agents;  // NOLINT: the file uses most of its names
 using aquafarm::Action;
 using aquafarm::InputError;
 using aquafarm_msgs::FarmState;
 using aquafarm_msgs::Outcome;
 
-// After this time without an observation, the command for the last one is repeated.
+// After this time without a new observation, the command for the last one is repeated.
 constexpr double kSilence_s = 2.0;
 constexpr std::uint32_t kQueue = 10;
 
@@ -92,7 +92,7 @@ class AgentDriver::Impl {
       }
       if (!now || now->reason != FarmState::NONE) continue;
       if (!now->ships[static_cast<std::size_t>(options_.ship)].active) continue;
-      if (now != acted_on_) {  // else repeats the command without advancing the recurrent state
+      if (now != acted_on_) {  // else the last actions are repeated; the policy must not act twice
         Look(*now);
         policy.Act(results_, actions_);
         acted_on_ = now;
@@ -144,8 +144,8 @@ class AgentDriver::Impl {
     over_.push_back(message);
   }
 
-  // Waits for a new observation, or returns the last one again if its command must be repeated;
-  // null if there is none after kSilence_s.
+  // Waits for a new observation. Returns the last one again if its command must be repeated; null
+  // if no observation arrives within kSilence_s.
   FarmState::ConstPtr WaitForObservation() {
     const ros::WallTime start = ros::WallTime::now();
     while (!Stopped()) {
@@ -157,13 +157,13 @@ class AgentDriver::Impl {
         return newest_;
       }
       if ((ros::WallTime::now() - start).toSec() < kSilence_s) continue;
-      again_ = true;  // a command may be lost; a superfluous one returns STALE
+      again_ = true;  // the command may be lost; a superfluous retry returns STALE
       return nullptr;
     }
     return nullptr;
   }
 
-  // The layout of an episode follows from its seed. All other inputs come from the observation.
+  // The layout follows from seed and episode number. All other inputs are in the observation.
   void Look(const FarmState& message) {
     if (farm_->seed() != message.seed || farm_->episode() != message.episode) {
       farm_->Reset(message.seed, message.episode);
@@ -214,11 +214,11 @@ class AgentDriver::Impl {
   void Command(const FarmState& now, const std::string& name, ServiceLink& link, Service& service) {
     service.request.episode = now.episode;
     service.request.step = now.step;
-    service.request.token = ++token_;  // makes a repeat after a lost connection idempotent
+    service.request.token = ++token_;  // a retry after a lost connection is not executed again
     link.Call(name, service);
     const auto& result = service.response.result;
     switch (result.code) {
-      case Outcome::STALE:  // late or superseded: the next observation contains the current state
+      case Outcome::STALE:  // the command is late; the next observation contains the current state
       case Outcome::EPISODE_OVER:
       case Outcome::SUPERSEDED:
         return;
@@ -251,12 +251,12 @@ class AgentDriver::Impl {
   std::unique_ptr<aquafarm::Encoder> encoder_;
   EnvironmentSpec spec_;
   aquafarm::View view_;
-  StepResults results_;  // of one farm; only this ship's entries are filled
+  StepResults results_;  // of one farm; only the entries of this ship are filled
   std::vector<std::uint8_t> actions_;
   FarmState::ConstPtr newest_;
   std::vector<FarmState::ConstPtr> over_;  // last states of ended, unprocessed episodes
   std::optional<std::pair<std::uint64_t, std::uint64_t>> over_seen_;  // seed and episode
-  FarmState::ConstPtr acted_on_;  // the current actions were chosen from it
+  FarmState::ConstPtr acted_on_;  // observation from which the policy chose actions_
   FarmState::ConstPtr seen_;      // last observation returned by WaitForObservation
   std::optional<std::pair<std::uint64_t, std::uint64_t>> acted_in_;  // seed and episode
   bool again_{};

@@ -24,7 +24,7 @@ namespace aquafarm_agents {
 namespace {
 
 namespace names = aquafarm_sim::names;
-using namespace aquafarm::agents;  // NOLINT: this file speaks of nothing else
+using namespace aquafarm::agents;  // NOLINT: the file uses most of its names
 using aquafarm::EpisodeSummary;
 using aquafarm::InputError;
 using aquafarm_msgs::Outcome;
@@ -150,10 +150,10 @@ class ShipDriver::Impl {
     command.request.action = actions_[static_cast<std::size_t>(ships_[i])];
     command.request.episode = seen_->first;
     command.request.step = seen_->second;
-    command.request.token = ++token_;  // makes a repeat after a lost connection idempotent
+    command.request.token = ++token_;  // a retry after a lost connection is not executed again
     commands_[i]->Call(names::kCommand, command);
     const std::uint8_t code = command.response.result.code;
-    // Late or superseded: the next call of get_state returns the current state.
+    // After a late or superseded command the driver continues with the farm's current state.
     const bool usual = command.response.result.ok || code == Outcome::STALE ||
                        code == Outcome::EPISODE_OVER || code == Outcome::PAUSED ||
                        code == Outcome::TIMEOUT || code == Outcome::SUPERSEDED;
@@ -182,13 +182,13 @@ class ShipDriver::Impl {
   ServiceLink get_;
   ServiceLink save_;
   ServiceLink reset_;
-  std::optional<ShipClaim> claim_;  // nullopt when driving all ships
+  std::optional<ShipClaim> claim_;  // nullopt if it drives all ships
   std::vector<std::int32_t> ships_;
   std::vector<std::unique_ptr<ServiceLink>> commands_;  // one per ship
   std::unique_ptr<LocalEnvironment> mirror_;
   std::vector<std::uint8_t> actions_;
-  std::atomic<bool> again_{};  // a command was dropped: query the state and send again
-  std::atomic<std::uint64_t> token_{ros::WallTime::now().toNSec()};  // of the last command
+  std::atomic<bool> again_{};  // a command was dropped: Drive must send it again
+  std::atomic<std::uint64_t> token_{ros::WallTime::now().toNSec()};  // token of the last command
   SlowWarning warning_;
   std::optional<std::pair<std::uint64_t, std::uint64_t>> seen_;  // episode and step
 };

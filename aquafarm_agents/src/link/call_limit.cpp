@@ -12,9 +12,10 @@ namespace {
 
 using aquafarm::MutexLock;
 
-// Coarse, so that the overhead of a fast call is negligible.
+// Period between two checks. It is long, so that the watcher costs little.
 constexpr std::chrono::milliseconds kLook{200};
-constexpr int kLastLooks = 75;  // 15 s, counted, because a stopped process looks at no clock
+// 15 s. Periods are counted, so that the time during which the process is stopped does not count.
+constexpr int kLastLooks = 75;
 
 }  // namespace
 
@@ -28,7 +29,7 @@ void EndUnlessDone(const std::function<void()>& task, int looks) {
       "a service call cannot be aborted: roscpp is in a deadlock (ros_comm issue 2057); the "
       "node ends. A training keeps its last checkpoint: continue it with resume:=true\n");
   std::fflush(nullptr);
-  std::_Exit(static_cast<int>(aquafarm::agents::ExitCode::kLost));  // destructors would wait, too
+  std::_Exit(static_cast<int>(aquafarm::agents::ExitCode::kLost));  // destructors would hang, too
 }
 
 CallLimit::CallLimit(double limit_s) : limit_(limit_s), watcher_([this] { Watch(); }) {}
@@ -57,11 +58,11 @@ void CallLimit::Disarm() {
 void CallLimit::Watch() {
   MutexLock lock(mutex_);
   while (!ends_) {
-    if (lock.WaitUntil(ended_, Clock::now() + kLook)) continue;  // woken before the time
+    if (lock.WaitUntil(ended_, Clock::now() + kLook)) continue;  // woken by the destructor
     if (armed_ == nullptr || Clock::now() - since_ < limit_) continue;
     ros::ServiceClient* const client = armed_;
-    // Drops the connection, which aborts the call. In rare cases both wait for each other: the call
-    // for a lock of the connection, and the thread that closes the connection for the call.
+    // Drops the connection, which aborts the call. Rarely this is a deadlock: the call waits for a
+    // lock of the connection, and the thread that closes the connection waits for the call.
     EndUnlessDone([client] { client->shutdown(); }, kLastLooks);
     armed_ = nullptr;
   }

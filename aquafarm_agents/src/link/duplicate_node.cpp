@@ -17,8 +17,9 @@
 namespace aquafarm_agents {
 namespace {
 
-constexpr int kLimit_ms = 2000;  // for a host that does not respond
+constexpr int kLimit_ms = 2000;  // max wait for a host that does not respond
 
+/// Returns true if a pending connection is established within the limit.
 bool Completes(int connection) {
   pollfd wanted{connection, POLLOUT, 0};
   int ready = 0;
@@ -31,10 +32,10 @@ bool Completes(int connection) {
          fault == 0;
 }
 
-/// True if a process accepts connections on the port; false if the host does not respond in time.
-/// A connection is enough: a node that is stopped or hangs does not answer, but has the name.
+/// Returns true if a process accepts connections on the port, false if none does within the limit.
+/// The process need not respond: a node that is stopped or hangs still has its name.
 bool IsListenedOn(const std::string& host, std::uint32_t port) {
-  using XmlRpc::XmlRpcSocket;  // as roscpp connects to nodes
+  using XmlRpc::XmlRpcSocket;  // roscpp uses it, too, to connect to nodes
   const int connection = XmlRpcSocket::socket();
   if (connection < 0) return false;
   const bool connected = XmlRpcSocket::setNonBlocking(connection) &&
@@ -53,7 +54,7 @@ void RefuseTwin() {
   XmlRpc::XmlRpcValue payload;
   request[0] = name;
   request[1] = name;
-  // Also fails if there is no master. Later calls report that better.
+  // This call also fails if there is no master, which later calls report better.
   if (!ros::master::execute("lookupNode", request, response, payload, /*wait_for_master=*/false)) {
     return;
   }

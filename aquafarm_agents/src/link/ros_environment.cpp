@@ -31,9 +31,10 @@ static_assert(int{StepResult::PLANES} == int{aquafarm::kPlanesField});
 static_assert(int{StepResult::HASHES} == int{aquafarm::kHashesField});
 static_assert(int{StepResult::TERMS} == int{aquafarm::kTermsField});
 
-// Max restarts without a completed episode. More indicate another client on the same farms.
+// Max number of restarts without a completed episode. More restarts mean that another client uses
+// the farms at the same time.
 constexpr int kMaxRestarts = 20;
-// Observation types that the sim node also provides.
+// Observation types that the sim node computes. Others are computed here from saved states.
 constexpr int kFarmObservationTypes =
     aquafarm::agents::kIndexBit | aquafarm::agents::kFeaturesBit | aquafarm::agents::kPlanesBit;
 
@@ -78,13 +79,14 @@ RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOption
           static_cast<std::uint8_t>((options_.observation_types & kFarmObservationTypes) |
                                     (options_.hashes ? int{StepResult::HASHES} : 0))),
       limit_(options_.call_limit_s),
-      // Must not repeat the numbers of an earlier client of the same farms.
+      // The request ids must differ from those of an earlier process with the same node name.
       sequence_(ros::WallTime::now().toNSec()) {
   aquafarm_msgs::GetState::Response now = GetState(0, true);
   if (now.state.pace == aquafarm_msgs::FarmState::PACED) {
     throw InputError(
-        "sim node: runs paced, expected pace lockstep; call set_pace or use Step's "
-        "per-ship services");
+        "sim node: runs paced, expected pace lockstep; call set_pace, or drive the ships one by "
+        "one "
+        "(agent.launch)");
   }
   spec_ = FromMsg(now.spec);
   if (options_.farms > 0) spec_.farms = options_.farms;
@@ -164,14 +166,14 @@ const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions
   }
   Take(step_.response.result);
   if (!results_.finished.empty()) restarts_ = 0;
-  for (const EpisodeSummary& ended : results_.finished) {  // its farm continues N episodes later
+  for (const EpisodeSummary& ended : results_.finished) {  // the farm's next one is total later
     next_episode_ =
         std::max(next_episode_, ended.episode + static_cast<std::uint64_t>(share_.total) + 1);
   }
   return results_;
 }
 
-// The farm states need a separate call in each step, also if a planner reads only some of them.
+// Results with states of the farms need a second call in each step, which saves all farms.
 void RosEnvironment::Take(StepResult& result) {
   if (copies_ != nullptr) {
     copies_->Load(Save());
@@ -198,7 +200,7 @@ std::string RosEnvironment::Save() {
 
 const StepResults& RosEnvironment::Load(const std::string& bytes) {
   const std::string own = aquafarm::agents::TakeSavedFarms(bytes, share_, spec_.farms);
-  if (share_.total != spec_.farms) Reset(seed_);  // states hold no distance of episodes
+  if (share_.total != spec_.farms) Reset(seed_);  // sets the stride, which states do not contain
   aquafarm_msgs::LoadState load;
   load.request.data.assign(own.begin(), own.end());
   load.request.observation_types = observation_types_;
@@ -222,7 +224,8 @@ void RosEnvironment::ReadProgress() {
   }
 }
 
-// Other environments play the episodes between two of a farm, so a farm keeps to its own ones.
+// Returns the first episode of the next round. If other environments have a part of the farms, each
+// farm must continue with the episodes of its own index.
 std::uint64_t RosEnvironment::NextRound() const {
   if (share_.total == spec_.farms) return next_episode_;
   const auto total = static_cast<std::uint64_t>(share_.total);

@@ -42,9 +42,9 @@ namespace agents = aquafarm::agents;
 using agents::ExitCode;
 using aquafarm_msgs::RescuePlan;
 
-constexpr double kHeartbeat_s = 1.0;   // the panel waits for five of them
-constexpr double kMarkerLife_s = 5.0;  // as long as the panel waits for a heartbeat
-constexpr double kPlanLimit_s = 60.0;
+constexpr double kHeartbeat_s = 1.0;   // period; the panel waits 5 s for a heartbeat
+constexpr double kMarkerLife_s = 5.0;  // as long as the panel waits
+constexpr double kPlanLimit_s = 60.0;  // a plan that takes longer stops the heartbeat
 
 struct PlanParams {
   std::string scenario;  ///< file or name; empty: that of the running ranch
@@ -53,7 +53,7 @@ struct PlanParams {
   agents::RescueRequest request;
   double period_s{0.5};      ///< between checks of the files
   double min_period_s{2.0};  ///< between the starts of two plans
-  double refresh_s{300.0};   ///< until a plan without a ranch is made again
+  double refresh_s{300.0};   ///< period in which a plan that follows no ranch is made again
   double state_timeout_s{10.0};
   std::string command{"plan_node"};
 };
@@ -149,7 +149,7 @@ agents::FleetState ToFleet(const aquafarm_msgs::FarmState& state) {
   return fleet;
 }
 
-// Callbacks note what arrived; a worker plans and publishes.
+// Publishes rescue plans. Callbacks store the inputs; a worker thread plans and publishes.
 class PlanNode {
  public:
   PlanNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node, PlanParams params)
@@ -190,7 +190,7 @@ class PlanNode {
 
   void OnSpec(const aquafarm_msgs::FarmSpecConstPtr& spec) {
     if (scenario_ && scenario_->hash == spec->scenario_hash) return;
-    // The last state is of another ranch. A new connection gets the state of this one.
+    // The last state belongs to another ranch. A new subscription receives the state of this ranch.
     last_state_ = nullptr;
     state_.shutdown();
     FollowState();
@@ -204,7 +204,8 @@ class PlanNode {
     }
   }
 
-  // Stops if planning hangs, so that a subscriber notices both a dead and a stuck node.
+  // Publishes the heartbeat. It stops if planning hangs, so that subscribers notice a node that
+  // hangs as well as a dead one.
   void Beat() {
     if (work_->busy_s() > kPlanLimit_s) return;
     std_msgs::Time now;
@@ -214,8 +215,8 @@ class PlanNode {
     RenewMarkers(wall);
   }
 
-  // Publishes the markers again: rviz removes them some seconds after the last time. rviz counts
-  // their lifetime in ROS time, which may run faster than the wall clock.
+  // Publishes the markers again before rviz removes them at the end of their lifetime. rviz counts
+  // the lifetime in ROS time, which may run faster than the wall clock.
   void RenewMarkers(const ros::WallTime& wall) {
     const aquafarm::MutexLock lock(markers_mutex_);
     const ros::Time now = ros::Time::now();
@@ -244,7 +245,7 @@ class PlanNode {
     Look();
   }
 
-  // Collects the inputs and hands them to the worker if something is new.
+  // Collects the inputs and passes them to the worker if they have changed.
   void Look() {
     PlanInputs inputs;
     inputs.request = params_.request;
@@ -274,7 +275,8 @@ class PlanNode {
     work_->Ask(std::move(inputs));
   }
 
-  // Returns what is wrong with the ranch; empty if nothing is.
+  // Adds the state of the ranch to the inputs. Returns why it is missing or outdated; empty if it
+  // is not.
   std::string FollowRanch(PlanInputs& inputs) {
     if (!spec_fault_.empty()) return spec_fault_;
     const std::string name = node_.resolveName("state");
@@ -288,7 +290,7 @@ class PlanNode {
     }
     const double silent_s = (ros::WallTime::now() - heard_).toSec();
     if (silent_s < params_.state_timeout_s) return "";
-    // A ranch that waits for its ships or is paused sends nothing, but its services exist.
+    // A ranch that waits for its ships or is paused publishes nothing, but its services exist.
     const bool may_be_silent =
         last_state_->pace == aquafarm_msgs::FarmState::LOCKSTEP || last_state_->paused;
     if (may_be_silent && ros::service::exists("get_state", false)) return "";
@@ -369,14 +371,14 @@ class PlanNode {
   ros::WallTimer look_;
   ros::WallTimer beat_;
 
-  // Of the worker.
+  // Used only by the worker.
   PlanKeeper keeper_;
   std::vector<ros::Publisher> paths_;  // by ship
   std::string told_fault_;
   std::string told_text_;
 
   aquafarm::Mutex markers_mutex_;
-  // Without the marker that deletes.
+  // The current markers, without the one that deletes the previous ones.
   visualization_msgs::MarkerArray drawn_ AQUAFARM_GUARDED_BY(markers_mutex_);
   ros::Duration lifetime_ AQUAFARM_GUARDED_BY(markers_mutex_){kMarkerLife_s};
   ros::Time renewed_ AQUAFARM_GUARDED_BY(markers_mutex_);
@@ -392,7 +394,7 @@ class PlanNode {
     return plan;
   }
 
-  std::unique_ptr<NewestWork<PlanInputs>> work_;  // last: its thread uses the others
+  std::unique_ptr<NewestWork<PlanInputs>> work_;  // last, because its thread uses other members
 };
 
 }  // namespace

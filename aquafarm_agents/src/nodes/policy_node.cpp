@@ -39,8 +39,8 @@ std::unique_ptr<agents::Policy> MakeAndWarn(const agents::SavedPolicy& saved,
 struct PolicyParams {
   std::string policy;
   std::string mode{"evaluate"};
-  std::string output;  ///< prefix of .csv and .json; empty to write none
-  int episodes{-1};    ///< act: 0 for no limit; -1 if not given
+  std::string output;  ///< prefix of the .csv and .json files to write; empty: none
+  int episodes{-1};    ///< number of episodes; act: 0 for no limit; -1: not set
   int seed{1000};
   int ship{-1};
   double sim_timeout_s{20.0};
@@ -107,7 +107,8 @@ void ReportEnded(std::size_t successes, std::size_t episodes) {
   std::printf("%zu of %zu episodes ended with every device delivered\n", successes, episodes);
 }
 
-// Values are those of ship 0, so if each ship has its own node, only that of ship 0 publishes.
+// Value maps are those of ship 0. If each ship has its own node, only the node of ship 0 publishes
+// them.
 double ValuesPeriod_s(const PolicyParams& params) {
   return params.ship > 0 ? 0.0 : params.values_period_s;
 }

@@ -33,8 +33,8 @@ using agents::ExitCode;
 using agents::RunPhase;
 using aquafarm_msgs::TrainingStatus;
 
-constexpr double kPrintPeriod_s = 10.0;    // one line each
-constexpr double kTerminalPeriod_s = 1.0;  // one line that renews itself
+constexpr double kPrintPeriod_s = 10.0;    // between two lines of progress
+constexpr double kTerminalPeriod_s = 1.0;  // between two updates of the line on a terminal
 
 struct TrainParams {
   agents::RunOptions run;
@@ -128,7 +128,7 @@ TrainingStatus ToMsg(const agents::RunStatus& status, const agents::RunOptions& 
   return message;
 }
 
-/// Progress on the console: a line that renews itself on a terminal, else a line every 10 s.
+/// Prints the progress: on a terminal one line that is updated, elsewhere a line every 10 s.
 class ProgressLine {
  public:
   ~ProgressLine() { Close(); }
@@ -162,10 +162,10 @@ class ProgressLine {
   ros::WallTime printed_;
 };
 
-/// Reports the status: always on a topic, periodically on the console.
+/// Publishes every status on a topic, and prints the progress periodically.
 class StatusReporter {
  public:
-  /// @param prints whether the progress also goes to the console, as on rank 0
+  /// @param prints whether the progress is also printed, as on rank 0
   StatusReporter(ros::NodeHandle& node, agents::RunOptions options, bool prints)
       : options_(std::move(options)),
         prints_(prints),
@@ -238,8 +238,8 @@ agents::RunReport Train(ros::NodeHandle& node, TrainParams params, agents::Proce
   return report;
 }
 
-/// Connects with the other ranks, each of which has a sim node of its own. Returns null if this
-/// process trains alone.
+/// Connects with the other ranks. Each rank has a separate sim node. Returns null if this process
+/// trains alone.
 std::unique_ptr<agents::ProcessGroup> JoinRanks(const TrainParams& params) {
   const agents::RankVariables variables =
       agents::ReadRankVariables([](const char* name) { return std::getenv(name); });
@@ -258,13 +258,13 @@ int End(ExitCode code, const std::string& summary) {
   return static_cast<int>(code);
 }
 
-/// name:=value, quoted for a shell.
+/// Returns " name:=value", quoted for a shell.
 std::string Argument(const std::string& name, const std::string& value) {
   const bool is_plain = value.find_first_of(" '") == std::string::npos;
   return ' ' + name + ":=" + (is_plain ? value : '"' + value + '"');
 }
 
-/// Launch arguments that resume this run with train.launch. report.farms is 0 if unknown.
+/// Returns the launch arguments that resume this run with train.launch, each after a space.
 std::string Arguments(const agents::RunReport& report, const agents::RunOptions& run) {
   const agents::RunOptions defaults;
   std::string text = Argument("scenario", run.run_dir + "/scenario.yaml");
@@ -281,7 +281,7 @@ std::string Arguments(const agents::RunReport& report, const agents::RunOptions&
   return text;
 }
 
-/// Suggested next commands.
+/// Returns the suggested next command, a line; empty if there is none.
 std::string Next(const agents::RunReport& report, const agents::RunOptions& run) {
   const char* const script = std::getenv("AQUAFARM_LAUNCHER");
   const auto launch = [script](const std::string& name) {
@@ -291,7 +291,7 @@ std::string Next(const agents::RunReport& report, const agents::RunOptions& run)
   const bool can_resume = report.code == ExitCode::kInterrupted || report.code == ExitCode::kLost ||
                           report.code == ExitCode::kRankLost;
   if (can_resume) {
-    if (report.farms == 0) return "";  // it never started
+    if (report.farms == 0) return "";  // the training never started
     if (report.ranks > 1) {
       return "resume     roslaunch aquafarm_bringup ranks.launch" + Arguments(report, run) +
              " resume:=true" + Argument("run_dir", run.run_dir) +
@@ -310,7 +310,7 @@ std::string Next(const agents::RunReport& report, const agents::RunOptions& run)
 
 int RunTrainNode() {
   try {
-    RefuseTwin();  // such as the ranks of an mpirun without names of their own
+    RefuseTwin();  // for example ranks that mpirun started with the same node name
     ros::NodeHandle node;
     const TrainParams params = ReadTrainParams(ros::NodeHandle("~"));
     const std::unique_ptr<agents::ProcessGroup> group = JoinRanks(params);

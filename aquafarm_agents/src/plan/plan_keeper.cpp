@@ -39,8 +39,9 @@ std::vector<std::pair<std::string, std::string>> InputFiles(const agents::Rescue
   return files;
 }
 
-// Returns why a plan of a newer file must not replace the present one; empty if it may. A bulletin
-// of another storm, or an older one that was copied in later, would hide the storm that comes.
+// Returns why the plan of a newer file must not replace the present plan; empty if it may. A
+// bulletin of another storm, or an older bulletin that was copied later, would hide the approaching
+// storm.
 std::string WhyNotInstead(const RescuePlan& made, const RescuePlan& present) {
   if (made.storm_name != present.storm_name && made.start < present.end) {
     return "got a bulletin of '" + made.storm_name + "', expected '" + present.storm_name +
@@ -84,7 +85,7 @@ PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin) {
       ReadPlan(agents::ToJson(rescue, ensemble, report, provenance), "the plan");
   messages.plan.compute_s = seconds();
   if (is_done && messages.plan.result != RescuePlan::STORM_UNKNOWN) {
-    // The core takes this for a storm that reaches no device.
+    // The core reports this case as a storm that reaches no device.
     messages.plan.result = has_others ? RescuePlan::NOTHING_SAVED : RescuePlan::PLAN;
     messages.plan.text =
         has_others
@@ -135,13 +136,13 @@ std::string PlanKeeper::TryAll(const PlanInputs& inputs) {
   } catch (const std::exception& error) {
     why = error.what();
   }
-  // At the start there is no good one: the newest of the others that can be planned with.
+  // If no bulletin is in use yet, uses the newest of the others with which a plan can be made.
   for (std::size_t i = 1; good_.empty() && i < inputs.bulletins.size(); ++i) {
     try {
       Use(MakePlan(inputs, inputs.bulletins[i].path), inputs);
       good_ = inputs.bulletins[i].path;
       return why + "; this plan is of " + good_;
-    } catch (const std::exception&) {  // then the next
+    } catch (const std::exception&) {  // tries the next one
     }
   }
   const bool has_other = !good_.empty() && good_ != newest && !StampOf(good_).stamp.empty();
@@ -149,7 +150,7 @@ std::string PlanKeeper::TryAll(const PlanInputs& inputs) {
     try {
       Use(MakePlan(inputs, good_), inputs);
       return why + "; this plan is of " + good_;
-    } catch (const std::exception&) {  // then neither can be planned with
+    } catch (const std::exception&) {  // no plan can be made: keeps the earlier one
     }
   }
   if (plan_.plan.result == RescuePlan::NONE) return why;

@@ -22,7 +22,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr int kCircleCorners = 72;
-// Heights above the ranch's own markers; rviz's view from above clips at 500 m.
+// Heights above the markers of the ranch. The view from above in rviz clips at 500 m.
 constexpr double kLine_m = 100.0;
 constexpr double kText_m = 120.0;
 
@@ -31,7 +31,7 @@ struct Color {
   float green;
   float blue;
 };
-// Okabe and Ito (2008), Color universal design; black is left out.
+// The palette of Okabe and Ito (2008), Color universal design, without black.
 constexpr std::array<Color, 6> kShipColors{{{0.84F, 0.37F, 0.0F},
                                             {0.34F, 0.71F, 0.91F},
                                             {0.80F, 0.47F, 0.65F},
@@ -55,7 +55,7 @@ class Maker {
  public:
   explicit Maker(const RescuePlan& plan)
       : plan_(plan),
-        // On large maps lines and letters are larger than a cell to stay visible.
+        // On large maps the unit of lines and letters exceeds a cell, so that they stay visible.
         unit_m_(plan.cell_size_m * std::max(1.0, std::max(plan.width, plan.height) / 30.0)) {}
 
   Marker Make(const char* space, int id, int type, Color color) const {
@@ -100,7 +100,7 @@ void AddRoutes(const RescuePlan& plan, const Maker& maker, MarkerArray& array) {
   for (const auto& route : plan.routes) {
     if (route.path.size() < 2) continue;
     Marker line = maker.Line("plan_route", route.ship, ColorOf(route.ship), 0.18);
-    // Shifted by ship, so that a way that two of them take shows both.
+    // Shifted by ship, so that two routes through the same cells are both visible.
     const double shift = 0.12 * maker.unit_cells() * (route.ship % 3 - 1);
     for (const auto& cell : route.path) {
       line.points.push_back(PointAt(plan, cell.x + shift, cell.y + shift, kLine_m));

@@ -23,8 +23,8 @@ using aquafarm::agents::Policy;
 
 constexpr double kCallLimit_s = 2.0;
 constexpr auto kPollPeriod = std::chrono::milliseconds(100);
-constexpr int kRest = 9;  // multiple of the working time
-constexpr int kCopyRest = 49;
+constexpr int kRest = 9;       // pause after computing, as a multiple of the computing time
+constexpr int kCopyRest = 49;  // pause after copying a policy, as a multiple of the copying time
 constexpr int kNice = 10;
 
 }  // namespace
@@ -76,7 +76,7 @@ void ValuesPublisher::Run() {
   while (!ending_) {
     if (policy_ == nullptr || !IsWatched() || Clock::now() < due_) {
       lock.WaitUntil(changed_,
-                     Clock::now() + kPollPeriod);  // polls: new subscribers raise no event here
+                     Clock::now() + kPollPeriod);  // polls, because new subscribers cause no event
       continue;
     }
     const std::shared_ptr<Policy> policy = policy_;
@@ -84,7 +84,7 @@ void ValuesPublisher::Run() {
     const auto start = Clock::now();
     try {
       Look(*policy);
-    } catch (const std::exception& error) {  // the sim node is gone or has other farms
+    } catch (const std::exception& error) {  // the sim node is gone, or its farms have changed
       farms_.reset();
       ROS_DEBUG("no values: %s", error.what());
     }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that are written completely or not at all."""
+"""Writes files either completely or not at all."""
 import contextlib
 import os
 import pathlib
@@ -8,9 +8,10 @@ import tempfile
 
 @contextlib.contextmanager
 def open_atomically(path, mode="w"):
-    """Yields a new file in the folder of a path; it replaces the path if the block succeeds.
+    """Yields a temporary file, which is renamed to `path` if the block succeeds.
 
-    Otherwise the new file is removed. Text is UTF-8.
+    If the block fails, the temporary file is removed and a file at `path` stays unchanged. Text is
+    UTF-8.
     """
     path = pathlib.Path(path)
     handle, part = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
@@ -19,7 +20,7 @@ def open_atomically(path, mode="w"):
             yield file
         mask = os.umask(0)
         os.umask(mask)
-        os.chmod(part, 0o666 & ~mask)  # as of a file that open() creates
+        os.chmod(part, 0o666 & ~mask)  # the permissions that open() would give to a new file
         os.replace(part, path)
     except BaseException:
         pathlib.Path(part).unlink(missing_ok=True)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Geometry of the ranch's map in SVG: coast, symbols, routes, labels, isolines of probability."""
+"""Computes the map of the ranch for SVG: coast, symbols, routes, labels, isolines of
+probability."""
 import math
 
 import contourpy
@@ -10,11 +11,11 @@ from .document import Clock
 from .labels import Label, place
 from .words import chance, compass, kind_name, left_reason, left_word, letter
 
-WIDTH, MAX_HEIGHT = 760.0, 860.0  # of the drawing [px]
-LEVELS = (10, 50, 90)  # isolines [%]
+WIDTH, MAX_HEIGHT = 760.0, 860.0  # max width and height of the drawing [px]
+LEVELS = (10, 50, 90)  # levels of the isolines [%]
 NICE = (1, 2, 5)
-LABEL_SIZE = 18.0
-MANY_DEVICES = 10  # with more, labels have one line
+LABEL_SIZE = 18.0  # font size [px]
+MANY_DEVICES = 10  # max number of devices whose labels have two lines
 
 
 class Frame:
@@ -28,18 +29,18 @@ class Frame:
         return (x + 0.5) * self.scale, self.height - (y + 0.5) * self.scale
 
     def path(self, points, closed=False):
-        """Path data of points in cells."""
+        """Returns the SVG path data of a line through points [cells]."""
         return svg_path([self.px(x, y) for x, y in points], closed)
 
 
 def svg_path(points, closed=False):
-    """Path data of points in pixels."""
+    """Returns the SVG path data of a line through points [px]."""
     text = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points)
     return text + "Z" if closed else text
 
 
 def chart(plan):
-    """Everything that templates/map.svg draws, in pixels."""
+    """Returns the data of templates/map.svg. Positions are in pixels of the drawing."""
     frame = Frame(plan["ranch"])
     routes = [_route(plan, frame, route) for route in plan["plan"]["routes"]]
     devices = [_device(plan, frame, device) for device in plan["devices"]]
@@ -58,8 +59,8 @@ def chart(plan):
 
 
 def storm_pointer(plan, frame):
-    """An arrow at the border of the map towards the storm's centre when the plan begins, and its
-    words; None if the centre is unknown or on the map."""
+    """Returns an arrow near the border of the map that points to the storm's centre at the start of
+    the plan, with its label. None if the centre is unknown or on the map."""
     clock, points = Clock(plan["clock"]), plan["storm"]["points"]
     seconds = [clock.seconds(one["time"]) for one in points]
     if not seconds or not seconds[0] <= 0.0 <= seconds[-1]:
@@ -82,24 +83,26 @@ def storm_pointer(plan, frame):
 
 
 def _coast(ranch, frame):
-    """Outlines of the land cells with rounded corners."""
+    """Returns the path data of the outlines of the land cells, with rounded corners."""
     if not ranch["land"]:
         return ""
     fine, pad = 4, 2
     mask = np.zeros((ranch["height"] + 2 * pad, ranch["width"] + 2 * pad))
     for x, y in ranch["land"]:
         mask[y + pad, x + pad] = 1
-    # Land at the border of the map continues beyond it.
+    # Land at the border of the map is extended beyond it.
     mask[:pad], mask[-pad:] = mask[pad], mask[-pad - 1]
     mask[:, :pad], mask[:, -pad:] = mask[:, pad:pad + 1], mask[:, -pad - 1:-pad]
     smooth = gaussian_filter(np.kron(mask, np.ones((fine, fine))), 0.28 * fine)
     closed = np.pad(smooth, 1)
-    # Sample i of the fine grid, which starts at 1, is centred in cell (i - 0.5) / fine - 0.5 - pad.
+    # Samples of the fine grid have the indices 1, 2, …; index i is at (i - 0.5) / fine - 0.5 - pad
+    # [cells].
     return _outlines(closed, 0.55, frame, lambda i: (i - 0.5) / fine - 0.5 - pad)
 
 
 def _outlines(field, level, frame, to_cells):
-    """Path data of the closed outlines of the area of a padded field that is above a level."""
+    """Returns the path data of the outlines of the area where a field is above a level. The field
+    must be below the level along its border, so that all outlines are closed."""
     lines = contourpy.contour_generator(z=field).lines(level)
     return "".join(frame.path(to_cells(line), True) for line in lines)
 
@@ -117,7 +120,8 @@ def _device(plan, frame, device):
 
 
 def _offset(points, distance):
-    """A line parallel to a line in pixels, to starboard, so that out and home stay apart."""
+    """Returns a line parallel to a line [px], at a distance on its starboard side, so that the ways
+    out and home do not overlap."""
     points = np.array(points)
     if len(points) < 2:
         return points
@@ -127,7 +131,8 @@ def _offset(points, distance):
 
 
 def _route(plan, frame, route):
-    """Legs between orders; `late` in [0, 1] is the time of the leg, for the shade."""
+    """Returns the legs of a route between its orders. `late`, in [0, 1], is the start time of a
+    leg, which determines its shade."""
     clock = Clock(plan["clock"])
     ends = [clock.seconds(order["time"]) for order in route["orders"]]
     last = max(route["path"][-1][2], 1) if route["path"] else 1
@@ -146,7 +151,7 @@ def _route(plan, frame, route):
 
 
 def _arrow(line):
-    """Position and heading [degrees] in the middle of a line."""
+    """Returns x, y and direction [degrees clockwise from the x axis] in the middle of a line."""
     steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
     k = int(np.searchsorted(np.cumsum(steps), steps.sum() / 2))
     k = min(k, len(steps) - 1)
@@ -155,8 +160,9 @@ def _arrow(line):
 
 
 def _badges(plan):
-    """Number of the ship and the letter of its order of fetching, such as 1b, by device. Ports have
-    capital letters."""
+    """Returns {device: badge} of the fetched devices. A badge such as 1b is the number of the ship
+    and, as a lower-case letter, the position of the device in its order of fetching. (Ports have
+    capital letters.)"""
     badges = {}
     for route in plan["plan"]["routes"]:
         fetched = [one["device"] for one in route["orders"] if one["action"] == "fetch"]
@@ -166,7 +172,7 @@ def _badges(plan):
 
 
 def samples(line, gap=7.0):
-    """Points at most `gap` pixels apart along a line."""
+    """Yields points along a line that are at most `gap` pixels apart."""
     for (x0, y0), (x1, y1) in zip(line, line[1:]):
         n = max(1, math.ceil(math.hypot(x1 - x0, y1 - y0) / gap))
         for i in range(n):
@@ -203,13 +209,13 @@ def _labels(plan, frame, devices, ports, routes, storm):
 
 
 def nice(target):
-    """The largest of 1, 2, 5 × 10^n that is not above a target."""
+    """Returns the largest number of the form 1, 2 or 5 × 10^n that is at most `target`."""
     power = 10.0**math.floor(math.log10(target))
     return max(n * power for n in NICE if n * power <= target * 1.0001)
 
 
 def _scale_bar(ranch, frame):
-    """Bars of a round length in km and in nautical miles."""
+    """Returns two scale bars with round lengths, in km and in nautical miles."""
     px_per_km = frame.scale * 1000 / ranch["cell_size_m"]
     bars = []
     for unit, km in (("km", 1.0), ("nmi", 1.852)):
@@ -219,7 +225,7 @@ def _scale_bar(ranch, frame):
 
 
 def _ticks(ranch, frame):
-    """Ticks of longitude along the lower border and of latitude along the left border."""
+    """Returns the ticks of longitude on the lower border and of latitude on the left border."""
     south_west, south_east, _, north_west = ranch["corners"]
     west, east = south_west["longitude"], south_east["longitude"]
     south, north = south_west["latitude"], north_west["latitude"]
@@ -229,7 +235,7 @@ def _ticks(ranch, frame):
     step = minutes[0] / 60
 
     def inside(low, high):
-        edge = 0.04 * (high - low)  # room for half of a text
+        edge = 0.04 * (high - low)  # space for half of a tick's text
         return [
             n * step for n in range(math.ceil((low + edge) / step),
                                     math.floor((high - edge) / step) + 1)
@@ -249,14 +255,16 @@ def _degrees(value, positive, negative):
 
 
 def isolines(plan, frame):
-    """Per frame: time and, per ring, the outlines of the area with at least 10, 50 and 90 %."""
+    """Returns the isolines of each frame: its time, and for each ring the outlines of the areas
+    with at least 10, 50 and 90 %."""
     ranch, clock, result = plan["ranch"], Clock(plan["clock"]), []
     for one in plan["hazard"]["frames"]:
         rings = []
         for grid in one["percent"]:
             outlines = []
             if grid:
-                # Repeat the border once and close the area outside of the map.
+                # The border cells are repeated once. A border of zeros then closes the outlines
+                # outside of the map.
                 field = np.pad(
                     np.pad(np.array(grid, float).reshape(ranch["height"], ranch["width"]),
                            1,

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command `plan`: runs aquafarm_plan and makes the page and the GeoJSON of its plan file."""
+"""The verb plan of ./aquafarm: runs aquafarm_plan, and makes the page and the GeoJSON of its
+plan."""
 import argparse
 import os
 import pathlib
@@ -19,7 +20,7 @@ exit codes: those of aquafarm_plan, also listed in docs/plan.md
 
 
 def main(arguments):
-    """Returns the exit code: that of aquafarm_plan, or 2 if the page cannot be made."""
+    """Runs the command. Returns the exit code of aquafarm_plan, or 2 if the page cannot be made."""
     parser = argparse.ArgumentParser(
         prog="aquafarm plan",
         allow_abbrev=False,
@@ -56,7 +57,11 @@ def main(arguments):
 
 
 def make(options, rest):
-    """Plans, unless a plan file is given, and writes the page and the GeoJSON."""
+    """Makes a plan unless a plan file is given, and writes the page and the GeoJSON.
+
+    @returns the exit code
+    @throws PlanError for wrong arguments or a wrong plan file
+    """
     output = options.output.with_suffix(options.output.suffix or ".html")
     if output.suffix.lower() in (".json", ".geojson"):
         raise PlanError(f"-o: got {output}, expected the name of the page, such as plan.html")
@@ -88,7 +93,7 @@ def make(options, rest):
 
 
 def stamp(path):
-    """What changes when a file is written again; None if there is none."""
+    """Returns a value that changes when the file is written; None if there is no file."""
     try:
         status = path.stat()
     except FileNotFoundError:
@@ -97,14 +102,14 @@ def stamp(path):
 
 
 def program():
-    """Path of aquafarm_plan: AQUAFARM_PLAN, or that of the workspace."""
+    """Returns the path of aquafarm_plan: AQUAFARM_PLAN, or the program of the workspace."""
     if os.environ.get("AQUAFARM_PLAN"):
         return os.environ["AQUAFARM_PLAN"]
-    import roslib.packages  # only here: a page of an existing plan file needs no ROS
+    import roslib.packages  # imported here, because a page of an existing plan file needs no ROS
     import rospkg
     try:
         found = roslib.packages.find_node("aquafarm_agents", "aquafarm_plan")
-    except rospkg.ResourceNotFound:  # the environment has no such package
+    except rospkg.ResourceNotFound:  # the package is not in the environment
         found = None
     if not found:
         raise PlanError("aquafarm_agents has no aquafarm_plan; build the workspace first")
@@ -112,5 +117,5 @@ def program():
 
 
 def run(command):
-    """Exit code of a program that shares this one's streams."""
+    """Runs a program with the streams of this process, and returns its exit code."""
     return subprocess.run(command, check=False).returncode

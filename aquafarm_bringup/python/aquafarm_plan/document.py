@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads plan files; formats their times, amounts and probabilities."""
+"""Reads plan files, and formats their times, amounts and probabilities."""
 import datetime
 import json
 import pathlib
@@ -12,7 +12,8 @@ UTC = datetime.timezone.utc
 
 
 class PlanError(Exception):
-    """The plan file cannot be read; the message names the place, the value and what is expected."""
+    """The plan file cannot be used. The message contains the place, the value and what is
+    expected."""
 
 
 def load(path):
@@ -34,7 +35,8 @@ def load(path):
 
 def check(document, path):
     """@throws PlanError if the document does not fit the schema or contradicts itself"""
-    # The grids hold some 100,000 numbers, which the schema's validator takes seconds for.
+    # Without the grids: they contain about 100,000 numbers, for which the schema's validator needs
+    # seconds. _check_frames checks them.
     lean = document
     if isinstance(document, dict) and isinstance(document.get("hazard"), dict):
         lean = {
@@ -74,7 +76,8 @@ def _check_frames(document, path):
 
 
 def _check_references(document, path):
-    """Ship, device and port ids are positions in their lists, and every use of one exists."""
+    """Checks that ids of ships, devices and ports are indices in their lists, that all ids in use
+    exist, and that lists with an entry per ring have their length."""
     for name in ("ships", "devices", "ports"):
         ids = [one["id"] for one in document[name]]
         if ids != list(range(len(ids))):
@@ -109,7 +112,7 @@ def _check_references(document, path):
 
 
 def parse_time(text):
-    """The aware datetime of a UTC time stamp of a plan file."""
+    """Converts a time stamp of a plan file to a datetime in UTC."""
     return datetime.datetime.strptime(text, "%Y-%m-%dT%H:%M:%SZ").replace(tzinfo=UTC)
 
 
@@ -124,32 +127,33 @@ class Clock:
         self.offset_min = clock["utc_offset_min"]
 
     def seconds(self, text):
-        """Seconds after the start of the plan."""
+        """Converts a time stamp to seconds after the start of the plan."""
         return (parse_time(text) - self.start).total_seconds()
 
     def at(self, seconds):
-        """Time stamp of seconds after the start."""
+        """Converts seconds after the start of the plan to a time stamp."""
         return (self.start + datetime.timedelta(seconds=seconds)).strftime("%Y-%m-%dT%H:%M:%SZ")
 
     def local(self, text):
         return parse_time(text).astimezone(self._local)
 
     def day_time(self, text):
-        """Local day and time, such as `Sat 24 Jul 14:20`; a dash if there is none."""
+        """Returns local day and time, such as `Sat 24 Jul 14:20`; a dash for None."""
         if not text:
             return "–"
         local = self.local(text)
         return f"{local:%a} {local.day} {local:%b %H:%M}"
 
     def time(self, text):
-        """Local time of day; with the weekday on another day than the start's."""
+        """Returns the local time of day, with the weekday unless it is the day on which the plan
+        starts; a dash for None."""
         if not text:
             return "–"
         same = self.local(text).date() == self.start.astimezone(self._local).date()
         return f"{self.local(text):%H:%M}" if same else f"{self.local(text):%a %H:%M}"
 
     def utc(self, text):
-        """UTC, such as `24 06:20`: day of the month and time."""
+        """Returns day of the month and time in UTC, such as `24 06:20`; a dash for None."""
         return f"{parse_time(text):%d %H:%M}" if text else "–"
 
     def utc_full(self, text):
@@ -157,7 +161,8 @@ class Clock:
 
 
 def percent(share):
-    """A probability in words of a table. Shares of a sample are never called certain."""
+    """Returns a probability as text for a table; a dash for None. It never returns "100 %" or "0
+    %", because a share of a sample is not certain."""
     if share is None:
         return "–"
     if share >= 0.995:
@@ -166,7 +171,11 @@ def percent(share):
 
 
 def amount(value, currency, sign=False):
-    """An amount of money with three significant digits, such as `CNY 0.69 M`."""
+    """Returns an amount of money as text, such as `CNY 1.23 M`, `CNY 12,000` or `CNY 980`; a dash
+    for None.
+
+    sign: True writes + before a positive amount
+    """
     if value is None:
         return "–"
     size = abs(value)
@@ -181,5 +190,6 @@ def amount(value, currency, sign=False):
 
 
 def sampling_error(share, members):
-    """Half width of the 95 % interval of a share of the members (normal approximation)."""
+    """Returns the half-width of the 95 % interval of a share of the members (normal
+    approximation)."""
     return 1.96 * (share * (1 - share) / members)**0.5

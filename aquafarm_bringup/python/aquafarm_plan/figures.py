@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Geometry of the other drawings: the storm's region, the timeline and the loss curve."""
+"""Computes the other drawings of the page: the region of the storm, the timeline, the loss
+curve."""
 import datetime
 import math
 
@@ -8,16 +9,17 @@ from .document import Clock, amount, parse_time
 from .labels import Label, place, shorten
 from .words import compass, is_unknown, letter, numbered_name, order_text
 
-REGION = 330.0  # side of the region's drawing [px]
-REGION_LABELS = 4  # most fixes with a label, so that they can be read
+REGION = 330.0  # side of the drawing of the region [px]
+REGION_LABELS = 4  # max number of positions of the storm with a label
 LINE = (1100.0, 104.0)  # width and left margin of the timeline [px]
-HAZARD_HEIGHT, ROW, AXIS = 62.0, 27.0, 48.0
-NEAREST_H = 72  # a closest approach after more hours does not lengthen the timeline
+HAZARD_HEIGHT, ROW, AXIS = 62.0, 27.0, 48.0  # heights in the timeline [px]
+NEAREST_H = 72  # the timeline is lengthened for a closest approach within this time [h]
 CURVE = (520.0, 270.0, 58.0, 44.0)  # width, height, left and lower margin of the loss curve [px]
 
 
 def region(plan):
-    """The storm's track, its error and its rings around the ranch, in pixels."""
+    """Returns the data of the drawing of the region: the storm's track, the forecast error and the
+    rings near the ranch, in pixels. None if no position of the storm is known."""
     clock, ranch = Clock(plan["clock"]), plan["ranch"]
     cell_km = ranch["cell_size_m"] / 1000
     middle = [(ranch["width"] - 1) / 2, (ranch["height"] - 1) / 2]
@@ -37,7 +39,7 @@ def region(plan):
     scale = REGION / side
 
     def px(x, y):
-        # Most labels stand to the right of the track.
+        # There is more space to the right of the track, where most labels are.
         left = 0.25 * (side - east + west)
         return (x - west + left) * scale, ((south + north + side) / 2 - y) * scale
 
@@ -65,8 +67,8 @@ def region(plan):
 
 
 def _apart(drawn, least):
-    """The points of a dense track that are at least a distance apart [px], and always the present and
-    the last one."""
+    """Returns the points of a track that are at least `least` pixels apart. The present point and
+    the last one are always included."""
     kept = []
     for one in drawn:
         if (not kept or math.dist(one["xy"], kept[-1]["xy"]) >= least or one["is_now"]
@@ -76,7 +78,8 @@ def _apart(drawn, least):
 
 
 def _region_labels(plan, drawn, rings, box):
-    """The ranch's name, times and winds at the fixes, and names at the rings."""
+    """Returns the placed labels: the ranch, time and wind of some positions of the storm, and the
+    names of the rings."""
     centre = (box["x"] + box["w"] / 2, box["y"] + box["h"] / 2)
     labels = [Label(["ranch"], centre, box["w"] / 2 + 2, 14, name="ranch-name")]
     now = [one for one in drawn if one["is_now"]][:1]  # a track may have no point at the start
@@ -100,7 +103,8 @@ def _region_labels(plan, drawn, rings, box):
 
 
 def _parts(points):
-    """(source, points) of the stretches of a track; each begins where the one before ends."""
+    """Yields (source, points) of the recorded, forecast and assumed parts of a track. Each part
+    begins at the last point of the previous one."""
     for source in ("recorded", "forecast", "assumed"):
         part = [i for i, p in enumerate(points) if p["source"] == source]
         if part:
@@ -108,7 +112,7 @@ def _parts(points):
 
 
 def _region_rings(plan, points, middle, px, px_per_km, clock):
-    """(rings, caption): the rings at the future fix that is nearest to the ranch."""
+    """Returns (rings, caption) of the future position of the storm that is nearest to the ranch."""
     future = [p for p in points if parse_time(p["time"]) > clock.start and any(p["radii_km"])]
     if not future:
         return [], "No radius of its winds is known."
@@ -121,7 +125,8 @@ def _region_rings(plan, points, middle, px, px_per_km, clock):
 
 
 def _cone(errors, px, px_per_km):
-    """Circles of the forecast error and the tangents between neighbours, as shapes of one union."""
+    """Returns shapes whose union is the forecast cone: circles, and the areas between the outer
+    tangents of successive circles."""
     circles = [(*px(*e["centre"]), e["radius70_km"] * px_per_km) for e in errors]
     shapes = [
         f"M{x - r:.1f} {y:.1f}a{r:.1f} {r:.1f} 0 1 0 {2 * r:.1f} 0"
@@ -141,7 +146,8 @@ def _cone(errors, px, px_per_km):
 
 
 def horizon_s(plan):
-    """End of the timeline: a little after the last event that matters [s after the start]."""
+    """Returns the end of the timeline [s after the start]: three hours after the last order, median
+    arrival, last departure or closest approach, but not after the end of the plan."""
     clock = Clock(plan["clock"])
     end = (clock.end - clock.start).total_seconds()
     events = [clock.seconds(o["time"]) for r in plan["plan"]["routes"] for o in r["orders"]]
@@ -154,14 +160,16 @@ def horizon_s(plan):
 
 
 def shown_hazard(plan):
-    """The hazard over time; empty if it is zero throughout or, for unknown winds, means nothing."""
+    """Returns the hazard over time. Empty if it is always 0, or if the winds are unknown, because
+    it then means nothing."""
     times = plan["hazard"]["timeline"]
     shown = any(any(one["probability"]) for one in times) and not is_unknown(plan)
     return times if shown else []
 
 
 def timeline(plan):
-    """Probability of each ring over the ranch above one row of orders per ship."""
+    """Returns the data of the timeline: curves of the probability of each ring over the ranch, and
+    below them a row of orders per ship."""
     clock, (width, left) = Clock(plan["clock"]), LINE
     end = max(horizon_s(plan), 3600)
     inner = width - left - 26
@@ -196,7 +204,7 @@ def timeline(plan):
 
 
 def _nearest(plan, clock, end, x_of):
-    """Place and words of the closest approach on the timeline; None if it is not on it."""
+    """Returns position and text of the closest approach on the timeline; None if it is outside."""
     nearest = plan["storm"]["closest_approach"]
     if not nearest or not 0.0 <= clock.seconds(nearest["time"]) <= end:
         return None
@@ -210,7 +218,7 @@ def _row(plan, route, clock, x_of, y):
     bars = []
     for before, order in zip(route["orders"], route["orders"][1:]):
         x0, x1 = x_of(clock.seconds(before["time"])), x_of(clock.seconds(order["time"]))
-        waits = order["action"] in ("leave", "wait")  # in port, until the next departure
+        waits = order["action"] in ("leave", "wait")  # the ship is in port until this order
         if waits and x1 - x0 < 1:
             continue
         name = (plan["devices"][order["device"]]["name"] if order["action"] == "fetch" else
@@ -227,7 +235,7 @@ def _row(plan, route, clock, x_of, y):
 
 
 def _time_ticks(clock, end, x_of):
-    """Ticks at round local hours."""
+    """Returns the ticks of the time axis, at round hours of local time."""
     step = next((h for h in (1, 2, 3, 6, 12, 24, 48) if end / 3600 / h <= 13), 96)
     local = clock.local(clock.at(0)).replace(minute=0, second=0)
     ticks = []
@@ -240,17 +248,17 @@ def _time_ticks(clock, end, x_of):
     return ticks
 
 
-DATE_WIDTH = 84.0  # of a date below the axis [px]
+DATE_WIDTH = 84.0  # width of a date below the axis [px]
 
 
 def _dates(clock, end, x_of):
-    """The local dates, each from where its day begins on the axis."""
+    """Returns the local dates below the axis. Each is at the start of its day."""
     first = clock.local(clock.at(0))
     days = [first]
     while (days[-1] - clock.start).total_seconds() <= end:
         days.append(days[-1].replace(hour=0, minute=0, second=0) + datetime.timedelta(days=1))
     dates = []
-    for day in reversed(days[:-1]):  # the later one stays where two are close
+    for day in reversed(days[:-1]):  # of two dates that are too close, the later one is kept
         x = x_of((day - clock.start).total_seconds())
         if not dates or dates[0]["x"] - x >= DATE_WIDTH:
             dates.insert(0, {"x": x, "text": f"{day:%a} {day.day} {day:%b}",
@@ -259,7 +267,8 @@ def _dates(clock, end, x_of):
 
 
 def curve(plan):
-    """Exceedance curves of the loss: with the plan, and if no ship leaves."""
+    """Returns the data of the exceedance curves of the loss: with the plan, and if no ship
+    leaves."""
     width, height, left, lower = CURVE
     loss = plan["loss"]
     top = max([x for name in ("with_plan", "idle") for x, _ in loss[name]["exceedance"]] + [0.0])

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tangent plane (east, north) on the WGS 84 ellipsoid, as aquafarm/grid/geo_frame.h in C++."""
+"""The tangent plane (east, north) of the WGS 84 ellipsoid, as in aquafarm/grid/geo_frame.h
+(C++)."""
 from math import atan2, cos, degrees, hypot, radians, sin, sqrt
 
 _A, _F = 6378137.0, 1 / 298.257223563  # WGS 84: semi-major axis [m], flattening
@@ -17,19 +18,21 @@ class LocalPlane:
                       (cos(lat) * cos(lon), cos(lat) * sin(lon), sin(lat)))         # up
 
     def to_plane(self, latitude, longitude):
-        """(east, north) of a point on the ellipsoid; its height above the plane is dropped."""
+        """Returns (east, north) [m] of a point on the ellipsoid. Its height above the plane is
+        ignored."""
         way = [a - b for a, b in zip(_to_ecef(latitude, longitude), self._origin)]
         east, north, _ = (sum(a * b for a, b in zip(axis, way)) for axis in self._axes)
         return east, north
 
     def to_geo(self, east, north):
-        """(latitude, longitude) of the point on the ellipsoid below a point on the plane.
+        """Returns (latitude, longitude) of the point on the ellipsoid that to_plane maps to a
+        point.
 
-        Exact inverse of to_plane. GeoFrame::ToGeo of the C++ core drops the height along the
-        ellipsoid's normal instead: at 25 km from the origin the two differ by 0.2 m.
+        GeoFrame::ToGeo of the C++ core instead projects the point along the ellipsoid's normal. At
+        25 km from the origin the two results differ by 0.2 m.
         """
         up = 0.0
-        for _ in range(6):  # each round shrinks the height by the square of the distance / radius
+        for _ in range(6):  # a round multiplies the height by about (distance / radius)²
             point = [start + sum(a * b for a, b in zip((east, north, up), column))
                      for start, column in zip(self._origin, zip(*self._axes))]
             latitude, longitude, height = _from_ecef(*point)
@@ -38,10 +41,11 @@ class LocalPlane:
 
 
 def _from_ecef(x, y, z):
-    """Latitude, longitude [degrees] and height [m] by fixed-point iteration of the latitude."""
+    """Returns latitude, longitude [degrees] and height [m], by fixed-point iteration of the
+    latitude."""
     across = hypot(x, y)
     lat = atan2(z, across * (1 - _E2))
-    for _ in range(6):  # each round gains more than two digits
+    for _ in range(6):  # each round adds more than two correct digits
         lat = atan2(z + _E2 * _normal(lat) * sin(lat), across)
     return degrees(lat), degrees(atan2(y, x)), across / cos(lat) - _normal(lat)
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plan as GeoJSON (RFC 7946): longitude before latitude, outer rings counter-clockwise."""
+"""Converts a plan to GeoJSON (RFC 7946): longitude before latitude, outer rings
+counter-clockwise."""
 import json
 
 import numpy as np
@@ -12,7 +13,8 @@ CIRCLE_POINTS = 72
 
 
 def feature_collection(plan):
-    """All features of a plan file; the property `layer` separates them."""
+    """Returns all features of a plan. Their property `layer` is port, device, route, order,
+    storm_track, storm_position, ring or forecast_error."""
     place = _Placing(plan)
     features = [
         *_ports(plan), *_devices(plan), *_routes(plan, place), *_orders(plan), *_storm(plan, place),
@@ -22,7 +24,7 @@ def feature_collection(plan):
 
 
 def text(plan):
-    """The features as the text of a file."""
+    """Returns the text of the GeoJSON file of a plan."""
     return json.dumps(feature_collection(plan), ensure_ascii=False, indent=1) + "\n"
 
 
@@ -39,7 +41,8 @@ class _Placing:
         return [round(longitude, 6), round(latitude, 6)]
 
     def circle(self, x, y, radius_km):
-        """Closed ring of a circle on the plane, counter-clockwise."""
+        """Returns a circle as a closed ring of [longitude, latitude], counter-clockwise. x, y:
+        centre [cells]"""
         radius = radius_km * 1000 / self._cell_m
         ring = [
             self.lon_lat(x + radius * np.cos(a), y + radius * np.sin(a))

@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Places labels of a map in free space."""
+"""Places the labels of a map where they cover as little as possible."""
 import dataclasses
 import math
 import unicodedata
 
-# Of the font size, in a wide bold sans-serif face (DejaVu).
+# Widths of characters, as fractions of the font size, in a wide bold sans-serif font (DejaVu).
 CHAR_WIDTH = 0.7
 WIDTHS = {" ": 0.36, "%": 1.0}
 WIDE = ("W", "F")  # East Asian characters as wide as the font size
 
 
 def text_width(text, size):
-    """Approximate width of a text [px]."""
+    """Returns the approximate width of a text [px]."""
     return size * sum(1.0 if unicodedata.east_asian_width(c) in WIDE else WIDTHS.get(c, CHAR_WIDTH)
                       for c in text)
 
 
 def shorten(text, width, size):
-    """A text of at most a width [px], with an ellipsis if it was cut."""
+    """Cuts a text to a max width [px]. A text that was cut ends with an ellipsis."""
     if text_width(text, size) <= width:
         return text
     while text and text_width(text + "…", size) > width:
@@ -27,17 +27,17 @@ def shorten(text, width, size):
 
 @dataclasses.dataclass
 class Label:
-    """A text next to a point; x and y are its lower left corner once it is placed [px]."""
+    """A text next to a point. `place` sets x and y, its lower left corner [px], and the leader."""
     lines: list
     anchor: tuple
     clearance: float  # radius of the symbol at the anchor [px]
     size: float = 13.0
     x: float = 0.0
     y: float = 0.0
-    leader: str = ""  # path data of the line to a label that is far away
+    leader: str = ""  # path data of the line from the symbol to a distant label; else empty
     name: str = ""
     badge: str = ""  # text in a box before the first line
-    ship: int = 0  # of the badge
+    ship: int = 0  # ship of the badge
 
     @property
     def width(self):
@@ -53,12 +53,12 @@ class Label:
 
 
 def place(labels, points, width, height):
-    """Sets the position of each label: the candidate that covers the fewest symbols and routes.
+    """Sets the position of each label to the candidate with the lowest cost. Covering symbols,
+    routes or earlier labels, leaving the map and a large distance have a cost.
 
-    Earlier labels have priority.
-
-    @param points (x, y, weight) of what must stay visible: symbols and samples of routes
+    @param points (x, y, weight) of symbols and of samples of routes, which should stay visible
     @param width, height size of the map [px]
+    @returns the labels
     """
     taken = []
     for label in labels:
@@ -71,7 +71,8 @@ def place(labels, points, width, height):
 
 
 def _leader(box, label):
-    """A line from the symbol's rim to the label's nearest point; empty if they are close."""
+    """Returns a line from the edge of the symbol to the nearest point of the label; empty if they
+    are close."""
     x, y = label.anchor
     near_x = min(max(x, box[0]), box[0] + label.width)
     near_y = min(max(y, box[1]), box[1] + label.height)
@@ -84,7 +85,8 @@ def _leader(box, label):
 
 
 def _candidates(label):
-    """Upper left corners around the anchor, with a rank: right first, then above, below, left."""
+    """Yields possible upper left corners around the anchor, each with its cost: near ones are
+    cheaper; at equal distance first right, then above and below, then left."""
     for ring, distance in enumerate((0, 14, 30, 50, 74)):
         for turn, angle in enumerate((0, -45, 45, 90, -90, 180, -135, 135)):
             dx, dy = math.cos(math.radians(angle)), math.sin(math.radians(angle))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Renders a plan file as one self-contained HTML page."""
+"""Renders a plan as one self-contained HTML page."""
 import json
 import pathlib
 import re
@@ -10,7 +10,8 @@ import markupsafe
 from . import chart, figures, words
 from .document import Clock, amount, percent
 
-# Not a PackageLoader: in a devel space the package is a stub that extends its path.
+# jinja2.PackageLoader does not work in a devel space, where the package is a stub that extends its
+# path.
 TEMPLATES = pathlib.Path(__file__).with_name("templates")
 UNIT = re.compile(r"(?<=\d) (?=%)")  # the space in "92 %", at which a line must not break
 BASIS = {
@@ -20,7 +21,7 @@ BASIS = {
 
 
 def render(plan):
-    """The page as text."""
+    """Returns the text of the HTML page of a plan."""
     clock, currency = Clock(plan["clock"]), plan["loss"]["currency"]
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES),
                                      autoescape=True,
@@ -70,7 +71,8 @@ def render(plan):
 
 
 def _data(plan, clock, drawing, line):
-    """What the slider's script reads: a JSON text that is safe inside of a script element."""
+    """Returns the data of the script of the time slider, as JSON that is safe inside a script
+    element."""
     routes = []
     for route in plan["plan"]["routes"]:
         points = [[round(v, 1) for v in drawing["frame"].px(x, y)] + [s]
@@ -91,7 +93,7 @@ def _data(plan, clock, drawing, line):
 
 
 def _departures(plan):
-    """When the ship of each device leaves, by device."""
+    """Returns {device: time of the first departure of the ship that fetches it}."""
     leaves = {}
     for route in plan["plan"]["routes"]:
         for order in route["orders"]:

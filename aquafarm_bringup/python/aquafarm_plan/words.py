@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plan in sentences: orders and the five answers of the first screen."""
+"""Sentences of the page: orders, and the answers to the five questions at its top."""
 from .document import Clock, amount, percent, sampling_error
 
 KINDS = {
@@ -7,22 +7,23 @@ KINDS = {
     "breeding_release": "release cage", "deep_water_breeding": "deep-water cage"
 }
 
-BULLETIN_OLD = 13  # exit code
+BULLETIN_OLD = 13  # exit code of aquafarm_plan
 
 
 def kind_name(kind):
-    """Name of a device kind; an unknown kind keeps its own, without underscores."""
+    """Returns the display name of a kind of device. An unknown kind is returned without
+    underscores."""
     return KINDS.get(kind, kind.replace("_", " "))
 
 
 def numbered_name(plan, ship):
-    """The name of a ship with its number, which the map shows: "ship 1", "2: Haixing"."""
+    """Returns the name of a ship with the number that the map shows: "ship 1" or "2: Haixing"."""
     name = plan["ships"][ship]["name"]
     return name if name == f"ship {ship + 1}" else f"{ship + 1}: {name}"
 
 
 def letter(number):
-    """A, B, … Z, AA of a port."""
+    """Returns the letters of a number from 0: A, B, … Z, AA, …."""
     text = ""
     while number >= 0:
         text = chr(ord("A") + number % 26) + text
@@ -31,35 +32,36 @@ def letter(number):
 
 
 def compass(bearing_deg):
-    """The compass point of a bearing."""
+    """Returns the compass point of a bearing, such as NNE."""
     return ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW",
             "NW", "NNW")[round(bearing_deg / 22.5) % 16]
 
 
 def is_unknown(plan):
-    """Whether the storm's winds are unknown, so that no number of the plan is an all-clear."""
+    """Returns whether the storm's winds are unknown. Low probabilities then do not mean safety."""
     return plan["outcome"]["kind"] == "storm_unknown"
 
 
 def unknown_cause(plan):
-    """What makes the numbers of a plan unknown, in a few words."""
+    """Returns in a few words why the numbers of a plan are unknown."""
     ended = any(warning["code"] == "forecast_ended" for warning in plan["warnings"])
     return "the bulletin's forecast has ended" if ended else "the storm's winds are unknown"
 
 
 def unknown_reason(plan):
-    """Why the numbers of a plan are unknown; None if they are known."""
+    """Returns in a sentence why the numbers of a plan are unknown; None if they are known."""
     outcome = plan["outcome"]
     return (outcome.get("unknown") or outcome["text"]) if is_unknown(plan) else None
 
 
 def chance(plan, share):
-    """The chance of an order or of a device. Without known winds no share is an all-clear."""
+    """Returns the probability of an order or a device as text; "unknown" if it is not known."""
     return "unknown" if is_unknown(plan) or share is None else percent(share)
 
 
 def left_word(plan, device):
-    """Fate of a device without an order."""
+    """Returns the state of a device that is not fetched: "left behind", "stays in place" or
+    "unknown"."""
     if is_unknown(plan):
         return "unknown"
     safe = any(left["device"] == device and left["reason"] == "safe_in_place"
@@ -68,7 +70,7 @@ def left_word(plan, device):
 
 
 def left_reason(plan, left):
-    """Why a device is left behind, without its name at the start."""
+    """Returns why a device is left behind, without the device's name at the start."""
     if is_unknown(plan):
         return unknown_cause(plan)
     name = plan["devices"][left["device"]]["name"]
@@ -76,20 +78,20 @@ def left_reason(plan, left):
 
 
 def deadline_text(plan, deadline):
-    """Latest departure of a deadline, as in a table."""
+    """Returns the latest departure of a deadline as text for a table."""
     if is_unknown(plan):
         return "unknown"
     if not deadline["leave"]:
-        return "no departure has it"
+        return "no departure has this chance"
     day_time = Clock(plan["clock"]).day_time(deadline["leave"])
     return f"not known beyond {day_time}" if deadline.get("open") else day_time
 
 
 def last_known(plan):
-    """Sentence on the time from which no ship should leave, where it is not known."""
+    """Returns the sentence for a plan in which the last useful departure is not known."""
     beyond = Clock(plan["clock"]).day_time(plan["deadlines"]["not_known_beyond"])
-    return (f"Until when ships may leave is not known beyond {beyond}: plan again at the next "
-            "bulletin.")
+    return (f"Ships may leave at least until {beyond}. What follows is not known: plan again at "
+            "the next bulletin.")
 
 
 def device_names(plan, ids):
@@ -98,7 +100,8 @@ def device_names(plan, ids):
 
 
 def some(parts, separator, limit=3):
-    """Joins parts, of a long list the first ones and the number of the others."""
+    """Joins the parts of a list. If there are at least two more than `limit`, it joins the first
+    `limit` parts and adds the number of the others."""
     more = len(parts) - limit
     if more <= 1:
         return separator.join(parts)
@@ -106,7 +109,7 @@ def some(parts, separator, limit=3):
 
 
 def order_text(plan, order):
-    """An order as an imperative, such as `fetch F3`."""
+    """Returns an order as an instruction, such as `fetch F3`."""
     port = plan["ports"][order["port"]]["name"] if order["port"] is not None else "its position"
     if order["action"] == "leave":
         return f"leave {port}"
@@ -119,7 +122,7 @@ def order_text(plan, order):
 
 
 def no_rings(plan):
-    """Sentence in the place of the curves if no ring reaches the ranch."""
+    """Returns the sentence that replaces the curves of the timeline if it has none."""
     if is_unknown(plan):
         return f"Unknown: {unknown_cause(plan)}."
     end = Clock(plan["clock"]).day_time(plan["clock"]["end"])
@@ -127,7 +130,7 @@ def no_rings(plan):
 
 
 def answers(plan):
-    """(question, answer, remark) of each of the five questions."""
+    """Returns (question, answer, remark) of each of the five questions."""
     return [_first(plan), _leave(plan), _lose(plan), _sure(plan), _one_more(plan)]
 
 
@@ -182,13 +185,13 @@ def _leave(plan):
 
 
 def _horizon(plan, clock):
-    """Until when the storm is known."""
+    """Returns the sentence on the end of the time for which the storm is known."""
     until = plan["storm"]["forecast_until"] or plan["storm"]["recorded_until"]
     return f"Nothing is known after {clock.day_time(until)}."
 
 
 def _latest(plan, clock):
-    """The 80 % deadlines of the devices that are fetched first."""
+    """Returns a sentence with the 80 % deadlines of the devices that are fetched first."""
     parts = []
     for route in plan["plan"]["routes"]:
         first = next((one["device"] for one in route["orders"] if one["action"] == "fetch"), None)
@@ -207,7 +210,7 @@ def _lose(plan):
         return ("What do I lose?", f"Nothing in these {plan['ensemble']['members']:,} futures.",
                 _horizon(plan, Clock(plan["clock"])))
     answer = f"{amount(mine['mean'], currency)} of {amount(loss['insured'], currency)} on average."
-    # All that is insured may be lost; more than that is not at risk.
+    # A loss cannot exceed the insured value.
     least = amount(mine["q95"] or 0.0, currency)
     least = f"everything: {least}" if (mine["q95"] or 0.0) >= loss["insured"] else f"{least} or more"
     remark = (f"One time in twenty {least}. " if mine["q95"] else

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A run or a benchmark as one self-contained HTML file, readable on a phone."""
+"""Writes the report of runs or a benchmark as one self-contained HTML file, readable on a phone."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Building blocks of a self-contained HTML page, from templates/blocks.html."""
+"""Building blocks of a self-contained HTML page, rendered from templates/blocks.html."""
 import base64
 import mimetypes
 import pathlib
@@ -22,12 +22,12 @@ def _joined(blocks):
 
 
 def escape(value):
-    """Text escaped for HTML."""
+    """Returns a value as text that is escaped for HTML."""
     return str(markupsafe.escape(value))
 
 
 def embed(path):
-    """A file as a data: address."""
+    """Returns the content of a file as a data: URL."""
     kind = mimetypes.guess_type(str(path))[0] or "application/octet-stream"
     return f"data:{kind};base64,{base64.b64encode(path.read_bytes()).decode()}"
 
@@ -37,40 +37,45 @@ def section(title, *parts):
 
 
 def tiles(pairs):
-    """Large numbers with small labels, from pairs (number, label)."""
+    """Returns tiles with a large number and a small label each. pairs: (number, label)"""
     return _render("tiles", pairs)
 
 
 def players(shown):
-    """Tiles of runs and references, from (label, large number, small lines, is_run)."""
+    """Returns tiles of runs and references. shown: (label, large number, small lines, is_run)"""
     return _render("players", shown)
 
 
 def curves(window, charts, style, scripts, notes=()):
-    """Charts for scripts, which must be trusted; each chart has the keys id and title. Notes are
-    sentences above them."""
+    """Returns charts that scripts draw.
+
+    charts: dicts with the keys id and title
+    style, scripts: trusted CSS and JavaScript, which are not escaped
+    notes: sentences above the charts
+    """
     return _render("curves", window, charts, style, scripts, list(notes))
 
 
 def table(head, rows):
-    """Table of rows of cells; scrolls horizontally if it is too wide."""
+    """Returns a table, which scrolls horizontally if it is too wide. head: titles of the columns"""
     return _render("table", head, rows)
 
 
 def markdown_table(text):
-    """The Markdown table of a text; an empty first head is "learner"."""
+    """Converts the Markdown table in a text. An empty title of a column becomes "learner"."""
     rows = [[cell.strip().strip("*") for cell in line.strip().strip("|").split("|")]
             for line in text.splitlines() if line.startswith("|")]
     return table([cell or "learner" for cell in rows[0]], rows[2:])
 
 
 def picture(path, caption, full=False):
-    """A picture; `full`: at the size of its pixels, scrolling horizontally if it is too wide."""
+    """Returns a picture. full: True shows it at the size of its pixels and lets it scroll
+    horizontally if it is too wide"""
     return _render("picture", embed(path), caption, full)
 
 
 def video(path, caption):
-    """A video element, or a picture for an animated gif."""
+    """Returns a video element; for an animated gif, a picture."""
     if path.suffix == ".gif":
         return picture(path, caption)
     return _render("video", embed(path), caption)

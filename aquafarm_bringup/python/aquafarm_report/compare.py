@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Page that compares runs: returns with intervals, curves over each other, the same episodes."""
+"""The page that compares runs: returns with intervals, training curves, and the same episodes."""
 import collections
 import json
 
@@ -8,12 +8,12 @@ from aquafarm_report.videos import ReportError
 
 MEASURES = (("return", "return", "{:.1f}"), ("steps", "steps", "{:.1f}"),
             ("delivered", "devices home", "{:.2f}"),
-            ("delivered_health", "health of what came home", "{:.3f}"),
+            ("delivered_health", "health of devices brought home", "{:.3f}"),
             ("crashes", "crashes", "{:.2f}"), ("collisions", "collisions", "{:.2f}"),
             ("steps_in_disaster", "steps in disaster", "{:.2f}"),
             ("energy_kwh", "energy, kWh", "{:.2f}"), ("distance_km", "distance, km", "{:.1f}"))
-RARE = ("collisions", "energy_kwh", "distance_km")  # left out where they are 0 everywhere
-MOST_FILMS = 4  # runs whose episodes are shown
+RARE = ("collisions", "energy_kwh", "distance_km")  # omitted if they are 0 in all episodes
+MOST_FILMS = 4  # max number of runs whose episodes are shown
 
 
 class Run:
@@ -37,8 +37,8 @@ class Run:
 
 
 def label_runs(runs):
-    """Gives each run a short label: its folder's name, with a number if two are alike, and its
-    learner unless the folder is named after it."""
+    """Sets a short label for each run: the name of its folder, a number if several folders have
+    this name, and the learner unless the name contains it."""
     names = collections.Counter(run.folder.name for run in runs)
     seen = collections.Counter()
     for run in runs:
@@ -50,7 +50,7 @@ def label_runs(runs):
 
 
 def measure_table(players):
-    """Means with 95 % intervals, a column for each player."""
+    """Returns the table of means per episode with 95 % intervals, with a column for each player."""
     rows = []
     for name, words, form in MEASURES:
         if not all(name in one.rows[0] for one in players):
@@ -66,7 +66,7 @@ def measure_table(players):
 
 
 def differences(runs):
-    """Table of the settings that are not the same in all runs."""
+    """Returns the table of the settings that differ between the runs."""
     def flat(settings):
         found = {key: value for key, value in settings.items()
                  if isinstance(value, (str, int, float, bool)) and key != "options"}
@@ -85,7 +85,8 @@ def differences(runs):
 
 
 def choose_episodes(runs):
-    """[(reason, episode)]: the median return of the first run, and the largest difference."""
+    """Returns [(reason, episode)]: the episode with the median return of the first run, and the one
+    with the largest difference between the runs."""
     returns = [{int(row["episode"]): float(row["return"]) for row in run.player.rows}
                for run in runs]
     common = sorted(set.intersection(*(set(one) for one in returns)))
@@ -99,7 +100,8 @@ def choose_episodes(runs):
 
 
 def show_episode(runs, reason, episode):
-    """Videos of one episode side by side, and what became of each device."""
+    """Returns the section of an episode: the videos of the runs side by side, and the outcome of
+    each device."""
     shown, results = [], []
     for run in runs:
         row = next(one for one in run.player.rows if int(one["episode"]) == episode)
@@ -113,7 +115,7 @@ def show_episode(runs, reason, episode):
 
 
 def report(folders, work, episodes, read_metrics):
-    """Page that compares run folders."""
+    """Returns the page that compares run folders. read_metrics: report.read_metrics"""
     runs = [Run(folder, work / str(i), episodes, read_metrics)
             for i, folder in enumerate(folders)]
     label_runs(runs)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Training curves over each other: zoom by dragging, values under the pointer (dygraphs)."""
+"""Charts of training curves, drawn by dygraphs: zoom by dragging, values under the pointer."""
 import json
 import math
 import pathlib
@@ -11,21 +11,23 @@ from aquafarm_report import blocks, references
 from aquafarm_report.videos import ReportError
 
 LIBRARY = pathlib.Path("/usr/share/javascript/dygraphs")  # Debian's libjs-dygraphs
-POINTS = 1000  # max points of a curve
+POINTS = 1000  # max number of points of a curve
+# Colours of Okabe and Ito (2008), Color universal design.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
-# of Okabe and Ito (2008), Color universal design
 CURVES = (("return", "return per episode"), ("success", "success rate"),
           ("loss", "mean square error [reward²]"))
 
 
 def smooth(values):
-    """Episodes and moving means of WINDOW episodes; a mean ignores missing values."""
+    """Returns the moving means over WINDOW episodes, and the last episode of each, counted from 1.
+    Means ignore NaN."""
     window = min(WINDOW, len(values))
     return np.arange(window, len(values) + 1), known_moving_mean(values, window)
 
 
 def rows_of(columns, name):
-    """Rows [episode, mean of run 0, mean of run 1, …] for dygraphs; None where there is none."""
+    """Returns rows [episode, mean of run 0, mean of run 1, …] for dygraphs. A mean is None where
+    the run has none. Empty if no run has a mean."""
     curves = [smooth(one[name]) if name in one else (np.array([]), np.array([]))
               for one in columns]
     last = max((int(episodes[-1]) for episodes, _ in curves if len(episodes)), default=0)
@@ -44,7 +46,8 @@ def rows_of(columns, name):
 
 
 def gap_note(label, columns, player):
-    """A sentence for a run whose greedy play is worse than the end of its training; else empty."""
+    """Returns a sentence on a run whose greedy play is worse than the end of its training; empty if
+    it is not worse."""
     mean, low, high = references.mean_interval(references.column(player, "return"), player.distinct)
     means = smooth(columns["return"])[1]
     if not len(means) or math.isnan(high) or means[-1] <= high:
@@ -66,8 +69,9 @@ def _library(name):
 
 
 def bend(rows, lines, marks):
-    """Returns the unit of a scale that is linear above 0 and logarithmic below, where the returns of
-    first episodes and of RANDOM are far away; None if no mean is above 0, or nothing below."""
+    """Returns the unit of a scale that is linear above 0 and logarithmic below, because returns of
+    the first episodes and of RANDOM are very low. None if no mean is above 0 or no value is below
+    0."""
     means = [mean for row in rows for mean in row[1:] if mean is not None]
     shown = [*means, *(line["value"] for line in lines),
              *(value for mark in marks for value in mark if value is not None)]
@@ -75,11 +79,14 @@ def bend(rows, lines, marks):
 
 
 def show(labels, columns, notes=(), players=()):
-    """Section with one chart for each measure, with a curve for each run; empty without curves.
+    """Returns the section of training curves: a chart for each measure, with a curve for each run.
+    Empty if there are no curves.
 
+    labels, columns: labels and metrics of the runs
     notes: sentences below the introduction
-    players: the runs in the order of labels, whose mean returns in greedy play and 95 % intervals
-        are marks, and references, whose mean returns are lines
+    players: first the runs in the same order: marks show their mean returns in greedy play with 95
+    %
+        intervals; then references: lines show their mean returns
     """
     lines = [{"label": one.label, "value": round(float(np.mean(references.column(one, "return"))), 1)}
              for one in players if one.rows and not one.is_run]
@@ -106,7 +113,7 @@ def show(labels, columns, notes=(), players=()):
     data = json.dumps(settings, allow_nan=False).replace("</", "<\\/")
     script = (pathlib.Path(__file__).resolve().parent / "templates" / "curves.js").read_text(
         encoding="utf-8")
-    # Source maps would be other files.
+    # The page has no other files, so references to source maps are removed.
     library = _library("dygraph.min.js").replace("//# sourceMappingURL=dygraph.min.js.map", "")
     style = _library("dygraph.min.css").partition("/*#")[0]
     scripts = [library, f'"use strict";const CURVES={data};\n{script}']

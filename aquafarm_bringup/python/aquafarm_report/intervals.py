@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Returns of the contestants of a benchmark (interquartile means) with their 95 % intervals."""
+"""Shows the returns of a benchmark's contestants: interquartile means with 95 % intervals."""
 import math
 
 from aquafarm_report import blocks
 
 _ROW = 26  # height of a row [px]
-_LEFT, _WIDTH = 170, 640  # of the plot [px]
+_LEFT, _WIDTH = 170, 640  # left margin and width of the plot [px]
 
 
 def by_return(rows):
-    """Rows of results.json, the best return first."""
+    """Sorts rows of results.json, the best return first."""
     return sorted(rows, key=lambda row: -row["return_iqm"])
 
 
@@ -19,13 +19,14 @@ def _interval(row):
 
 
 def text(row):
-    """Returns "160.2 [157.0, 163.4]"; without an interval the interquartile mean alone."""
+    """Returns the interquartile mean and its interval as "160.2 [157.0, 163.4]"; without an
+    interval only the mean."""
     found = _interval(row)
     return f"{row['return_iqm']:.1f}" + (f" [{found[0]:.1f}, {found[1]:.1f}]" if found else "")
 
 
 def share(row):
-    """Share of the optimum in percent; "–" where the optimum is not known."""
+    """Returns the share of the optimum in percent; "–" if the optimum is unknown."""
     value = row.get("share_of_optimum")
     if value is None or math.isnan(value):
         return "–"
@@ -33,13 +34,15 @@ def share(row):
 
 
 def best_learner(rows):
-    """The row of the learner with the best return; references such as clairvoyant do not count."""
+    """Returns the row of the learner with the best return. References such as clairvoyant count
+    only if there is no learner."""
     learners = [row for row in rows if row["stability"] is not None]
     return by_return(learners or rows)[0]
 
 
 def table(rows):
-    """One row for each contestant: return, share of the optimum, success, episodes."""
+    """Returns a table with a row for each contestant: return, share of the optimum, success,
+    episodes."""
     return blocks.table(
         ["learner", "return per episode, 95 % interval", "share of the optimum", "success",
          "episodes, distinct"],
@@ -49,7 +52,8 @@ def table(rows):
 
 
 def _scale(rows):
-    """The range of the chart: that of the contestants with a return above 0, if there is one."""
+    """Returns the range of the chart: that of the contestants with a return above 0; that of all if
+    no return is above 0."""
     shown = [row for row in rows if row["return_iqm"] > 0.0] or rows
     ends = [end for row in shown for end in (_interval(row) or ()) + (row["return_iqm"],)]
     margin = 0.04 * (max(ends) - min(ends)) or 1.0
@@ -57,16 +61,16 @@ def _scale(rows):
 
 
 def _ticks(low, high):
-    """Three to seven round numbers in a range."""
+    """Returns three to seven round numbers in a range."""
     step = 10.0 ** math.floor(math.log10((high - low) / 3.0))
     step *= next(factor for factor in (5.0, 2.0, 1.0) if (high - low) / (factor * step) >= 3.0)
     return [i * step for i in range(math.ceil(low / step), math.floor(high / step) + 1)]
 
 
 def chart(rows):
-    """A dot for each return and a line for its interval, as SVG; the best first.
+    """Returns a chart as SVG: a dot for each return and a line for its interval, the best first.
 
-    A return far below the others has an arrow to the left instead.
+    For a return below the range of the chart, it has an arrow to the left instead.
     """
     rows = by_return(rows)
     low, high = _scale(rows)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Losses of a run's policy next to those of doing nothing and of fetching by value."""
+"""Compares the losses of a run's policy with those of the policies do_nothing and
+fetch_by_value."""
 import io
 import pathlib
 
@@ -8,13 +9,15 @@ from aquafarm_benchmark.protocol import REFERENCES, Contestant
 
 from aquafarm_report import blocks, videos
 
-_COLOUR = "#1b4f78"  # of the run's own policy
+_COLOUR = "#1b4f78"  # colour of the run's policy
 
 
 def compare(own, scenario, folder, episodes, currency):
-    """Contestants and rows (see results.money_table) of the run and of the references.
+    """Evaluates the references; returns the contestants and the rows for results.money_table.
 
-    own: name and evaluation.csv of the run's policy; scenario: its scenario file
+    own: name of the run's policy, and path of its evaluation.csv
+    scenario: scenario file of the run
+    folder: folder for the results of the references
     """
     name, path = own
     contestants = [Contestant(name, name, _COLOUR), *REFERENCES]
@@ -31,7 +34,7 @@ def compare(own, scenario, folder, episodes, currency):
 
 
 def draw(contestants, rows):
-    """Exceedance curves and the loss by kind of device, as SVG."""
+    """Returns exceedance curves and the loss by kind of device as SVG."""
     figure, (curves, bars) = figures.plt.subplots(2, 1, figsize=(7, 8))
     figures.plot_exceedance(curves, contestants, rows)
     currency = rows[0]["money"]["currency"]
@@ -48,7 +51,7 @@ def draw(contestants, rows):
 
 
 def show(own, scenario, folder, episodes, currency):
-    """Section of a report."""
+    """Returns the section of the report on losses. The parameters are those of compare."""
     contestants, rows = compare(own, scenario, folder, episodes, currency)
     note = (f"<p>Per episode, in {blocks.escape(currency)}. Insured = saved + damaged + lost; "
             "loss = damaged + lost. Triangles: CVaR, the mean loss of the worst 5 %.</p>")

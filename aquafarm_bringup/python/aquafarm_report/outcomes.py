@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Outcome of each device in a recorded episode."""
+"""Tables of the outcome of each device, in one episode and over all episodes of an evaluation."""
 import dataclasses
 
 import rosbag
@@ -14,14 +14,14 @@ KINDS = {DeviceState.TEMPORARY_BREEDING: "temporary", DeviceState.MONITORING: "m
 
 @dataclasses.dataclass
 class Outcome:
-    """A device at the end of an episode; steps are None if it was not picked up or delivered."""
+    """A device at the end of an episode."""
     label: str
-    picked_up: int
-    home: int
+    picked_up: int  # step of the pickup; None: it was not picked up
+    home: int  # step of the delivery; None: it was not delivered
     health: float
 
     def text(self):
-        """Returns "home at step 24, health 100 %" and the like."""
+        """Returns the outcome as text, for example "home at step 24, health 100%"."""
         health = f"health {self.health:.0%}"
         if self.home is not None:
             return f"home at step {self.home}, {health}"
@@ -31,7 +31,7 @@ class Outcome:
 
 
 def read_outcomes(bag):
-    """Outcomes of the devices of a bag's only episode, by id."""
+    """Returns the outcomes of the devices of a bag with one episode, in order of their ids."""
     found = {}
     with rosbag.Bag(str(bag)) as file:
         topics = [name for name in file.get_type_and_topic_info().topics
@@ -51,9 +51,11 @@ def read_outcomes(bag):
 
 
 def episodes_table(captions, results):
-    """What became of each device in some episodes: one row for each id, a column for each episode.
+    """Returns the table of the outcomes in some episodes: a row for each id, a column for each
+    episode. If the device with an id differs in kind between the episodes, each cell names its
+    kind.
 
-    Where an id is another kind of device in another episode, each cell names its kind.
+    results: for each episode, the outcomes of read_outcomes
     """
     rows = []
     for i in range(max(map(len, results), default=0)):
@@ -71,7 +73,8 @@ NAMES = {"temporary_breeding": "temporary", "monitoring": "monitoring",
 
 
 def _share(count, episodes, distinct):
-    """Returns "98% [94%, 99%]"; the interval counts each distinct start once."""
+    """Returns a share and its interval as "98% [94%, 99%]". The interval counts each distinct start
+    once."""
     rate = count / episodes
     evidence = max(1, min(distinct or episodes, episodes))
     low, high = wilson_interval(round(rate * evidence), evidence)
@@ -79,10 +82,8 @@ def _share(count, episodes, distinct):
 
 
 def summary_table(summary):
-    """Outcomes of the devices over all episodes of an evaluation; "" if it does not have them.
-
-    By device, or by kind where the episodes have different devices.
-    """
+    """Returns the table of the outcomes over all episodes of an evaluation: by device, or by kind
+    if the episodes have different devices. Empty if the evaluation does not contain them."""
     by_kind = summary.get("devices_by_kind", ())
     rows = []
     for one in by_kind or summary.get("devices", ()):
@@ -94,5 +95,5 @@ def summary_table(summary):
                        for name in ("delivered", "aboard", "left")),
                      "–" if health is None else f"{health:.0%}"])
     return blocks.table(["kind of device (number)" if by_kind else "device", "home",
-                         "aboard at the end", "left at sea", "health of those at home"],
+                         "aboard at the end", "left at sea", "health of devices at home"],
                         rows) if rows else ""

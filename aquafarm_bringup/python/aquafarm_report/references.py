@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs and the references RANDOM, planner and clairvoyant on the same episodes, with intervals."""
+"""Compares runs with the references RANDOM, planner and clairvoyant on the same episodes."""
 import csv
 import dataclasses
 import json
@@ -11,23 +11,23 @@ from aquafarm_benchmark.measures import wilson_interval
 from aquafarm_report import blocks, videos
 
 REFERENCES = (("random", "RANDOM (all actions)"), ("planner", "planner"), ("clairvoyant", "clairvoyant"))
-EPISODES = 100  # of each reference, the first of those of the runs
-LIMIT_S = 120  # for each reference
+EPISODES = 100  # max number of episodes of each reference; they are the first ones of the runs
+LIMIT_S = 120  # max duration of the evaluation of each reference
 OPTIMUM = "clairvoyant"
 
 
 @dataclasses.dataclass
 class Player:
-    """Evaluation of a run or a reference; without episodes, `fault` is the reason."""
+    """The evaluation of a run or a reference."""
     label: str
-    rows: list = dataclasses.field(default_factory=list)  # of evaluation.csv, by episode
-    distinct: int = 0
-    fault: str = ""
+    rows: list = dataclasses.field(default_factory=list)  # rows of evaluation.csv, by episode
+    distinct: int = 0  # number of episodes with different starts
+    fault: str = ""  # reason why there are no rows
     is_run: bool = False
 
 
 def read_player(label, prefix, is_run=False):
-    """Player from the files <prefix>.csv and <prefix>.json of aquafarm_evaluate."""
+    """Reads a Player from the files <prefix>.csv and <prefix>.json of aquafarm_evaluate."""
     with open(prefix.with_suffix(".csv"), newline="") as file:
         rows = sorted(csv.DictReader(file), key=lambda row: int(row["episode"]))
     summary = json.loads(prefix.with_suffix(".json").read_text(encoding="utf-8"))
@@ -35,7 +35,8 @@ def read_player(label, prefix, is_run=False):
 
 
 def play_references(scenario, folder, episodes):
-    """Plays the first evaluation episodes with each reference; a failure becomes its fault."""
+    """Plays the first evaluation episodes with each reference; returns a Player for each. If a
+    program fails, the Player has its error as fault."""
     players = []
     for name, label in REFERENCES:
         prefix = folder / f"reference_{name}"
@@ -50,9 +51,10 @@ def play_references(scenario, folder, episodes):
 
 
 def mean_interval(values, distinct):
-    """(mean, low, high) of a 95 % interval of 1.96 standard errors; NaN bounds without one.
+    """Returns (mean, low, high): the mean and its 95 % interval of 1.96 standard errors. The bounds
+    are NaN if there are fewer than two distinct starts.
 
-    Repetitions of a start do not count as evidence.
+    distinct: number of distinct starts, which the standard error uses as the number of values
     """
     values = np.asarray(values, dtype=float)
     if distinct < 2:
@@ -62,7 +64,7 @@ def mean_interval(values, distinct):
 
 
 def text(interval, form="{:.1f}"):
-    """Returns "160.2 [157.0, 163.4]"; without bounds the mean alone."""
+    """Returns an interval as "160.2 [157.0, 163.4]"; without bounds only the mean."""
     mean, low, high = interval
     found = form.format(mean)
     if not math.isnan(low):
@@ -79,7 +81,8 @@ def return_text(player):
 
 
 def success_text(player):
-    """Success rate with Wilson's 95 % interval, which counts each distinct start once."""
+    """Returns the success rate with Wilson's 95 % interval, which counts each distinct start
+    once."""
     rate = float(np.mean(column(player, "success")))
     count = max(1, min(player.distinct or 1, len(player.rows)))
     low, high = wilson_interval(round(rate * count), count)
@@ -87,7 +90,8 @@ def success_text(player):
 
 
 def share_text(player, optimum):
-    """Share of the clairvoyant optimum on the same episodes; "–" where it is not known."""
+    """Returns the share of the clairvoyant's return on the same episodes as text; "–" if that
+    return is unknown or not above 0."""
     if optimum is None or not optimum.rows or not player.rows:
         return "–"
     best = {row["episode"]: float(row["return"]) for row in optimum.rows}
@@ -101,8 +105,8 @@ def share_text(player, optimum):
 
 
 def difference(one, other):
-    """(mean, low, high) of the paired differences of the returns of two players, with a 95 %
-    interval; None without common episodes."""
+    """Returns (mean, low, high) of the differences between the returns of two players in their
+    common episodes, with a 95 % interval; None if there are no common episodes."""
     returns = {row["episode"]: float(row["return"]) for row in other.rows}
     pairs = [float(row["return"]) - returns[row["episode"]] for row in one.rows
              if row["episode"] in returns]
@@ -110,14 +114,15 @@ def difference(one, other):
 
 
 def _points(interval):
-    """Returns "24 points [21, 27]" of a difference above 0."""
+    """Returns a difference above 0 as "24 points [21, 27]"."""
     form = "{:.1f}" if interval[0] < 10.0 else "{:.0f}"
     mean, _, bounds = text(interval, form).partition(" ")
     return f"{mean} points {bounds}".rstrip()
 
 
 def verdict(players):
-    """One sentence on the runs among players: the best one, and how far it is from the others."""
+    """Returns a sentence on the best run: its share of the optimum, and its differences from the
+    second run and from the planner. Empty if nothing is known."""
     runs = sorted((one for one in players if one.is_run and one.rows),
                   key=lambda one: -np.mean(column(one, "return")))
     if not runs:
@@ -151,7 +156,7 @@ def optimum_of(players):
 
 
 def show_tiles(players):
-    """One tile for each player: return, success, share of the optimum, number of episodes."""
+    """Returns a tile for each player: return, success, share of the optimum, number of episodes."""
     optimum = optimum_of(players)
     shown = []
     for one in players:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contents of the report of a run or of a benchmark."""
+"""Makes the report of a run or of a benchmark."""
 import csv
 import errno
 import json
@@ -12,11 +12,11 @@ from aquafarm_bringup.files import open_atomically
 from aquafarm_report import blocks, compare, curves, intervals, outcomes, references, videos
 from aquafarm_report.videos import ReportError
 
-EPISODES = 1000  # as in aquafarm_evaluate
+EPISODES = 1000  # default number of evaluation episodes, as in aquafarm_evaluate
 
 
 def read_metrics(path):
-    """Columns of metrics.csv as arrays; empty if nothing was trained."""
+    """Returns columns of metrics.csv as {name: array}; empty if the file has no episode."""
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
     return {name: np.array([float(row[name] or "nan") for row in rows])
@@ -24,13 +24,14 @@ def read_metrics(path):
 
 
 def count_text(summary, episodes):
-    """Returns "100 episodes, 3 distinct": repeated starts are no evidence of generality."""
-    distinct = summary.get("distinct_episodes")  # evaluations of version 0.1.0 have none
+    """Returns the number of episodes as "100 episodes, 3 distinct"."""
+    distinct = summary.get("distinct_episodes")  # None in evaluations of version 0.1.0
     return f"{episodes} episodes" + (f", {distinct} distinct" if distinct is not None else "")
 
 
 def video_episodes(run, folder, rows):
-    """Sections of the best, median and worst episode: map, videos and the fate of each device."""
+    """Returns the sections of the best, median and worst episode: videos, outcomes of the devices,
+    and a map. For a family of ranches, a section with their results only."""
     if videos.is_family(run):
         return [blocks.section("Best, median and worst episode", blocks.table(
             ["episode", "result"], [(f"{name}: episode {row['episode']} of seed {videos.SEED}",
@@ -53,13 +54,14 @@ def video_episodes(run, folder, rows):
 
 
 def show_episodes(run, folder, episodes):
-    """Summary of a run's policy, its episodes, and sections: table, videos and map."""
+    """Evaluates a run's policy. Returns the summary, the rows of the episodes, and the sections of
+    the report."""
     summary, rows = videos.evaluate(run, folder, episodes)
     table = compare.measure_table([references.read_player(
         summary["algorithm"], folder / "evaluation", is_run=True)])
     losses = []
     if "money" in summary:
-        from aquafarm_report import money  # needs seconds to load, and few scenarios have it
+        from aquafarm_report import money  # imported here: it needs seconds to load
 
         losses = [money.show((summary["algorithm"], folder / "evaluation.csv"),
                              run / "scenario.yaml", folder, episodes,
@@ -73,7 +75,7 @@ def show_episodes(run, folder, episodes):
 
 
 def report_run(run, folder, episodes):
-    """Page of a run folder."""
+    """Returns the page of a run folder. folder: folder for temporary files"""
     settings = json.loads((run / "run.json").read_text(encoding="utf-8"))
     columns = read_metrics(run / "metrics.csv") if (run / "metrics.csv").is_file() else {}
     summary, rows, sections = show_episodes(run, folder, episodes)
@@ -108,14 +110,15 @@ CAPTIONS = {
 
 
 def caption_of(stem):
-    """The caption of a figure of a benchmark, by the name of its file."""
+    """Returns the caption of a figure of a benchmark. stem: name of its file without extension"""
     if stem.startswith("route_"):
         return f"Route and best moves of {stem[len('route_'):].replace('_', ' ')} in one episode"
     return CAPTIONS.get(stem, stem.replace("_", " "))
 
 
 def best_run(benchmark):
-    """First existing run folder, by decreasing return of the learner; None if there is none."""
+    """Returns the folder of seed 1 of the learner with the best return that has one; None if there
+    is none."""
     results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
     for row in sorted(results["table"], key=lambda row: -row["return_per_episode"]):
         run = benchmark / "runs" / row["name"] / "seed_1"
@@ -125,7 +128,7 @@ def best_run(benchmark):
 
 
 def report_benchmark(benchmark, folder, episodes):
-    """Page of a benchmark's folder."""
+    """Returns the page of a benchmark's folder. folder: folder for temporary files"""
     settings = json.loads((benchmark / "benchmark.json").read_text(encoding="utf-8"))
     results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
     best = intervals.best_learner(results["table"])
@@ -162,7 +165,8 @@ def report_benchmark(benchmark, folder, episodes):
 
 
 def kind_of(source):
-    """Returns the function that reports on a folder: of a run or of a benchmark."""
+    """Returns report_run or report_benchmark, depending on the kind of a folder. Raises ReportError
+    if it is neither a run nor a benchmark."""
     for name, report in (("run.json", report_run), ("results.json", report_benchmark)):
         if (source / name).is_file():
             return report
@@ -170,7 +174,7 @@ def kind_of(source):
 
 
 def make_text(sources, episodes):
-    """Page of a run or benchmark, or of the comparison of runs."""
+    """Returns the page of a run or benchmark, or of the comparison of runs. Raises ReportError."""
     try:
         with tempfile.TemporaryDirectory(prefix="aquafarm_report_") as folder:
             work = pathlib.Path(folder)
@@ -183,16 +187,17 @@ def make_text(sources, episodes):
 
 
 def make(sources, output, episodes=EPISODES):
-    """Writes the report of a run or benchmark, or the comparison of runs; returns its path."""
+    """Writes the report of a run or benchmark, or the comparison of runs. Returns its path. Raises
+    ReportError."""
     sources = [pathlib.Path(source).resolve() for source in sources]
     default = sources[0] / "report.html" if len(sources) == 1 else "comparison.html"
     output = pathlib.Path(output or default).resolve()
     if len(sources) == 1:
-        kind_of(sources[0])  # refuses other folders
+        kind_of(sources[0])  # raises ReportError for other folders
     try:
         if output.is_dir():
             raise IsADirectoryError(errno.EISDIR, "it is a folder")
-        with open_atomically(output) as file:  # before the work, which may take minutes
+        with open_atomically(output) as file:  # opened before the work, which may take minutes
             file.write(make_text(sources, episodes))
     except OSError as error:
         raise ReportError(f"{output}: cannot be written: {error.strerror}; choose another file "

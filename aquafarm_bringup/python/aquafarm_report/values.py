@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""V_π next to the sea (Fig. 10): heat maps on the same cells, with their similarity."""
+"""Draws V_π next to the layers of the sea (Fig. 10) as heat maps, and computes their similarity."""
 import json
 import math
 import pathlib
@@ -14,15 +14,15 @@ from skimage.metrics import structural_similarity  # noqa: E402
 
 from aquafarm_bringup.files import open_atomically  # noqa: E402
 
-MOST_WINDOW = 7  # cells on a side, as in scikit-image
-FEWEST_CELLS = 10
-NEXT_TO = 2.0  # max distance of a cell next to a device or port [cells]
+MOST_WINDOW = 7  # max side of the window of the SSIM [cells], the default of scikit-image
+FEWEST_CELLS = 10  # min number of cells for a comparison
+NEXT_TO = 2.0  # max distance at which a cell counts as next to a device or port [cells]
 _COLUMN = 2.9  # width of a map in the figure [inch]
 _GAP = 1.1  # between columns and between rows [inch]
 _TOP = 1.05  # height of the titles [inch]
-_LOW_COLOUR = "#440154"  # the lowest one of viridis
+_LOW_COLOUR = "#440154"  # the first colour of viridis
 _SEA_COLOURS = {"depth": "Blues", "warmth": "YlOrRd"}
-_LOWEST = 0.05  # share of the cells whose return has one colour
+_LOWEST = 0.05  # fraction of the cells, those with the lowest returns, that have one colour
 
 NOTE = ("Spearman's rho is of the ranks over the cells where both are known; neighbouring cells "
         "are alike, so no significance is given. SSIM is the mean structural similarity (Wang et "
@@ -32,25 +32,27 @@ NOTE = ("Spearman's rho is of the ranks over the cells where both are known; nei
 
 
 class ValuesError(Exception):
-    """Reason why a file or a request is invalid, in one line."""
+    """A file or a request is invalid. The message is one line."""
 
 
 def read(path):
-    """Reads V_π [H, W] from the south, NaN where undefined, and the layers of the sea."""
+    """Reads a file of aquafarm_evaluate --values. Returns its JSON object; V_π [H, W], rows from
+    the south, NaN where it is undefined; and the sea layers [(name, unit, [H, W])]. Raises
+    ValuesError."""
     try:
         text = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
         values = np.array(text["values"], dtype=float)
         layers = [(layer["name"], layer["units"], np.array(layer["values"], dtype=float))
                   for layer in text["seas"]]
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ValuesError(f"{path}: got no values of aquafarm_evaluate: {error}") from error
+        raise ValuesError(f"{path}: not a file of aquafarm_evaluate --values: {error}") from error
     if values.ndim != 2 or any(layer[2].shape != values.shape for layer in layers):
         raise ValuesError(f"{path}: got maps of different sizes, expected them all alike")
     return text, values, layers
 
 
 def filled(field, known):
-    """The field with unknown values replaced by the nearest known ones."""
+    """Replaces the unknown values of a field by the nearest known ones."""
     nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
     return field[tuple(nearest)]
 
@@ -61,9 +63,10 @@ def scaled(field, known):
 
 
 def compare(values, field):
-    """Similarity of two maps over the cells where both are known.
+    """Returns the similarity of two maps over the cells where both are known: cells, spearman_rho,
+    ssim, and ssim_turned, which is the SSIM with the second map inverted.
 
-    Measures are None if undefined: too few cells, or a constant map.
+    Measures are None if they are undefined: too few cells, or a constant map.
     """
     known = np.isfinite(values) & np.isfinite(field)
     result = {"cells": int(known.sum()), "spearman_rho": None, "ssim": None, "ssim_turned": None}
@@ -86,8 +89,8 @@ def signed(number):
 
 
 def place_words(cells, text):
-    """Returns where a cell [east, north] is, such as "next to a device, 5 km east, 5 km north"; the
-    device or port only within NEXT_TO."""
+    """Returns the position of a cell [east, north] as text, such as "next to a device, 5.0 km east,
+    5.0 km north". It names the nearest device or port if that is within NEXT_TO."""
     east, north = cells
     near = [(math.hypot(east - x, north - y), words)
             for words, key in (("device", "devices"), ("port", "ports"))
@@ -101,8 +104,8 @@ def place_words(cells, text):
 
 
 def verdict(values, text):
-    """Words on the best start and on the lowest twentieth of the cells; empty if all are
-    equal or unknown."""
+    """Returns a sentence on the best start, and on the largest area within the lowest twentieth of
+    the cells. Empty if all values are equal or unknown."""
     known = np.isfinite(values)
     if not known.any() or np.ptp(values[known]) == 0.0:
         return ""
@@ -127,24 +130,27 @@ def device_distance(shape, devices, km):
 
 
 def lowest_cells(values):
-    """Whether a cell is one of the lowest twentieth, which have one colour."""
+    """Returns whether each cell belongs to the lowest twentieth, [H, W]."""
     known = values[np.isfinite(values)]
     return values < np.quantile(known, _LOWEST) if len(known) else np.zeros(values.shape, bool)
 
 
 def sea_words(name):
-    """Display name of a layer of the sea."""
+    """Returns the display name of a sea layer."""
     return {"warmth": "temperature"}.get(name, name.replace("_", " "))
 
 
 def unit_text(units):
-    """A unit as people write it."""
+    """Returns the display name of a unit."""
     return {"degC": "°C", "degF": "°F"}.get(units, units)
 
 
 def draw_map(axis, field, km, colours, label, lowest=0.0):
-    """One map, north up, land and rocks hatched. The `lowest` share of the cells has one
-    colour."""
+    """Draws a map with north at the top. Cells without a value, such as land, are hatched.
+
+    km: side of a cell
+    lowest: fraction of the cells, those with the lowest values, that have one colour
+    """
     height, width = field.shape
     axis.set_facecolor("0.82")
     axis.patch.set(hatch="////", edgecolor="0.65", linewidth=0.0)
@@ -158,7 +164,7 @@ def draw_map(axis, field, km, colours, label, lowest=0.0):
 
 
 def draw_places(axis, text, km):
-    """Marks ports and devices at the start of the episode; nothing where the file has none."""
+    """Marks the ports, and the devices at the start of the episode, if the file contains them."""
     for key, words, shape in (("ports", "port", {"marker": "o", "facecolor": "white"}),
                               ("devices", "device", {"marker": "^", "facecolor": "#ffd166"})):
         if cells := text.get(key):
@@ -168,7 +174,8 @@ def draw_places(axis, text, km):
 
 
 def draw_relation(axis, values, layer, result, letter):
-    """Return against the sea's value, a dot for each cell, with medians of tenths of the cells."""
+    """Plots the return over the value of a sea layer: a dot for each cell, and a line of medians of
+    tenths of the cells."""
     name, units, field = layer
     known = np.isfinite(values) & np.isfinite(field)
     x, y = field[known], values[known]
@@ -263,7 +270,8 @@ def draw_key(figure, axes):
 
 
 def make(values_file, output):
-    """Writes <output>.png and <output>.json. @returns the summary as readable lines"""
+    """Writes <output>.png and <output>.json. Returns the summary, a line for each sea layer. Raises
+    ValuesError."""
     text, values, layers = read(values_file)
     results = [compare(values, field) for _, _, field in layers]
     draw(text, values, layers, results, f"{output}.png")

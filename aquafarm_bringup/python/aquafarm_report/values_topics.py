@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Publishes V_π from rollouts on the topics used by rviz, the image node and bags."""
+"""Publishes V_π from rollouts on the topics that rviz, the viz node and bags use."""
 import numpy as np
 import rosgraph
 import rospy
@@ -13,9 +13,10 @@ NO_ACTION = 255  # rollout values contain returns but no actions
 
 
 def to_grid(values, cell_size_m, stamp):
-    """Grid of values scaled from 0 (lowest) to 100 (highest), -1 where undefined.
+    """Returns a grid of values scaled from 0 (lowest) to 100 (highest); -1 where they are
+    undefined.
 
-    values: [H, W] from the south, NaN where undefined.
+    values: [H, W], rows from the south, NaN where undefined
     """
     grid = OccupancyGrid()
     grid.header.frame_id = FRAME
@@ -34,7 +35,7 @@ def to_grid(values, cell_size_m, stamp):
 
 
 def to_points(values, cell_size_m, stamp):
-    """Points with unscaled values: x, y, z [m], value, action; one per cell with a value."""
+    """Returns a point for each cell with a value: x, y, z [m], value (not scaled), action."""
     rows, columns = np.nonzero(np.isfinite(values))
     points = np.zeros(len(rows), dtype=[("x", "<f4"), ("y", "<f4"), ("z", "<f4"),
                                         ("value", "<f4"), ("action", "u1")])
@@ -64,10 +65,11 @@ def require_master():
 
 
 def publish(values, cell_size_m, namespace):
-    """Publishes latched topics `values` and `values/points` in a namespace until Ctrl-C."""
+    """Publishes the latched topics `values` and `values/points` in a namespace until Ctrl-C. Raises
+    ValuesError if there is no ROS master."""
     require_master()
     rospy.init_node("values", anonymous=True)
-    stamp = rospy.Time.from_sec(0)  # not of a single step: values are of complete episodes
+    stamp = rospy.Time.from_sec(0)  # the values do not belong to a step
     name = f"{namespace.rstrip('/')}/values"
     grid = rospy.Publisher(name, OccupancyGrid, queue_size=1, latch=True)
     points = rospy.Publisher(f"{name}/points", PointCloud2, queue_size=1, latch=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Videos of a policy's best, median and worst episode, and the map, by the suite's programs."""
+"""Makes videos of episodes and maps with the programs of aquafarm."""
 import csv
 import json
 import pathlib
@@ -11,15 +11,15 @@ import yaml
 LIMIT_S = 300
 FRAMES = 240  # approximate max number of frames of a video
 SIDE = ["--width", "800", "--height", "640"]
-SEED = 1000  # of episodes that no training plays, the default of aquafarm_evaluate
+SEED = 1000  # seed of the evaluation episodes, the default of aquafarm_evaluate
 
 
 class ReportError(Exception):
-    """Reason why a report cannot be made, in one line."""
+    """A report cannot be made. The message is one line."""
 
 
 def program(package, name):
-    """Path of one of the suite's programs."""
+    """Returns the path of a program of aquafarm. Raises ReportError if it is not built."""
     found = roslib.packages.find_node(package, name)
     if not found:
         raise ReportError(f"{package} has no {name}; build the workspace first")
@@ -27,7 +27,7 @@ def program(package, name):
 
 
 def call(package, name, *arguments, limit_s=LIMIT_S):
-    """Runs a program; on failure raises ReportError with its last line of stderr."""
+    """Runs a program. If it fails, raises ReportError with the last line of its stderr."""
     try:
         subprocess.run([program(package, name), *map(str, arguments)], check=True, timeout=limit_s,
                        capture_output=True, text=True)
@@ -39,7 +39,7 @@ def call(package, name, *arguments, limit_s=LIMIT_S):
 
 
 def evaluate(run, folder, episodes):
-    """Plays a run's policy greedily: (summary, one dict per episode)."""
+    """Evaluates the policy of a run greedily. Returns (summary, rows of evaluation.csv)."""
     call("aquafarm_agents", "aquafarm_evaluate", run, "--episodes", episodes, "--seed", SEED,
          "--write", folder / "evaluation")
     with open(folder / "evaluation.csv", newline="") as file:
@@ -48,7 +48,8 @@ def evaluate(run, folder, episodes):
 
 
 def choose(rows):
-    """[(best, its row), (median, …), (worst, …)] by return, without duplicate episodes."""
+    """Returns [("best", row), ("median", row), ("worst", row)] by return. An episode occurs only
+    once."""
     ranked = sorted(rows, key=lambda row: (-float(row["return"]), int(row["episode"])))
     chosen = []
     for name, row in (("best", ranked[0]), ("median", ranked[len(ranked) // 2]),
@@ -59,19 +60,19 @@ def choose(rows):
 
 
 def result_text(row):
-    """Returns "return 269.6 in 63 steps, 3 of 3 home, all retrieved" for a row of evaluation.csv."""
+    """Returns a row of evaluation.csv as "return 269.6 in 63 steps, 3 of 3 home, all retrieved"."""
     return (f"return {float(row['return']):.1f} in {row['steps']} steps, {row['delivered']} of "
             f"{row['devices']} home, {row['reason'].replace('_', ' ')}")
 
 
 def is_family(run):
-    """Whether the scenario of a run draws another ranch in every episode."""
+    """Returns whether the scenario of a run is a family, which draws a ranch in every episode."""
     scenario = yaml.safe_load((run / "scenario.yaml").read_text(encoding="utf-8"))
     return isinstance(scenario, dict) and bool(scenario.get("family"))
 
 
 def bag_of(run, folder, episode):
-    """Records an episode of SEED as a bag."""
+    """Plays an evaluation episode with the policy of a run. Returns the path of its bag."""
     route, bag = folder / f"{episode}.json", folder / f"{episode}.bag"
     call("aquafarm_agents", "aquafarm_evaluate", run, "--episodes", 1, "--farms", 1, "--seed", SEED,
          "--route", route, "--route-episode", episode)
@@ -80,7 +81,8 @@ def bag_of(run, folder, episode):
 
 
 def draw_video(bag, steps):
-    """Renders a bag as a video: mp4, or gif if there is no codec."""
+    """Renders a bag as a video. Returns its path: mp4, or gif if mp4 fails, for example without a
+    codec."""
     every = max(1, -(-steps // FRAMES))
     for ending in (".mp4", ".gif"):
         path = pathlib.Path(bag).with_suffix(ending)
@@ -94,7 +96,7 @@ def draw_video(bag, steps):
 
 
 def draw_map(bag):
-    """Renders the farm at an episode's start."""
+    """Renders the ranch at the start of a bag's episode. Returns the path of the image."""
     path = pathlib.Path(bag).with_suffix(".png")
     call("aquafarm_viz", "render", bag, "-o", path, "--step", 0, *SIDE)
     return path

@@ -36,12 +36,12 @@ std::uint64_t CheckEpisode(py::handle episode) {
   return WholeNumber(episode, "FarmBatch: episode", 0, kAnyNumber, "number episodes from 0");
 }
 
-// Returns the name that a buffer has now, with a warning for one of version 0.1.0.
+// Returns the present name of a buffer. Warns if `name` is its name in version 0.1.0.
 std::string CurrentName(const std::string& name) {
   return py::module_::import("aquafarm_core._names").attr("current")(name).cast<std::string>();
 }
 
-// Converts a statistic to what Python gets: a number, or the name of a reason.
+// Converts a statistic for Python: to a number, or to the name of an end reason.
 template <typename T>
 T ForPython(T value) {
   return value;
@@ -168,12 +168,21 @@ py::list Batch::Finished() const {
   return finished;
 }
 
-std::string Batch::Text(py::handle farm) const {
-  const Turn turn(busy_);
+const Farm& Batch::FarmOf(py::handle farm) const {
   const auto last = static_cast<std::uint64_t>(batch_.farms()) - 1;
   const std::uint64_t i =
       WholeNumber(farm, "FarmBatch: farm", 0, last, "pass the number of one farm of this batch");
-  return RenderText(batch_.farm(static_cast<std::int32_t>(i)));
+  return batch_.farm(static_cast<std::int32_t>(i));
+}
+
+std::string Batch::Text(py::handle farm) const {
+  const Turn turn(busy_);
+  return RenderText(FarmOf(farm));
+}
+
+std::uint64_t Batch::StartHash(py::handle farm) const {
+  const Turn turn(busy_);
+  return FarmOf(farm).StartHash();
 }
 
 py::bytes Batch::Save() const {

@@ -16,32 +16,35 @@
 
 namespace aquafarm::python {
 
-/// Returns a summary as Python receives it.
+/// Returns a summary as a Python dict: numbers by name, and the name of the end reason.
 pybind11::dict DictOf(const EpisodeSummary& summary);
 
-/// A FarmBatch with the NumPy arrays that it writes. The batch writes directly into the arrays'
-/// memory, so nothing is copied for Python.
+/// A FarmBatch with NumPy arrays for its results. The batch writes directly into their memory, so
+/// that nothing is copied for Python. Most functions throw std::runtime_error while a call of
+/// another thread runs (Turn).
 class Batch {
  public:
   inline static constexpr std::uint64_t kMaxFarms = 1U << 20U;
   inline static constexpr std::uint64_t kMaxThreads = 1024;
 
   /// @param write names of the buffers to allocate
-  /// @throws InputError for a number out of range or an unknown buffer
+  /// @throws InputError if a number is out of range or a buffer is unknown
   Batch(std::shared_ptr<const Scenario> scenario, pybind11::handle farms,
         const std::vector<std::string>& write, pybind11::handle threads);
 
-  /// Writes into `array` from now on. NumPy does not resize it while it is bound.
-  /// @throws InputError if its type or shape does not fit
+  /// Uses `array` as the buffer `name` from now on. NumPy does not resize it as long as it is used.
+  /// @throws InputError if the buffer is unknown or the type or shape of `array` does not fit
   void Bind(const std::string& name, const pybind11::array& array);
 
+  /// As FarmBatch::Reset. @throws InputError if a number is out of range
   void Reset(pybind11::handle seed, pybind11::handle first_episode);
   /// Starts the next episode in the farms selected by `mask` (bool [N]).
   void StartNext(const pybind11::array& mask);
-  /// Starts episode episodes[i] of the sequence seeds[i] in the farms selected by `mask`; both
+  /// Starts episode episodes[i] of the sequence seeds[i] in each farm i that `mask` selects. Both
   /// lists have N entries. Later episodes of these farms are `stride` apart.
   void Start(const pybind11::array& mask, const pybind11::sequence& seeds,
              const pybind11::sequence& episodes, pybind11::handle stride);
+  /// Takes one step in every farm. @param actions uint8 [N, S], each in [0, kActionCount]
   /// @throws InputError if the type, shape or range of the actions is wrong, or before the first
   ///   reset
   void Step(const pybind11::array& actions);
@@ -50,14 +53,17 @@ class Batch {
   pybind11::list Finished() const;
   /// Returns the present state of one farm as text.
   std::string Text(pybind11::handle farm) const;
-  /// Calls look(farms), which do not step meanwhile.
+  /// Returns Farm::StartHash of one farm.
+  /// @throws InputError if there is no such farm
+  std::uint64_t StartHash(pybind11::handle farm) const;
+  /// Calls look(batch). The farms do not step during the call.
   /// @throws std::runtime_error while a call of another thread runs
   template <typename Look>
   void InspectAll(Look look) {
     const Turn turn(busy_);
     look(batch_);
   }
-  /// Calls look(encoder, farm) with one farm, which does not step meanwhile.
+  /// Calls look(encoder, farm) with farm number `farm`, which does not step during the call.
   /// @throws std::runtime_error while a call of another thread runs
   template <typename Look>
   void Inspect(std::int32_t farm, Look look) const {
@@ -65,27 +71,34 @@ class Batch {
     look(batch_.encoder(), batch_.farm(farm));
   }
 
+  /// Returns the state of all farms.
   pybind11::bytes Save() const;
+  /// Restores saved farms and writes their results.
+  /// @throws InputError if the bytes are damaged or belong to other farms
   void Load(const std::string& bytes);
 
   /// Returns everything that another process needs to continue this batch; see FromState.
   pybind11::tuple State() const;
+  /// Makes a batch from the result of State. @throws InputError if another version made it
   static std::unique_ptr<Batch> FromState(const pybind11::tuple& state);
-  /// Returns whether both have the same scenario, buffers and state.
+  /// Returns whether both have the same scenario, names of buffers and state.
   bool Equals(const Batch& other) const;
 
   const FarmBatch& batch() const { return batch_; }
-  /// The scenario; Python has no constant objects, and nothing of it can be changed there.
+  /// Returns the scenario. It is not const, because Python has no constant objects; Python code
+  /// cannot change it.
   std::shared_ptr<Scenario> scenario() const {
     return std::const_pointer_cast<Scenario>(scenario_);
   }
   const std::map<std::string, pybind11::array>& buffers() const { return buffers_; }
 
  private:
+  /// Returns one farm. @throws InputError if there is no such farm
+  const Farm& FarmOf(pybind11::handle farm) const;
   const BufferType& TypeOf(const std::string& name) const;
   void Keep(const BufferType& type, pybind11::array array);
-  /// Returns the farms selected by a mask. @throws InputError unless it is bool [N] with a true
-  /// entry
+  /// Returns the numbers of the farms that a mask selects. @throws InputError if the mask is not
+  /// bool [N], or before the first reset
   std::vector<std::int32_t> Selected(const pybind11::array& mask) const;
   std::vector<std::string> BufferNames() const;
 
@@ -94,8 +107,8 @@ class Batch {
   FarmBatch batch_;
   std::vector<BufferType> types_;
   std::map<std::string, pybind11::array> buffers_;
-  /// Weak references to the arrays in use and to the arrays that they are views of. NumPy does not
-  /// resize an array with a weak reference, even with refcheck=False.
+  /// Weak references to the arrays in use, and to the arrays whose memory they use. NumPy does not
+  /// resize an array that has a weak reference, not even with refcheck=False.
   std::map<std::string, std::vector<pybind11::weakref>> guards_;
   BatchOutput output_;
   bool is_reset_{};

@@ -11,24 +11,25 @@
 
 namespace aquafarm::python {
 
-/// One array of BatchOutput, described for NumPy.
+/// Name, type and shape of an array of BatchOutput.
 struct BufferType {
-  std::string name;   ///< of the member of BatchOutput
-  std::string dtype;  ///< NumPy's name of the type
+  std::string name;   ///< name of the member of BatchOutput
+  std::string dtype;  ///< name of the type in NumPy
   std::vector<pybind11::ssize_t> shape;
 };
 
-/// Returns the arrays that a batch can write, in the order of BatchOutput.
+/// Returns the arrays that a batch can write, in the order of BatchOutput. The index is missing if
+/// the scenario has too many states for a table.
 std::vector<BufferType> BufferTypes(const FarmBatch& batch);
 
-/// Returns "uint8 [4, 1, 8, 25, 25]".
+/// Returns type and shape as text, such as "uint8 [4, 1, 8, 25, 25]".
 std::string Describe(const std::string& dtype, const std::vector<pybind11::ssize_t>& shape);
 std::string Describe(const pybind11::array& array);
 
-/// Returns true for a writable row-major array of this type and shape.
+/// Returns whether an array is writable, aligned and row-major, and has this type and shape.
 bool Fits(const pybind11::array& array, const BufferType& type);
 
-/// Sets `data` as the array `name` that a batch writes.
+/// Sets the pointer `name` of `output` to `data`.
 void Point(BatchOutput& output, std::string_view name, void* data);
 
 }  // namespace aquafarm::python

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The native part of the Python package aquafarm_core: scenarios, and FarmBatch, which writes into
-// NumPy arrays.
+// The native module of the Python package aquafarm_core: scenarios, batches of farms that write
+// into NumPy arrays, policies and planners.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -31,15 +31,15 @@ std::string NameOf(int value) {
   return std::string(ToString(static_cast<T>(value)));
 }
 
-// Defines the functions with which aquafarm_core checks at import that this module and NumPy use
-// the same array layout.
+// Defines functions by which aquafarm_core checks, when it is imported, that this module and NumPy
+// use the same array layout.
 void DefineProbes(py::module_& module) {
   module.def(
       "_made_array",
       [](const std::string& dtype, const std::vector<py::ssize_t>& shape) {
         return py::array(py::dtype(dtype), shape);
       },
-      py::arg("dtype"), py::arg("shape"), "An array that is allocated as the buffers are.");
+      py::arg("dtype"), py::arg("shape"), "Returns an array that is allocated like the buffers.");
   module.def(
       "_write_last",
       [](py::array array, std::uint8_t value) {
@@ -49,7 +49,8 @@ void DefineProbes(py::module_& module) {
       py::arg("array"), py::arg("value"), "Writes the last byte of an array in place.");
 }
 
-// Returns the CSV column of each entry of a summary: those of version 0.1.0, or those added later.
+// Returns the CSV column of each entry of a summary. @param added false for the entries of version
+// 0.1.0, true for those added later
 py::dict ColumnsOfEpisodes(bool added) {
   py::dict columns;
   if (!added) columns["farm"] = "farm";
@@ -106,6 +107,10 @@ void DefineScenario(py::module_& module) {
       .def_readonly("step_limit", &Scenario::step_limit)
       .def_property_readonly("ships", [](const Scenario& s) { return s.ships.count; })
       .def_property_readonly("agents", &Scenario::AgentCount)
+      .def_property_readonly(
+          "has_team_rewards",
+          [](const Scenario& s) { return s.rewards.sharing == RewardSharing::kTeam; },
+          "True if each agent receives the sum of all agents' rewards.")
       .def(
           "__eq__", [](const Scenario& a, const Scenario& b) { return ToYaml(a) == ToYaml(b); },
           py::is_operator())
@@ -136,7 +141,7 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
            py::arg("write") = std::vector<std::string>{"rewards", "end_reasons", "is_first"},
            py::arg("threads") = 1)
       .def("bind", &Batch::Bind, py::arg("name"), py::arg("array"),
-           "Writes into this array from now on: the caller's memory, such as a replay's.")
+           "Makes `array`, such as a part of a replay buffer, the buffer `name` from now on.")
       .def("reset", &Batch::Reset, py::arg("seed"), py::arg("first_episode") = 0,
            "Starts the sequence `seed`: farm i of N at episode first_episode + i, then every N-th.")
       .def("start", &Batch::Start, py::arg("mask"), py::arg("seeds"), py::arg("episodes"),
@@ -150,8 +155,12 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
       .def("finished", &Batch::Finished,
            "Summaries of the episodes that ended in the last step, by farm.")
       .def("text", &Batch::Text, py::arg("farm") = 0, "The present state of one farm as text.")
-      .def("save", &Batch::Save, "All farms as bytes, mid-episode.")
-      .def("load", &Batch::Load, py::arg("data"), "Continues saved farms bit for bit.")
+      .def("start_hash", &Batch::StartHash, py::arg("farm") = 0,
+           "A hash of layout, ships, devices and disasters of one farm, without seed and episode "
+           "number. Directly after reset it identifies the start of an episode.")
+      .def("save", &Batch::Save, "Returns the state of all farms as bytes, also in mid-episode.")
+      .def("load", &Batch::Load, py::arg("data"),
+           "Restores saved farms, which continue bit-identically.")
       .def("__eq__", &Batch::Equals, py::is_operator())
       .def(py::pickle([](const Batch& batch) { return batch.State(); }, &Batch::FromState))
       .def_property_readonly(

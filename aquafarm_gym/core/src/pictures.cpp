@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of farms: the drawing code of aquafarm_viz, compiled with plain structs for its messages
-// (plain_messages.py), so that it needs neither ROS nor a display.
+// Pictures of farms. This module contains the drawing code of aquafarm_viz, compiled with plain
+// structs as messages (plain_messages.py), so that it needs neither ROS nor a display.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
@@ -53,7 +53,7 @@ class Painter {
                                         aquafarm_viz::kMaxImageSide, "pass a size in pixels"));
   }
 
-  // Converts the farm; its constants only when its episode is new.
+  // Converts the state of the farm to messages. Its constants are converted only for a new episode.
   void Read(std::int32_t farms, const Encoder& encoder, const Farm& farm) {
     const aquafarm_sim::MessageContext context;
     aquafarm_sim::ToMsg(farm, context, state_);
@@ -84,8 +84,9 @@ PYBIND11_MODULE(_pictures, module) {
   module.attr("LAYERS") = aquafarm_viz::LayerNames();
   py::class_<Painter>(module, "Painter", R"(Draws farms as ./aquafarm render does.
 
-width, height: pixels in [160, 4096]. layers: some of LAYERS with commas, or none. style: dark for
-screens, light for print. A Painter follows one farm: the trails of its ships begin at the first picture of an episode.)")
+width, height: pixels in [160, 4096]. layers: names in LAYERS, separated by commas, or none.
+style: dark for screens, light for print. A Painter follows one farm: the trails of its ships begin
+at the first picture of an episode.)")
       .def(py::init<py::handle, py::handle, const std::string&, const std::string&>(),
            py::arg("width") = 800, py::arg("height") = 640, py::arg("layers") = "trail,risk",
            py::arg("style") = "dark")

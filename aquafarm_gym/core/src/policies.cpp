@@ -55,7 +55,7 @@ std::unique_ptr<agents::Policy> MakePlain(const Checkpoint&, const EnvironmentSp
   return std::make_unique<T>(spec);
 }
 
-/// Policies by the names that aquafarm_train and aquafarm_evaluate use.
+/// Returns the policies that need no training, by their names in aquafarm_evaluate.
 const std::map<std::string, Make>& BuiltIn() {
   static const std::map<std::string, Make> makers{
       {"clairvoyant", MakePlanner<Foresight::kOracle>},
@@ -66,7 +66,7 @@ const std::map<std::string, Make>& BuiltIn() {
   return makers;
 }
 
-/// Learned policies that need no libtorch, by the algorithm of their checkpoint.
+/// Returns the learned policies that do not need libtorch, by the algorithm of their checkpoint.
 const std::map<std::string, Make>& Learned() {
   static const std::map<std::string, Make> makers{{"mappo", agents::MakePpoPolicyWithoutTorch},
                                                   {"ppo", agents::MakePpoPolicyWithoutTorch},
@@ -86,7 +86,8 @@ std::string& PolicyFolder() {
   return folder;
 }
 
-/// Makes a learned policy. One that reads entity tokens plays on other farms, too.
+/// Makes a learned policy. A policy that reads entity tokens also plays on farms whose scenario
+/// does not have them.
 std::unique_ptr<agents::Policy> MakeLearned(Make make, const Checkpoint& checkpoint,
                                             const EnvironmentSpec& spec) {
   if (agents::HasTokens(checkpoint.spec) && !agents::HasTokens(spec)) {
@@ -117,7 +118,7 @@ std::unique_ptr<agents::Policy> MakePolicy(const std::string& name, const Enviro
                      ", which this package cannot play; expected one of: " + NamesOf(Learned()) +
                      "; evaluate it with aquafarm_evaluate");
   }
-  // The tokens of the shipped policy are checked by name, so it plays in every version.
+  // The shipped policy is not bound to a version: MakeLearned compares its tokens by name.
   if (!is_shipped && checkpoint.version != spec.version) {
     throw InputError(path + ": got a policy of aquafarm " + checkpoint.version + ", expected " +
                      spec.version + "; train it again, or use the version that trained it");
@@ -202,17 +203,17 @@ class BatchPolicy {
     results_.states.resize(shape.farms);
   }
 
-  FarmBatch sample_;  // one farm, for the shapes
+  FarmBatch sample_;  // one farm; gives the shapes of the results
   EnvironmentSpec spec_;
   std::unique_ptr<agents::Policy> policy_;
   agents::StepResults results_;
   BatchOutput output_;
-  std::unique_ptr<FarmBatch> copies_;  // which planners read while others step the batch
+  std::unique_ptr<FarmBatch> copies_;  // copies for planners: other threads may step the batch
   std::vector<std::uint8_t> actions_;
   mutable bool busy_{};
 };
 
-/// Plans for the only ship of farms of one scenario.
+/// A planner for farms of one scenario with a single ship.
 class ShipPlanner {
  public:
   ShipPlanner(std::shared_ptr<const Scenario> scenario, bool clairvoyant)
@@ -267,7 +268,7 @@ double BoundOf(const Batch& batch, py::handle farm) {
   return bound;
 }
 
-/// Plans a rescue; returns the JSON of aquafarm_plan.
+/// Plans a rescue and returns the content of plan.json, as aquafarm_plan writes it.
 std::string PlanRescue(const std::shared_ptr<Scenario>& scenario,
                        const agents::RescueRequest& request, const std::string& command) {
   using Clock = std::chrono::steady_clock;
@@ -328,7 +329,7 @@ farms.)")
            }),
            py::arg("name"), py::arg("scenario"), py::arg("farms") = 1, py::arg("seed") = 0)
       .def("begin", &BatchPolicy::Begin, py::arg("seed") = 0,
-           "Forgets its memory and restarts its random numbers. Call it after FarmBatch.reset.")
+           "Resets the recurrent state and the random numbers. Call it after FarmBatch.reset.")
       .def("act", &BatchPolicy::Act, py::arg("batch"),
            "The actions of the next step, uint8 [N, S], for FarmBatch.step.")
       .def_property_readonly("values", &BatchPolicy::Values,

@@ -6,11 +6,12 @@
 
 namespace aquafarm::python {
 
-/// Rejects a call of an object while a call of another thread runs. Acquired and released under the
-/// GIL, which the call itself may release during its work.
+/// Marks an object as busy during a call, so that calls of other threads are rejected. Its
+/// constructor and destructor must run with the GIL. The call may release the GIL in between.
 class Turn {
  public:
-  /// @param busy of the object @param name of its class, for the message
+  /// @param busy flag of the object
+  /// @param name class of the object, for the message
   /// @throws std::runtime_error while a call of another thread runs
   explicit Turn(bool& busy, const std::string& name = "FarmBatch") : busy_(busy) {
     if (busy_) {

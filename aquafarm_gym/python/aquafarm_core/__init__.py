@@ -12,7 +12,8 @@ import pkgutil
 
 import numpy
 
-# In a CMake build folder and a catkin devel space the native module is not next to the sources.
+# In a CMake build folder and in a catkin devel space, the native module is in another folder than
+# the sources.
 __path__ = pkgutil.extend_path(__path__, __name__)
 
 try:
@@ -34,13 +35,13 @@ from aquafarm_core._native import (  # noqa: E402
 
 __version__ = VERSION
 for _type in (FarmBatch, Planner, Policy, Scenario):
-    _type.__module__ = __name__  # where pickle finds them
+    _type.__module__ = __name__  # the module in which pickle looks for them
 
 
 def _shipped(name, package, source):
-    """Returns a folder of shipped files in the wheel, the install or the sources."""
+    """Returns a folder of shipped files: that in the wheel or install space, else `source`."""
     native = pathlib.Path(_native.__file__).resolve().parent
-    prefixes = list(native.parents)[3:4]  # none in a build folder near the root
+    prefixes = list(native.parents)[3:4]  # empty if the path has fewer parents
     for folder in (native / name, *(one / "share" / package / name for one in prefixes)):
         if folder.is_dir():
             return str(folder)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks at import that the native module and NumPy use the same array layout.
 
-A module built with pybind11 before 2.12 misreads NumPy 2's item sizes: its arrays have strides 0,
-so all entries alias the first, without any error.
+A module built with pybind11 before 2.12 misreads the item sizes of NumPy 2. Its arrays then have
+strides 0, so that all entries share the memory of the first one; no error is raised.
 """
 from typing import Any
 
@@ -12,7 +12,7 @@ DTYPES = ("bool", "uint8", "uint16", "float32", "uint32", "uint64")
 
 
 def numpy_fault(native: Any, numpy: Any) -> str:
-    """Returns why this NumPy cannot be used with this native module; "" if it can."""
+    """Returns the reason why this NumPy cannot be used with this native module; "" if it can."""
     made_with = ".".join(map(str, native.PYBIND11))
     where = "aquafarm_core: "
     if int(numpy.__version__.split(".")[0]) >= 2 and tuple(native.PYBIND11) < (2, 12):

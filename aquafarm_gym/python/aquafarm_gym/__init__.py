@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Gymnasium and PettingZoo environments of the marine ranch, with farms in this process or behind
-ROS services. Spaces and transitions of both are bit-identical.
+ROS services. Both kinds of farms give bit-identical spaces and transitions.
 
     env = gymnasium.make("aquafarm/Paper-v1")                        # one ship
     env = gymnasium.make("aquafarm/Farm-v1", scenario="my.yaml")     # one ship on any farm

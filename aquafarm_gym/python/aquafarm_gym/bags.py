@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Converts bags to a Minari dataset without ROS, and checks every reward on the way.
+"""Converts bags to a Minari dataset without ROS, and checks every reward.
 
     python -m aquafarm_gym.bags DATASET_ID BAG … [--observation features]
 
-Each episode is played again in this process from the bag's scenario, seed and actions. Rewards, the
-hash of the state and the end must equal those of the bag after every step; the observations of the
-dataset are those of the replay. With several ships each ship gives an episode of its own.
+Each episode is played again in this process, from the bag's scenario, seed and actions. After every
+step, the rewards, the hash of the state and the end reason must equal those of the bag. The
+observations of the dataset come from this replay. If there are several ships, each of them gives a
+separate episode.
 """
 from __future__ import annotations
 
@@ -27,26 +28,26 @@ from aquafarm_gym.farms import LocalFarms, find_scenario
 
 STATE_TYPE, SPEC_TYPE = "aquafarm_msgs/msg/FarmState", "aquafarm_msgs/msg/FarmSpec"
 SAVED_TYPE = "aquafarm_msgs/msg/SavedState"
-MAX_SEED = 2**63  # environments accept smaller seeds
+MAX_SEED = 2**63  # environments accept only smaller seeds
 
 
 @dataclasses.dataclass
 class Recorded:
-    """An episode of a bag: what happened in each step k = 0 … T; entry 0 is its start."""
+    """An episode of a bag: the results of steps 0 … T, where step 0 is the start."""
     scenario: core.Scenario
-    where: str                             # for messages
+    where: str                             # bag and episode, for messages
     seed: int
     episode: int
-    actions: list[list[int]]               # [T + 1][S]; those before step 0 are not used
+    actions: list[list[int]]               # [T + 1][S]; entry 0 is not used
     rewards: list[list[np.float32]]        # [T + 1][S]
     hashes: list[int]                      # [T + 1]
     reasons: list[int]                     # [T + 1], index into aquafarm_core.REASONS
-    is_changed: bool = False               # a service changed the farm: a replay differs
+    is_changed: bool = False               # a service changed the farm, so a replay differs
 
 
 @dataclasses.dataclass
 class Replayed:
-    """An episode of one ship as arrays: observations [T + 1, …], others [T, …]."""
+    """An episode of one ship as arrays: observations and masks [T + 1, …], others [T]."""
     seed: int
     episode: int
     observations: npt.NDArray[Any]
@@ -58,7 +59,8 @@ class Replayed:
 
 
 def read_episodes(path: str | pathlib.Path) -> Iterator[Recorded]:
-    """Yields the episodes of a bag that begin at step 0. Raises ValueError for another file."""
+    """Yields the episodes of a bag that begin at step 0. Raises ValueError if the file is not a
+    readable bag of a ranch, or if a step is missing."""
     from rosbags.highlevel import AnyReader, AnyReaderError
     from rosbags.rosbag1 import ReaderError
     try:
@@ -103,10 +105,10 @@ def _take(running: dict[str, Recorded], prefix: str, spec: Any, state: Any,
                                    int(state.episode), [], [], [], [])
     one = running.get(prefix)
     if one is None or state.episode != one.episode:
-        return  # its start is not in the bag
+        return  # the start of this episode is not in the bag
     if state.step != len(one.hashes):
         if state.step + 1 == len(one.hashes):
-            return  # published again without a step
+            return  # the same state was published again
         raise ValueError(f"{one.where}: got step {state.step} after step {len(one.hashes) - 1}, "
                          "expected every step; leave the bag out")
     one.actions.append([int(ship.action) for ship in state.ships])
@@ -116,7 +118,8 @@ def _take(running: dict[str, Recorded], prefix: str, spec: Any, state: Any,
 
 
 def replay(recorded: Recorded, observation: str = "features") -> list[Replayed]:
-    """Plays an episode again, one result per ship. Raises ValueError at the first difference."""
+    """Plays an episode again and returns one result per ship. Raises ValueError at the first
+    difference, or if a service changed the farm."""
     if recorded.is_changed:
         raise ValueError(f"{recorded.where}: got changes from outside (topic saved_state), expected "
                          "none: actions alone do not repeat them; leave the bag out")
@@ -157,9 +160,10 @@ def make_dataset(dataset_id: str, paths: list[str | pathlib.Path], observation: 
                  **about: Any) -> Any:
     """Makes a Minari dataset of the episodes of bags of one scenario, and returns it.
 
-    about: further arguments of minari.create_dataset_from_buffers, such as algorithm_name. A dataset
-    of one ship recovers its environment. Action 10 (a ship held its cell) occurs in paced bags
-    alone; the action space then has 11 actions. Raises ValueError as replay, or if nothing is left.
+    about: further arguments of minari.create_dataset_from_buffers, such as algorithm_name. From a
+    dataset of one ship, Minari can recover the environment. Action 10 (a ship held its cell) occurs
+    only in paced bags; the action space then has 11 actions. Raises ValueError as read_episodes and
+    replay, if the bags have different scenarios, or if they contain no episode from step 0.
     """
     import minari
     from minari.data_collector import EpisodeBuffer
@@ -196,7 +200,7 @@ def make_dataset(dataset_id: str, paths: list[str | pathlib.Path], observation: 
 
 
 def name_of(scenario: core.Scenario) -> str:
-    """Returns the name of a shipped scenario, or the YAML text of another one."""
+    """Returns the name of a scenario if it is a shipped one, else its YAML text."""
     try:
         if find_scenario(scenario.name) == scenario:
             return scenario.name
@@ -206,7 +210,7 @@ def name_of(scenario: core.Scenario) -> str:
 
 
 def main() -> int:
-    """The command; returns its exit code."""
+    """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("dataset_id", help="such as aquafarm/paper/ppo-v0")
@@ -214,7 +218,7 @@ def main() -> int:
     parser.add_argument("--observation", default="features", help="features, planes or index")
     parser.add_argument("--algorithm", default="unknown", help="policy that played, for the description")
     given = parser.parse_args()
-    warnings.filterwarnings("ignore", module="minari")  # of an author and a link, which bags lack
+    warnings.filterwarnings("ignore", module="minari")  # bags contain no author and no link
     try:
         dataset = make_dataset(given.dataset_id, given.bags, given.observation,
                                algorithm_name=given.algorithm, description="From bags of aquafarm")
@@ -225,7 +229,7 @@ def main() -> int:
         print(f"bags: {error}", file=sys.stderr)
         return 2
     print(f"{given.dataset_id}: {dataset.total_episodes} episodes, {dataset.total_steps} steps; "
-          "every reward was repeated")
+          "the replay reproduced every reward")
     return 0
 
 

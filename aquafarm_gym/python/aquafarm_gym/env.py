@@ -17,7 +17,7 @@ from aquafarm_gym.single_farm import SingleFarm, info_at, observation_at
 
 
 def one_agent(farms: Any) -> Any:
-    """Returns the farms; raises ValueError if they have several agents."""
+    """Returns `farms`. Raises ValueError if they have several agents."""
     if farms.agents != 1:
         raise ValueError(f"scenario {farms.name}: got {farms.agents} agents, expected 1; use "
                          "FarmParallelEnv or TeamVectorEnv")
@@ -30,9 +30,10 @@ class FarmEnv(SingleFarm, gymnasium.Env[Any, Any]):
     observation: `features` (default), `planes` or `index`. info has the same keys at every step,
     and contains only numbers: `action_mask` (int8 [10], 1: legal), `outcome` (index into
     aquafarm_core.OUTCOMES), `reason` (index into aquafarm_core.REASONS, 0: the episode continues),
-    `is_success`, and `summary`, whose entries are 0 until the episode ends. reset(seed=…) starts a
-    sequence of episodes, reset() continues with its next one, options={"episode": k} with its k-th.
-    Copies and pickles of farms in this process continue bit-identically.
+    `is_success`, and `summary`, whose entries are 0 until the episode ends. reset(seed=…) starts
+    episode 0 of a sequence of episodes. reset() starts the next episode of the sequence, and
+    reset(options={"episode": k}) its episode k. Copies and pickles of farms in this process
+    continue bit-identically.
     """
 
     metadata: dict[str, Any] = {"render_modes": list(rendering.OFFERED),
@@ -45,7 +46,7 @@ class FarmEnv(SingleFarm, gymnasium.Env[Any, Any]):
                  render_mode: str | None = None, picture_size: tuple[int, int] = rendering.SIZE,
                  picture_layers: str = rendering.LAYERS,
                  picture_style: str = rendering.STYLE) -> None:
-        """farms: a backend that replaces the scenario's farms in this process, e.g. RosFarms().
+        """farms: a backend that replaces the scenario's farms in this process, such as RosFarms().
         picture_size: width and height of pictures [pixels]. picture_layers: their layers
         (aquafarm_core.pictures.LAYERS), picture_style: dark or light, as for ./aquafarm render."""
         super().__init__(one_agent(farms or LocalFarms(scenario, 1, observation)), observation,
@@ -78,8 +79,9 @@ class FarmEnv(SingleFarm, gymnasium.Env[Any, Any]):
                 reason != 0 and not truncated, truncated, self._info())
 
     def render(self) -> Any:
-        """Returns the farm as a picture, uint8 [height, width, 3] (`rgb_array`), or as text (`ansi`;
-        farm_text.h explains the symbols). The mode `human` shows it at each reset and step."""
+        """Returns the farm as a picture, uint8 [height, width, 3] (`rgb_array`), or as text
+        (`ansi`; farm_text.h explains the symbols). In mode `human`, each reset and step shows the
+        farm."""
         if self.render_mode is None:
             gymnasium.logger.warn("render: got render_mode None, expected rgb_array or ansi; pass "
                                   "render_mode='rgb_array' to the constructor")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Seeds, episodes and options of reset, and the numbers in infos."""
+"""Checks of the seeds and options of reset, and the summaries in infos."""
 from __future__ import annotations
 
 import operator
@@ -8,18 +8,18 @@ from typing import Any
 
 import aquafarm_core as core
 
-# Every seed must fit an int64 array and a C long.
+# Seeds must fit into an int64 array and a C long.
 SEED_LIMIT: int = 1 << 63
 EPISODE_LIMIT: int = 1 << 62
 
 REASON_CODES: dict[str, int] = {name: code for code, name in enumerate(core.REASONS)}
-# Entries of info["summary"] during an episode; the types are those of a finished episode.
+# Entries of info["summary"] before the end of an episode, with the types that they have at the end.
 NO_SUMMARY: dict[str, Any] = {
     **{name: value for name, value in core.NO_EPISODE.items() if name != "farm"}, "reason": 0}
 
 
 def whole_number(where: str, value: Any, limit: int, hint: str) -> int:
-    """Returns a whole number; raises ValueError if it is not in [0, limit)."""
+    """Returns `value` as int. Raises ValueError if it is not a whole number in [0, limit)."""
     try:
         number = operator.index(value)
     except TypeError:
@@ -31,12 +31,13 @@ def whole_number(where: str, value: Any, limit: int, hint: str) -> int:
 
 
 def check_seed(seed: Any) -> int:
-    """Returns a seed; raises ValueError if it is not a whole number in [0, 2**63)."""
+    """Returns `seed` as int. Raises ValueError if it is not a whole number in [0, 2**63)."""
     return whole_number("seed", seed, SEED_LIMIT, "pass a smaller seed, or None to draw one")
 
 
 def check_options(options: dict[str, Any] | None, known: Collection[str]) -> dict[str, Any]:
-    """Returns the options of reset; raises ValueError for an unknown name or a wrong `episode`."""
+    """Returns the options of reset. Raises ValueError if a name is unknown or `episode` is not a
+    whole number in [0, 2**62)."""
     options = {} if options is None else options
     for name in options:
         if name not in known:
@@ -49,14 +50,15 @@ def check_options(options: dict[str, Any] | None, known: Collection[str]) -> dic
 
 
 def summary_of(finished: dict[str, Any]) -> dict[str, Any]:
-    """Converts a record of FarmBatch.finished() to numbers, with the entries of NO_SUMMARY."""
+    """Converts a record of FarmBatch.finished() to the entries of NO_SUMMARY, which are numbers."""
     numbers = {name: finished[name] for name in NO_SUMMARY}
     numbers["reason"] = REASON_CODES[finished["reason"]]
     return numbers
 
 
 class Episodes:
-    """Position in a sequence of episodes. A seed starts it, a reset without a seed continues."""
+    """Position in a sequence of episodes. A seed starts a sequence; a reset without a seed
+    continues it."""
 
     seed: int | None
     episode: int
@@ -66,7 +68,8 @@ class Episodes:
 
     def next(self, seed: Any, options: dict[str, Any], drawn_seed: Callable[[], int | None],
              by: int = 1) -> tuple[int, int]:
-        """Returns the next (seed, episode); options may select an `episode` of the sequence."""
+        """Returns the next (seed, episode). options: may contain the number of the `episode`.
+        drawn_seed: called if there is no seed yet. by: number of episodes to advance."""
         if seed is not None:
             self.seed, self.episode = check_seed(seed), 0
         elif self.seed is None:
@@ -82,4 +85,4 @@ class Episodes:
                 and (self.seed, self.episode) == (other.seed, other.episode))
 
     def __hash__(self) -> int:
-        return hash(Episodes)  # the position changes as episodes start
+        return hash(Episodes)  # must not depend on the position, which changes

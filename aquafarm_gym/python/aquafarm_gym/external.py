@@ -3,7 +3,7 @@
 
     class MyLearner:
         def __init__(self, env, seed): ...            # env: FarmEnv with one ship
-        def train(self): ...                          # plays self.env until EpisodesOver is raised
+        def train(self): ...                          # plays `env` until it raises EpisodesOver
         def act(self, observation, mask): ...         # greedy; returns an action in [0, 9]
 
     if __name__ == "__main__":
@@ -11,9 +11,10 @@
 
     aquafarm_benchmark --learner "mine=python3 my_learner.py" …
 
-main trains for the episodes of the benchmark, evaluates on its evaluation seeds, and writes run.json,
-metrics.csv, evaluation.csv and evaluation.json into the run folder, with the definitions of
-aquafarm_train and aquafarm_evaluate.
+main trains the learner for the number of episodes that the benchmark requests, then evaluates it
+with the benchmark's evaluation seed. It writes run.json, metrics.csv, evaluation.csv and
+evaluation.json into the run folder, with the columns and keys of aquafarm_train and
+aquafarm_evaluate.
 """
 from __future__ import annotations
 
@@ -38,7 +39,7 @@ EVALUATION = (*core.EPISODE_COLUMNS.values(), *core.ADDED_COLUMNS.values())
 METRICS = ("number", "total_steps", *core.EPISODE_COLUMNS.values(), "exploration",
            "learning_rate", "loss", *core.ADDED_COLUMNS.values())
 PROGRESS_PERIOD_S: float = 5.0
-FIRST_EVALUATION_SEED = 2**63  # that of aquafarm_evaluate --seed 0
+FIRST_EVALUATION_SEED = 2**63  # the farm seed of aquafarm_evaluate --seed 0
 
 
 class EpisodesOver(Exception):
@@ -46,17 +47,17 @@ class EpisodesOver(Exception):
 
 
 class Learner(Protocol):
-    """What main needs of a learner."""
+    """Interface of a learner, as main uses it."""
 
     def train(self) -> None:
-        """Plays the environment until it raises EpisodesOver."""
+        """Plays episodes of the environment and learns, until reset raises EpisodesOver."""
 
     def act(self, observation: Any, mask: npt.NDArray[np.int8]) -> int:
         """Returns the greedy action; mask: legal actions, int8 [10]."""
 
 
 def cells_of(record: dict[str, Any]) -> dict[str, Any]:
-    """Returns the cells of an episode in the files of a run."""
+    """Returns the CSV cells of an episode by the names of their columns."""
     columns = {**core.EPISODE_COLUMNS, **core.ADDED_COLUMNS}
     return {**{columns[name]: value for name, value in record.items()},
             "success": int(record["success"])}
@@ -94,7 +95,7 @@ class TrainingEnv(FarmEnv):
         return result
 
     def _show_progress(self) -> None:
-        """Prints, now and then, the line that aquafarm_benchmark reads."""
+        """Prints the progress for aquafarm_benchmark, at most once in PROGRESS_PERIOD_S."""
         now = time.monotonic()
         if now - self._shown >= PROGRESS_PERIOD_S:
             self._shown = now
@@ -107,12 +108,12 @@ class TrainingEnv(FarmEnv):
 
 def evaluate(learner: Learner, scenario: core.Scenario, observation: str, episodes: int,
              seed: int) -> tuple[list[dict[str, Any]], int]:
-    """Plays greedily; returns the records of the episodes and the number of distinct starts."""
-    farms = LocalFarms(scenario, 1, observation, hashes=True)
+    """Plays episodes greedily. Returns their records and the number of distinct initial states."""
+    farms = LocalFarms(scenario, 1, observation)
     seen, records, starts = farms.buffers[observation], [], set()
     for episode in range(episodes):
         farms.reset(FIRST_EVALUATION_SEED + seed, episode)
-        starts.add(int(farms.buffers["hashes"][0]))
+        starts.add(farms.batch.start_hash())
         while not farms.buffers["end_reasons"][0]:
             mask = spaces.action_mask(farms.buffers["legal"][0, 0])
             now = np.int64(seen[0, 0]) if observation == "index" else seen[0, 0].copy()
@@ -127,20 +128,20 @@ def summary_of(records: list[dict[str, Any]]) -> dict[str, Any]:
     total = {name: sum(one[name] for one in records)
              for name in ("episode_return", "steps", "success", "crashes", "steps_in_disaster",
                           "energy", "distance", "delivered")}
-    health = sum(one["delivered_health"] * one["delivered"] for one in records)
+    health = [one["delivered_health"] for one in records if one["delivered"] > 0]
     return {"complete": True, "episodes": count,
             "return_per_episode": total["episode_return"] / count,
             "return_per_step": total["episode_return"] / total["steps"],
             "success_rate": total["success"] / count, "steps_per_episode": total["steps"] / count,
             "crashes_per_episode": total["crashes"] / count,
             "steps_in_disaster_per_episode": total["steps_in_disaster"] / count,
-            "delivered_health": health / max(1, total["delivered"]),
+            "delivered_health": sum(health) / max(1, len(health)),
             "energy_kwh_per_episode": total["energy"] / count,
             "distance_km_per_episode": total["distance"] / count}
 
 
 def with_limit(scenario: core.Scenario, max_steps: int) -> core.Scenario:
-    """Returns the scenario with another step limit; 0: its own."""
+    """Returns the scenario with the step limit `max_steps`, or unchanged if that is 0."""
     if max_steps in (0, scenario.step_limit):
         return scenario
     old, new = f"step_limit: {scenario.step_limit}", f"step_limit: {max_steps}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""N farms with S agents each, as arrays: the backends of all environments in this package.
+"""Backends of all environments in this package: N farms with S agents each, with results as arrays.
 
 A backend has the attributes name, yaml, farms, agents, state_count, feature_names, feature_count,
 plane_count, height, width and buffers (see aquafarm_core.FarmBatch), and the methods
@@ -20,8 +20,9 @@ ALWAYS: tuple[str, ...] = ("rewards", "outcomes", "legal", "active", "end_reason
 
 
 def find_scenario(scenario: core.Scenario | str | pathlib.Path) -> core.Scenario:
-    """Returns a Scenario: the given one, a shipped one by name, the one of a file, or of YAML text
-    (which has several lines)."""
+    """Returns a scenario. `scenario` is a Scenario, the name of a shipped one, the path of a file,
+    or YAML text of several lines. Raises ValueError if there is no such scenario or it is
+    invalid."""
     if isinstance(scenario, core.Scenario):
         return scenario
     folder = pathlib.Path(core.SCENARIO_FOLDER)
@@ -40,7 +41,7 @@ def find_scenario(scenario: core.Scenario | str | pathlib.Path) -> core.Scenario
 
 
 def check_observation(observation: str, state_count: int, name: str) -> None:
-    """Raises ValueError for an unknown type, and for `index` if a farm has too many states."""
+    """Raises ValueError if the observation is unknown, or if it is `index` and state_count is 0."""
     if observation not in OBSERVATIONS:
         raise ValueError(f"observation: got '{observation}', expected one of: "
                          + ", ".join(OBSERVATIONS))
@@ -59,12 +60,14 @@ class Farms:
     feature_names: list[str]
     feature_count: int
     plane_count: int
+    has_team_rewards: bool
     height: int
     width: int
 
     def __init__(self, scenario: core.Scenario, farms: int, state_count: int,
                  feature_names: list[str]) -> None:
         self.name, self.agents = scenario.name, scenario.agents
+        self.has_team_rewards = scenario.has_team_rewards
         self.height, self.width = scenario.height, scenario.width
         self.farms, self.state_count = farms, state_count
         self.feature_names, self.feature_count = feature_names, len(feature_names)
@@ -72,7 +75,7 @@ class Farms:
 
 
 def observation_of(farms: Any, observation: str) -> npt.NDArray[Any]:
-    """Returns the array of an observation; raises ValueError if the farms do not write it."""
+    """Returns the array of an observation. Raises ValueError if the farms do not write it."""
     if observation not in farms.buffers:
         has = ", ".join(name for name in OBSERVATIONS if name in farms.buffers)
         raise ValueError(f"observation: got '{observation}', but the farms given write {has}")
@@ -98,7 +101,7 @@ class LocalFarms(Farms):
 
     @property
     def yaml(self) -> str:
-        """The scenario's text."""
+        """The scenario as YAML text."""
         return self.scenario.yaml
 
     @property

@@ -4,10 +4,11 @@
     python -m aquafarm_gym.logs RUN … [--to tensorboard | wandb] [--follow] [--window 50]
 
 RUN is a run folder of ./aquafarm train or aquafarm_train; its metrics.csv has one line per episode.
-Each point is the mean of --window episodes at the farm steps of the last one. TensorBoard reads
-RUN/tensorboard (tensorboard --logdir runs); Weights & Biases gets one run per folder, offline unless
-WANDB_MODE is online. --follow waits for runs that begin later and continues until Ctrl-C or until all
-runs have ended. Only --to wandb needs a package from PyPI. The file also runs alone: python3 logs.py.
+Each point of a curve is the mean of --window episodes, at the farm steps of the last of them.
+TensorBoard reads RUN/tensorboard (tensorboard --logdir runs). Weights & Biases receives one run per
+folder, offline unless WANDB_MODE is online. --follow waits until all runs have begun, and logs them
+until they have ended or Ctrl-C is pressed. Only --to wandb needs a package from PyPI. This file can
+also run without the package aquafarm_gym: python3 logs.py.
 """
 from __future__ import annotations
 
@@ -37,13 +38,13 @@ PERIOD_S = 2.0
 
 
 class Sink(Protocol):
-    """Where the points of a run go."""
+    """Destination of the points of a run."""
 
     def add(self, steps: int, values: dict[str, float]) -> None:
         """Adds a point at a number of farm steps."""
 
     def close(self) -> None:
-        """Writes what is left."""
+        """Writes buffered points and closes the destination."""
 
 
 def _crc32c_table() -> list[int]:
@@ -68,8 +69,8 @@ def crc32c(data: bytes) -> int:
 
 
 def _record(data: bytes) -> bytes:
-    """Returns a TFRecord: length, CRC of the length, data, CRC of the data. The CRCs are rotated and
-    shifted (tensorflow/tsl: lib/hash/crc32c.h, Mask)."""
+    """Returns a TFRecord: length, CRC of the length, data, CRC of the data. The CRCs are masked:
+    rotated, plus a constant (tensorflow/tsl: lib/hash/crc32c.h, Mask)."""
     def masked(part: bytes) -> bytes:
         crc = crc32c(part)
         return struct.pack("<I", ((crc >> 15 | crc << 17) + 0xa282ead8) & 0xffffffff)
@@ -78,7 +79,7 @@ def _record(data: bytes) -> bytes:
 
 
 def _varint(value: int) -> bytes:
-    """Returns a number in the wire format of protocol buffers."""
+    """Returns a number as a varint of protocol buffers."""
     parts = []
     while value > 127:
         parts.append(value & 127 | 128)
@@ -87,13 +88,13 @@ def _varint(value: int) -> bytes:
 
 
 def _text(field: int, data: bytes) -> bytes:
-    """Returns a text or message field of a protocol buffer."""
+    """Returns a field of a protocol buffer that contains a text or a message."""
     return _varint(field << 3 | 2) + _varint(len(data)) + data
 
 
 class TensorBoard:
-    """Rewrites RUN/tensorboard: an event file (tensorboard/compat/proto: event.proto,
-    summary.proto)."""
+    """Replaces RUN/tensorboard by a folder with one event file (tensorboard/compat/proto:
+    event.proto, summary.proto)."""
 
     def __init__(self, run: pathlib.Path) -> None:
         folder = run / "tensorboard"
@@ -120,7 +121,7 @@ class TensorBoard:
 
 
 class WeightsAndBiases:
-    """Makes a run of Weights & Biases with the options of run.json."""
+    """Makes a run of Weights & Biases, with the content of run.json as its configuration."""
 
     def __init__(self, run: pathlib.Path) -> None:
         os.environ.setdefault("WANDB_MODE", "offline")
@@ -133,7 +134,7 @@ class WeightsAndBiases:
         self._run.log(values, step=steps)
 
     def close(self) -> None:
-        """Writes what is left."""
+        """Finishes the run."""
         self._run.finish()
 
 
@@ -141,7 +142,7 @@ SINKS: dict[str, Any] = {"tensorboard": TensorBoard, "wandb": WeightsAndBiases}
 
 
 def settings_of(run: pathlib.Path) -> dict[str, Any]:
-    """Returns the settings in run.json; nothing if it is not there yet."""
+    """Returns the content of run.json; empty if the file does not exist or is not valid JSON."""
     try:
         settings: dict[str, Any] = json.loads((run / "run.json").read_text("utf-8"))
         return settings
@@ -150,7 +151,7 @@ def settings_of(run: pathlib.Path) -> dict[str, Any]:
 
 
 class Metrics:
-    """Reads the lines of a metrics.csv that were not read before."""
+    """Reads the new lines of a metrics.csv that grows."""
 
     def __init__(self, path: pathlib.Path) -> None:
         self._path = path
@@ -158,7 +159,8 @@ class Metrics:
         self._names: list[str] = []
 
     def new_rows(self) -> Iterator[dict[str, float]]:
-        """Yields the complete new lines. Raises ValueError for a line that is not a row."""
+        """Yields the complete lines since the last call, as numbers by column, without `reason`.
+        Raises ValueError if a line has another number of cells or a cell is not a number."""
         try:
             with open(self._path, "rb") as file:
                 file.seek(self._offset)
@@ -180,12 +182,12 @@ class Metrics:
                                  f"{len(self._names)} numbers as in its first line") from error
 
     def is_shorter(self) -> bool:
-        """Returns whether the file was cut, as when a run resumes from a checkpoint."""
+        """Returns whether the file was truncated, for example because a run was resumed."""
         return self._path.is_file() and self._path.stat().st_size < self._offset
 
 
 class Curves:
-    """Sends the means of the rows of one run to a sink."""
+    """Adds the means of the rows of one run to a sink."""
 
     points: int
 
@@ -221,11 +223,11 @@ class Curves:
         self.points += 1
 
     def has_ended(self) -> bool:
-        """Returns whether the run has written its policy, after all episodes."""
+        """Returns whether the run has written its policy, which it does after all episodes."""
         return (self._run / "policy.ckpt").is_file()
 
     def close(self) -> None:
-        """Adds the last rows as a shorter window."""
+        """Adds a point for the remaining rows and closes the sink."""
         if self._rows:
             self._add()
         self._sink.close()
@@ -233,14 +235,15 @@ class Curves:
 
 def log_runs(runs: list[pathlib.Path], kind: str = "tensorboard", window: int = 50,
              follow: bool = False, endless: bool = False) -> list[int]:
-    """Logs run folders; returns the number of points of each. kind: tensorboard or wandb.
-    follow: until the runs have ended; with endless only until Ctrl-C. Raises ValueError for a folder
-    without a run, and ImportError without the package wandb."""
+    """Logs run folders and returns the number of points of each. kind: tensorboard or wandb.
+    follow: whether to continue until all runs have ended or Ctrl-C is pressed. endless: with
+    follow, whether to continue even after all runs have ended. Raises ValueError if a folder
+    contains no run, and ImportError if the package wandb is needed but missing."""
     try:
         while follow and not all((run / "metrics.csv").is_file() for run in runs):
             time.sleep(PERIOD_S)
     except KeyboardInterrupt:
-        follow = False  # logs what is there
+        follow = False  # log the runs that have begun
     for run in runs:
         if not (run / "metrics.csv").is_file() and not (run / "run.json").is_file():
             raise ValueError(f"{run}: got no metrics.csv, expected a run folder of ./aquafarm train")
@@ -263,7 +266,7 @@ def log_runs(runs: list[pathlib.Path], kind: str = "tensorboard", window: int = 
 
 
 def main() -> int:
-    """The command; returns its exit code."""
+    """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="+", type=pathlib.Path)

@@ -22,8 +22,8 @@ from aquafarm_gym.single_farm import SingleFarm, info_at, observation_at
 
 class FarmParallelEnv(SingleFarm,
                       ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]
-    """One farm with several agents, named ship_0, ship_1, … as in ROS. Self-propelled devices come
-    last and terminate when they are delivered.
+    """One farm with several agents, named ship_0, ship_1, … as in ROS. Self-propelled devices are
+    the last agents; they terminate when they are delivered.
 
     Observations and infos are those of FarmEnv, one per agent. state() returns the observations of
     all agents in one array (`state_space`), for centralized critics.
@@ -43,8 +43,8 @@ class FarmParallelEnv(SingleFarm,
                  render_mode: str | None = None, picture_size: tuple[int, int] = rendering.SIZE,
                  picture_layers: str = rendering.LAYERS,
                  picture_style: str = rendering.STYLE) -> None:
-        """farms: a backend that replaces the scenario's farms in this process, e.g. RosFarms().
-        picture_size, picture_layers, picture_style: as FarmEnv."""
+        """farms: a backend that replaces the scenario's farms in this process, such as RosFarms().
+        picture_size, picture_layers, picture_style: as in FarmEnv."""
         super().__init__(farms or LocalFarms(scenario, 1, observation), observation, render_mode,
                          picture_size, picture_layers, picture_style)
         self.possible_agents = [f"ship_{i}" for i in range(self.farms.agents)]
@@ -105,8 +105,8 @@ class FarmParallelEnv(SingleFarm,
         return np.asarray(joint.reshape(self.state_space.shape))
 
     def render(self) -> Any:
-        """Returns the farm as a picture, uint8 [height, width, 3] (`rgb_array`), or as text (`ansi`).
-        `human` shows it in a window."""
+        """Returns the farm as a picture, uint8 [height, width, 3] (`rgb_array`), or as text
+        (`ansi`). In mode `human`, shows it in a window and returns None."""
         if self.render_mode == "human":
             self._window.show()
         return self._picture()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rescue plans: which ship fetches which device before a storm, as ./aquafarm plan makes them."""
+"""Rescue plans, as ./aquafarm plan makes them: which ship fetches which device before a storm."""
 from __future__ import annotations
 
 import datetime
@@ -17,20 +17,22 @@ Path = str | pathlib.Path
 
 
 def seconds_of(name: str, moment: str | datetime.datetime) -> int:
-    """Returns a time as seconds since 1970. Raises ValueError unless its time zone is known."""
+    """Returns a time as seconds since 1970 (UTC). Raises ValueError if it is not a time or has no
+    time zone."""
     try:
         given = (datetime.datetime.fromisoformat(moment.replace("Z", "+00:00"))
                  if isinstance(moment, str) else moment)
     except ValueError:
         given = None
     if not isinstance(given, datetime.datetime) or given.tzinfo is None:
-        raise ValueError(f"{name}: got {moment!r}, expected a time with its zone, as "
+        raise ValueError(f"{name}: got {moment!r}, expected a time with its zone, such as "
                          "'2021-07-24T12:00:00Z' or a datetime with tzinfo")
     return int(given.timestamp())
 
 
 def number(name: str, value: Any, low: float, high: float) -> Any:
-    """Returns a number in [low, high], whole if the limits are. Raises ValueError for others."""
+    """Returns `value`. Raises ValueError if it is not a number in [low, high], or not a whole
+    number although the limits are."""
     whole = isinstance(low, int)
     fits = isinstance(value, int if whole else (int, float)) and not isinstance(value, bool)
     if not (fits and low <= value <= high):
@@ -50,12 +52,16 @@ def plan_rescue(ranch: core.Scenario | Path, *, bulletin: Path | None = None,
     """Plans a rescue and returns the content of plan.json (plan.schema.json) as a dict.
 
     ranch: a scenario with a geographic origin, its file or its name. bulletin: file with the
-    storm's forecast; or storm: file of a recorded track, planned as at the time `at` (default:
-    now). devices, ships_file: CSV files (docs/plan.md). depart_h: earliest departure after the
-    start [h]. speed_kn, abort_wind_kt: knots. risk_averse: share of the worst storms whose mean loss
-    is minimised, 0 for the mean. members: number of possible storms.
+    forecast of the storm. storm: instead of a bulletin, a file with a recorded track; storm_name
+    selects a storm of the file. at: start of the plan (default: now, or the newest report of an old
+    bulletin). devices, ships_file: CSV files (docs/plan.md). ships: number of ships. capacity:
+    devices aboard a ship. depart_h: earliest departure after the start [h]. speed_kn: speed of the
+    ships [kn]. abort_wind_kt: wind at which ships stop [kn]. risk_averse: share of the worst storms
+    whose mean loss is minimised; 0 minimises the mean loss. currency: of the devices' values.
+    utc_offset_h: local time (default: by longitude). members: number of possible storms, which are
+    drawn from `seed`.
 
-    Raises ValueError for a wrong option, file or place, in one line.
+    Raises ValueError, with one line, if an option, a file or a position is wrong.
     """
     native: Any = importlib.import_module("aquafarm_core._native")
     request = native._RescueRequest()

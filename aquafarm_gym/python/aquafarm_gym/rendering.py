@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The render modes of all environments: text, pictures, and a window."""
+"""The render modes of all environments: text, pictures and a window."""
 from __future__ import annotations
 
 import base64
@@ -18,7 +18,7 @@ SIZE: tuple[int, int] = (800, 640)
 LAYERS: str = "trail,risk"
 STYLE: str = "dark"
 MODES: tuple[str, ...] = ("ansi", "human", "rgb_array")
-# Those of this installation: a wheel without OpenCV draws no pictures.
+# The modes of this installation: a wheel without OpenCV cannot draw pictures.
 OFFERED: tuple[str, ...] = (MODES if importlib.util.find_spec("aquafarm_core._pictures")
                             else ("ansi", "human"))
 FPS: int = 4
@@ -28,7 +28,7 @@ Pixels = npt.NDArray[np.uint8]
 def check_render_mode(render_mode: str | None, farms: Any,
                       modes: tuple[str, ...] = MODES) -> str | None:
     """Returns the mode. Raises ValueError if it is unknown or the farms cannot be rendered, and
-    ImportError if this installation cannot draw pictures."""
+    ImportError if the mode is rgb_array and this installation cannot draw pictures."""
     if render_mode not in (None, *modes):
         raise ValueError(f"render_mode: got {render_mode!r}, expected {', '.join(modes)} or None")
     if render_mode is not None and not hasattr(farms, "text"):
@@ -40,7 +40,7 @@ def check_render_mode(render_mode: str | None, farms: Any,
 
 
 class Pictures:
-    """Draws the farms of a backend. Each farm has its own trails of ships."""
+    """Draws the farms of a backend, each with the trails of its ships."""
 
     def __init__(self, farms: Any, size: tuple[int, int] = SIZE, layers: str = LAYERS,
                  style: str = STYLE) -> None:
@@ -52,7 +52,7 @@ class Pictures:
         self._painters: dict[int, Any] = {}
 
     def draw(self, farm: int = 0) -> Pixels:
-        """Returns a picture of the present state, uint8 [height, width, 3], RGB."""
+        """Returns a picture of a farm in its present state, uint8 [height, width, 3], RGB."""
         if farm not in self._painters:
             from aquafarm_core.pictures import Painter
             self._painters[farm] = Painter(*self._size, self._layers, self._style)
@@ -61,7 +61,8 @@ class Pictures:
 
 
 class Window:
-    """Shows pictures in a window of pygame. Without pygame, a display or OpenCV it prints text."""
+    """Shows the first farm in a window of pygame. Without pygame, a display or OpenCV it prints
+    text."""
 
     def __init__(self, pictures: Pictures, farms: Any) -> None:
         self._pictures, self._farms = pictures, farms
@@ -70,7 +71,8 @@ class Window:
         self._works = has_display()
 
     def show(self) -> None:
-        """Shows the present state for 1/FPS seconds."""
+        """Shows the present state. In a window, waits until 1/FPS seconds after the previous
+        picture."""
         if self._works and self._screen is None:
             self._works = self._open()
         if not self._works:
@@ -106,16 +108,17 @@ class Window:
 
 
 def has_display() -> bool:
-    """Returns whether a window can be opened; a driver named by SDL_VIDEODRIVER counts."""
+    """Returns whether a window can be opened: on a display, or with the driver in
+    SDL_VIDEODRIVER."""
     if sys.platform != "linux":
         return True
     return any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"))
 
 
 def png_of(pixels: Pixels) -> bytes:
-    """Returns an RGB picture as PNG (ISO/IEC 15948)."""
+    """Returns a PNG file (ISO/IEC 15948) of an RGB picture, uint8 [height, width, 3]."""
     height, width = pixels.shape[:2]
-    rows = np.zeros((height, 1 + 3 * width), np.uint8)  # each row begins with its filter: none
+    rows = np.zeros((height, 1 + 3 * width), np.uint8)  # filter type 0 (none), pixels
     rows[:, 1:] = pixels.reshape(height, -1)
 
     def chunk(name: bytes, data: bytes) -> bytes:
@@ -128,7 +131,8 @@ def png_of(pixels: Pixels) -> bytes:
 
 
 def html_of(farms: Any, pictures: Pictures | None, numbers: range | list[int]) -> str:
-    """Returns farms as HTML for a notebook: pictures, or text if there is nothing that draws."""
+    """Returns farms as HTML for a notebook: pictures, or text if this installation cannot draw
+    them."""
     if not hasattr(farms, "text"):
         return f"<pre>{html.escape(repr(farms))}</pre>"
     parts = []

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Farms behind a sim node's services, as arrays that are bit-identical to those of LocalFarms."""
+"""Farms behind the ROS services of a sim node. Their arrays are bit-identical to those of
+LocalFarms."""
 from __future__ import annotations
 
 import itertools
@@ -27,7 +28,7 @@ BITS: dict[str, int] = {
 
 
 def check_master(limit_s: float) -> None:
-    """Raises ConnectionError if no master listens; rospy waits for one without a limit."""
+    """Raises ConnectionError if there is no ROS master within the limit. (rospy waits forever.)"""
     uri = rosgraph.get_master_uri()
     try:
         host, port = rosgraph.network.parse_http_host_and_port(uri)
@@ -45,7 +46,8 @@ class Service(rospy.ServiceProxy):  # type: ignore[misc]
         self.transport: Any
 
     def call(self, request: Any) -> Any:
-        """Calls; raises rospy.ServiceException if there is no response within the limit."""
+        """Calls the service. Raises rospy.ServiceException if it does not respond within the
+        limit."""
         try:
             if self.transport is None:
                 self._connect(request)
@@ -59,7 +61,8 @@ class Service(rospy.ServiceProxy):  # type: ignore[misc]
         uri = self._get_service_uri(request)
         transport = TCPROSTransport(self.protocol, self.resolved_name)
         transport.buff_size = self.buff_size
-        # rospy reads the handshake without a timeout: another thread shuts the socket down.
+        # rospy reads the handshake without a timeout. At the limit, another thread shuts the socket
+        # down.
         watch = threading.Timer(self._limit_s, lambda: transport.socket.shutdown(socket.SHUT_RDWR))
         watch.daemon = True
         watch.start()
@@ -74,9 +77,10 @@ class Service(rospy.ServiceProxy):  # type: ignore[misc]
 class RosFarms(Farms):
     """Farms behind the sim node of a namespace.
 
-    A lost call is sent again with the same sequence number, so no farm steps twice. Raises
-    ConnectionError if the sim node restarted without its farms, if another client moved them, or if
-    the node does not respond for wait_limit_s.
+    A call without a response is repeated with the same sequence number, so that no farm steps
+    twice. Methods raise ConnectionError if the sim node restarted without its farms, if another
+    client changed them, or if the node does not respond for wait_limit_s. They raise ValueError if
+    the node refuses a call.
     """
 
     yaml: str
@@ -95,7 +99,7 @@ class RosFarms(Farms):
         check_observation(observation, spec.state_count, spec.scenario_name)
         self.yaml = spec.scenario_yaml
         scenario = core.Scenario.parse(self.yaml, spec.scenario_name)
-        # The arrays of a batch in this process, which this object fills instead.
+        # The buffers of this batch are only used as memory; _take fills them.
         arrays = core.FarmBatch(
             scenario, farms,
             write=["rewards", "outcomes", "legal", "active", "end_reasons", "is_first", observation]
@@ -103,9 +107,9 @@ class RosFarms(Farms):
         super().__init__(scenario, farms, spec.state_count, arrays.feature_names)
         self.buffers: dict[str, npt.NDArray[Any]] = arrays.buffers
         self._observation_types = BITS[observation] | (StepResult.HASHES if hashes else 0)
-        # Random start, so that the numbers differ from those of earlier clients of this node.
+        # The first number is random, so that the numbers differ from those of earlier clients.
         self._sequence = itertools.count(int.from_bytes(os.urandom(7), "little") + 1)
-        self._state_id: int | None = None  # of the last response; None: needs a reset
+        self._state_id: int | None = None  # of the last response; None if a reset is needed
         self._finished: list[dict[str, Any]] = []
 
     def reset(self, seed: int, first_episode: int = 0) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Many farms for Stable-Baselines3, stepped together in C++; ships share one policy."""
+"""Many farms for Stable-Baselines3, stepped together in C++. One policy plays all ships."""
 from __future__ import annotations
 
 import pathlib
@@ -19,12 +19,13 @@ from aquafarm_gym.rendering import Pictures, check_render_mode
 
 
 class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
-    """N farms as a Stable-Baselines3 VecEnv. Each of their S ships is an environment of its own, so
-    that one policy plays all ships: environment farm · S + ship, num_envs = N · S.
+    """N farms with S ships each as a Stable-Baselines3 VecEnv. Each ship is a separate environment,
+    number farm · S + ship of num_envs = N · S, so that one policy plays all ships.
 
-    A farm whose episode ends starts its next one in the same step. The infos of its ships then
-    contain `terminal_observation`, `TimeLimit.truncated`, `episode` (r: the return of the farm, l, as
-    in Monitor) and `is_success`. action_masks() is for MaskablePPO of sb3_contrib.
+    If the episode of a farm ends, the farm starts its next episode in the same step. The infos of
+    its ships then contain `terminal_observation`, `TimeLimit.truncated`, `is_success`, `summary`
+    (as in FarmEnv) and `episode`, as Monitor writes it: r, the return of the farm, l, the number of
+    steps, and t, which is always 0. MaskablePPO of sb3_contrib calls action_masks().
     """
 
     farms: LocalFarms
@@ -33,7 +34,7 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
     def __init__(self, num_envs: int = 1, scenario: core.Scenario | str | pathlib.Path = "paper",
                  observation: str = "features", threads: int = 1,
                  render_mode: str | None = None) -> None:
-        """num_envs: number N of farms. render_mode: rgb_array for VecVideoRecorder, or None."""
+        """num_envs: number N of farms. render_mode: rgb_array (for VecVideoRecorder) or None."""
         self.farms = LocalFarms(scenario, num_envs, observation, threads=threads)
         if self.farms.agents > self.farms.scenario.ships:
             raise ValueError(f"scenario {self.farms.name}: got self-propelled devices, whose play "
@@ -54,7 +55,8 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
                          spaces.observation_space(self.farms, observation), spaces.action_space())
 
     def reset(self) -> npt.NDArray[Any]:
-        """Starts the sequence of the seed set by seed(), or continues the sequence without one."""
+        """Starts the sequence of the seed that seed() set. Without a seed, starts the next episode
+        of every farm."""
         seed = self._seeds[0]
         if seed is None and self._episodes.seed is not None:
             self.farms.start_next(np.ones(self.farms.farms, bool))
@@ -100,7 +102,8 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         return spaces.action_mask(self._legal).astype(bool)
 
     def get_images(self) -> list[npt.NDArray[np.uint8] | None]:
-        """Returns the picture of each farm, uint8 [640, 800, 3]; nothing without a render_mode."""
+        """Returns a picture of each farm, uint8 [640, 800, 3]; an empty list without a
+        render_mode."""
         if self.render_mode is None:
             return []
         return [self._pictures.draw(i) for i in range(self.farms.farms)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the environments of one farm share, and what they return for one of its agents."""
+"""Base class of the environments with one farm, and their results for one agent."""
 from __future__ import annotations
 
 from typing import Any
@@ -14,13 +14,14 @@ from aquafarm_gym.rendering import Pictures, Window, check_render_mode, html_of
 
 
 def observation_at(name: str, array: npt.NDArray[Any], agent: int) -> Any:
-    """Returns a copy of the observation `name` of an agent; array: [1, S, ...]."""
+    """Returns a copy of the observation of an agent. name: type of the observation. array: the
+    observations of all agents, [1, S, …]."""
     entry = array[0, agent]
     return np.int64(entry) if name == "index" else entry.copy()
 
 
 def info_at(farms: Any, agent: int) -> dict[str, Any]:
-    """Returns the info of an agent after reset and step."""
+    """Returns the info of an agent, as reset and step return it."""
     buffers = farms.buffers
     over = buffers["end_reasons"][0] != 0
     summary = summary_of(farms.finished()[0]) if over else NO_SUMMARY.copy()
@@ -30,7 +31,7 @@ def info_at(farms: Any, agent: int) -> dict[str, Any]:
 
 
 class SingleFarm:
-    """The farm of an environment, its pictures, and how it is copied."""
+    """Base class of the environments with one farm: rendering, copies and pickles."""
 
     farms: Any
     observation: str
@@ -50,7 +51,7 @@ class SingleFarm:
         self._attach()
 
     def _attach(self) -> None:
-        """Binds the arrays that the farms write."""
+        """Sets the members that refer to the arrays of the farms."""
         self._buffers = self.farms.buffers
         self._observation = observation_of(self.farms, self.observation)
         self._pictures = Pictures(self.farms, self.picture_size, self.picture_layers,
@@ -58,7 +59,8 @@ class SingleFarm:
         self._window = Window(self._pictures, self.farms)
 
     def _picture(self) -> Any:
-        """Returns the farm as render_mode says; None for `human` and without a mode."""
+        """Returns a picture (`rgb_array`) or text (`ansi`); None in mode `human` and without a
+        mode."""
         if self.render_mode == "rgb_array":
             return self._pictures.draw()
         return str(self.farms.text(0)) if self.render_mode == "ansi" else None

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The spaces of one agent; the same for farms in process and behind ROS."""
+"""The spaces of observations and actions. Farms behind ROS have the same as those in this
+process."""
 from typing import Any
 
 import aquafarm_core as core
@@ -42,7 +43,8 @@ def action_space() -> spaces.Discrete:
 
 
 def observation_space(farms: Any, observation: str) -> spaces.Space[Any]:
-    """Returns a Discrete for `index`, a bounded Box for `features` and `planes`."""
+    """Returns the space of one agent: Discrete for `index`, a bounded Box for `features` and
+    `planes`."""
     if observation == "index":
         return spaces.Discrete(farms.state_count)
     if observation == "features":
@@ -52,7 +54,8 @@ def observation_space(farms: Any, observation: str) -> spaces.Space[Any]:
 
 
 def action_mask(legal: npt.ArrayLike) -> npt.NDArray[np.int8]:
-    """Converts bits of legal actions [...] to 0 and 1 [..., 10], as Discrete.sample(mask) needs."""
+    """Converts the bits of legal actions […] to int8 […, 10] with 1 for legal, as Discrete.sample
+    expects its mask."""
     bits = np.array(legal, "<u2")[..., None].view(np.uint8)
     return np.unpackbits(bits, axis=-1, count=N_ACTIONS, bitorder="little").view(np.int8)
 

@@ -26,7 +26,8 @@ Array: TypeAlias = npt.NDArray[Any]
 
 
 def autoreset_name(mode: Any, farms: Any) -> str:
-    """Returns the name of a gymnasium.vector.AutoresetMode, given as such or as a text."""
+    """Returns the name of an autoreset mode. mode: a gymnasium.vector.AutoresetMode or its name.
+    Raises ValueError if it is unknown or the farms do not support it."""
     name = getattr(mode, "value", mode)
     if name not in AUTORESET_MODES:
         raise ValueError(f"autoreset_mode: got {mode!r}, expected a "
@@ -70,12 +71,12 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
                              "autoreset_mode": gymnasium.vector.AutoresetMode(self._mode)}
         self._copy = copy
         self._episodes = Episodes()
-        self._own_sequences = False  # True if a farm has its own sequence of episodes
+        self._own_sequences = False  # True if the farms have different sequences
         self._begun = np.zeros(self.num_envs, np.int64)  # episodes since the last reset, by farm
         self._attach()
 
     def _attach(self) -> None:
-        """Binds the arrays that the farms write."""
+        """Sets the members that refer to the arrays of the farms."""
         buffers = self.farms.buffers
         self._observation = self._agents_of(observation_of(self.farms, self.observation))
         self._all_rewards = buffers["rewards"]
@@ -92,7 +93,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
             array.flags.writeable = False  # shared by the infos of all steps
 
     def _agents_of(self, array: Array) -> Array:
-        """Selects the agents' part of an array [N, S, …] for observations and masks."""
+        """Returns an array [N, S, …] in the shape of observations and masks: [N, …] for one
+        ship."""
         raise NotImplementedError
 
     def _rewards(self) -> Array:
@@ -101,10 +103,11 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
 
     def reset(self, *, seed: int | Sequence[int | None] | None = None,
               options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Starts episodes. seed: one number starts its sequence, with farm i of N at episode i; a
-        list starts one sequence per farm, at episode 0. Without a seed each farm continues its
-        sequence. options: `episode` (added to the first episode) and `reset_mask` (bool [N], the
-        farms that start; the others do not change)."""
+        """Starts episodes. seed: a number starts its sequence, with farm i of N at episode i; a
+        list starts one sequence per farm, at episode 0. Without a seed (or with None in the list),
+        a farm continues its sequence. options: `episode` is added to the number of the first
+        episode; `reset_mask` (bool [N]) selects the farms that start, and the others do not
+        change."""
         options = check_options(options, ("episode", "reset_mask"))
         mask = self._mask_of(options)
         seeds = self._seeds_of(seed)
@@ -151,7 +154,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
                              "start together: pass one seed")
 
     def _start_all(self, seed: int | None, options: dict[str, Any]) -> None:
-        # Farm i of N plays every N-th episode: continue after the latest episode of any farm.
+        # Farm i of N plays every N-th episode. Continue after the latest episode of all farms.
         by = self.num_envs * (1 + int(self._begun.max()))
         self.farms.reset(*self._episodes.next(seed, options, lambda: self.np_random_seed, by))
         self._begun[:] = 0
@@ -202,7 +205,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         truncated = self._reasons == core.STEP_LIMIT
         rewards = self._rewards()
         if self._mode == SAME_STEP and not self._copy:
-            rewards = rewards.copy()  # the start of an episode in this step overwrites the entry
+            rewards = rewards.copy()  # the start of an episode overwrites them in this step
         if self._mode == SAME_STEP and over.any():
             infos = self._restart(over)
         else:
@@ -210,8 +213,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         return self._out(self._observation), rewards, over ^ truncated, truncated, infos
 
     def _restart(self, over: Array) -> dict[str, Any]:
-        """Starts the next episodes in the same step; infos contain the final observations and
-        infos."""
+        """Starts the next episodes of the farms in `over`. Returns infos that contain the final
+        observations and infos of their previous episodes."""
         final_obs = np.full(self.num_envs, None)
         for i in np.flatnonzero(over):
             final_obs[i] = self._observation[i].copy()
@@ -228,7 +231,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         return tuple(draw(i) for i in range(self.num_envs))
 
     def close_extras(self, **kwargs: Any) -> None:
-        if "farms" in self.__dict__:  # False if the constructor has failed
+        if "farms" in self.__dict__:  # missing if the constructor failed
             self.farms.close()
 
     def _out(self, array: Array) -> Array:
@@ -282,13 +285,15 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
 class FarmVectorEnv(VectorBase):
     """N farms with one ship each that step together in this process (or behind ROS, with `farms`).
 
-    autoreset_mode (a name or value of gymnasium.vector.AutoresetMode) specifies when a farm starts
-    its next episode: in the next step, whose action it ignores (the default), in the same step, or
-    only by reset with a reset_mask. With copy=False observations and rewards are the arrays that
-    the farms write; the next step overwrites them. infos has the same keys at every step: those of
-    FarmEnv as arrays [N, …], and `is_first`, each with its mask `_action_mask` …. `summary` is valid
-    where `_summary` is True and 0 elsewhere. In the mode SameStep, infos also contain `final_obs`
-    and `final_info` when an episode ends.
+    autoreset_mode (a gymnasium.vector.AutoresetMode or its name) specifies when a farm starts its
+    next episode: NextStep, in the next step, whose action it ignores (the default); SameStep, in
+    the step that ends the episode; Disabled, only by reset with a reset_mask. With copy=False,
+    observations and rewards are the arrays that the farms write; the next step overwrites them.
+
+    infos has the same keys at every step: those of FarmEnv as arrays [N, …], and `is_first` (bool
+    [N]). Each has a mask, such as `_action_mask` (bool [N]). `summary` is valid where `_summary` is
+    True, and 0 elsewhere. In mode SameStep, infos also contain `final_obs` and `final_info` when an
+    episode ends.
     """
 
     def __init__(self, num_envs: int = 1, scenario: core.Scenario | str | pathlib.Path = "paper",
@@ -307,11 +312,12 @@ class FarmVectorEnv(VectorBase):
 
 
 class TeamVectorEnv(VectorBase):
-    """N farms with S ships each as joint steps: actions [N, S], observations [N, S, …].
+    """N farms with S ships each, whose agents act together: actions [N, S], observations [N, S, …].
 
-    The reward is the sum over the agents. infos["agent_rewards"], float32 [N, S], contains the
-    reward of each agent. infos["active"], bool [N, S], is False for a delivered self-propelled
-    device. Other results are as in FarmVectorEnv, with S entries per farm.
+    The reward is the team's: the sum of the rewards of all agents, or, if the scenario gives each
+    agent the team's reward (`rewards: {sharing: team}`), that reward once. infos["agent_rewards"],
+    float32 [N, S], contains the reward of each agent. infos["active"], bool [N, S], is False for a delivered
+    self-propelled device. Other results are as in FarmVectorEnv, with S entries per farm.
     """
 
     def __init__(self, num_envs: int = 1,
@@ -328,7 +334,12 @@ class TeamVectorEnv(VectorBase):
         return array
 
     def _rewards(self) -> Array:
-        return np.asarray(self._all_rewards.sum(axis=1))
+        rewards = self._all_rewards
+        if not self.farms.has_team_rewards:
+            return np.asarray(rewards.sum(axis=1))
+        # All agents have the same reward, except those out of play, which have 0.
+        playing = np.abs(rewards).argmax(axis=1)
+        return np.asarray(np.take_along_axis(rewards, playing[:, None], axis=1)[:, 0])
 
     def _more_infos(self) -> dict[str, Any]:
         active = self.farms.buffers["active"].astype(bool)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Wrappers that add the action mask to the observation, as the learners of RLlib, tianshou and
-PettingZoo expect it: {"observation": …, "action_mask": int8 […, 10]}."""
+"""Wrappers that add the action mask to the observation, which becomes a dict with the entries
+"observation" and "action_mask" (int8 […, 10]). Learners of RLlib, tianshou and PettingZoo expect
+this form."""
 from __future__ import annotations
 
 from typing import Any
@@ -13,13 +14,13 @@ from aquafarm_gym.spaces import N_ACTIONS
 
 
 def masked_space(space: gymnasium.Space[Any], shape: tuple[int, ...] = ()) -> gymnasium.spaces.Dict:
-    """Returns an observation space with masks [*shape, 10]."""
+    """Returns the space of an observation in `space` with an action mask int8 [*shape, 10]."""
     masks = gymnasium.spaces.Box(0, 1, (*shape, N_ACTIONS), np.int8)
     return gymnasium.spaces.Dict({"observation": space, "action_mask": masks})
 
 
 def joined(observation: Any, infos: dict[str, Any]) -> dict[str, Any]:
-    """Returns an observation with the mask of its info."""
+    """Returns an observation with the action mask in `infos`."""
     return {"observation": observation, "action_mask": infos["action_mask"]}
 
 

@@ -94,12 +94,13 @@ Enum Named(const char* name, const std::string& text, int count) {
 
 // Parses "1979:2009".
 Range<std::int32_t> Years(const char* name, const std::string& text) {
-  const auto [first, last] = Pair(name, text, ':', "FIRST:LAST as 1979:2009");
+  const auto [first, last] = Pair(name, text, ':', "FIRST:LAST such as 1979:2009");
   const auto whole = [](double year) { return year == std::floor(year) && std::abs(year) < 1.0e4; };
   if (whole(first) && whole(last)) {
     return {static_cast<std::int32_t>(first), static_cast<std::int32_t>(last)};
   }
-  throw InputError(std::string(name) + ": got '" + text + "', expected FIRST:LAST as 1979:2009");
+  throw InputError(std::string(name) + ": got '" + text +
+                   "', expected FIRST:LAST such as 1979:2009");
 }
 
 RanchRequest Finished(const Arguments& arguments) {
@@ -195,8 +196,9 @@ void AddPlaceOptions(CLI::App& app, Arguments& arguments) {
                  "GeoJSON coast, map_server YAML or ASCII grid of heights; empty: open sea");
   app.add_option("--center", arguments.center, "LATITUDE,LONGITUDE of the ranch's middle");
   app.add_option("--size", arguments.size, "WIDTHxHEIGHT in cells");
-  app.add_option("--cell", arguments.cell, "side of a cell, as 200m or 0.2km");
-  app.add_option("--sea-level", ranch.sea_level, "heights above it are land (ASCII grids)");
+  app.add_option("--cell", arguments.cell, "side of a cell, such as 200m or 0.2km");
+  app.add_option("--sea-level", ranch.sea_level,
+                 "height of the sea surface in an ASCII grid; higher cells are land");
 }
 
 void AddStormOptions(CLI::App& app, Arguments& arguments) {
@@ -204,30 +206,31 @@ void AddStormOptions(CLI::App& app, Arguments& arguments) {
   CLI::Option* track =
       app.add_option("--track", ranch.track, "file with the storm's track; empty: calm");
   app.add_option("--storm", ranch.storm, "name or number of the storm in that file")->needs(track);
-  CLI::Option* years =
-      app.add_option("--years", arguments.years, "FIRST:LAST of the storms that training draws");
+  CLI::Option* years = app.add_option("--years", arguments.years,
+                                      "FIRST:LAST, years of the storms that training draws");
   CLI::Option* archive =
       app.add_option("--archive", ranch.archive.files,
                      "files of tracks (CMA, JMA, ATCF, IBTrACS or a storm archive): every episode "
-                     "draws a storm of them")
+                     "draws one of their storms")
           ->needs(years)
           ->excludes(track);
   years->needs(archive);
-  app.add_option("--evaluation-years", arguments.evaluation_years,
-                 "FIRST:LAST of the storms of evaluation alone; empty: all after --years")
+  app.add_option(
+         "--evaluation-years", arguments.evaluation_years,
+         "FIRST:LAST, years of the storms that only evaluation draws; empty: all after --years")
       ->needs(archive);
   app.add_option("--within", ranch.archive.within_km,
-                 "km: storms of the archive that come nearer than this to the middle")
+                 "max distance in km at which an archived storm passes the ranch's middle")
       ->check(CLI::Range(1.0, 2000.0))
       ->needs(archive);
-  app.add_option("--radii", ranch.radii, "file with radii of winds, for a track that has none")
+  app.add_option("--radii", ranch.radii, "file with wind radii, for a track that has none")
       ->needs(track);
   app.add_option("--forecasts", ranch.forecasts,
-                 "bulletins of the storm with forecast points: agents receive these, and the truth "
-                 "follows the track")
+                 "bulletins of the storm with forecast points: agents receive these forecasts; the "
+                 "storm itself follows --track")
       ->needs(track);
   app.add_option("--rings", arguments.rings,
-                 "quadrants of winds: circles of equal_area or largest, or as quadrants")
+                 "shape of the wind rings: circles (equal_area or largest radius), or quadrants")
       ->needs(track);
 }
 
@@ -238,28 +241,32 @@ void AddRanchOptions(CLI::App& app, Arguments& arguments) {
   app.add_option(
       "--disaster", ranch.disasters,
       "another disaster as KIND:KEY=NUMBER,… such as wave:height_m=4,radius_km=5; kinds: " + kinds);
-  app.add_option("--ports", ranch.ports, "ports, spread along the shore")
+  app.add_option("--ports", ranch.ports, "number of ports, spread along the shore")
       ->check(CLI::Range(1, 256));
-  app.add_option("--port", arguments.ports,
-                 "LATITUDE,LONGITUDE of a port, put on the nearest shore; any number of times");
-  app.add_option("--devices", ranch.devices, "devices")->check(CLI::Range(1, 1000));
-  app.add_option("--layout", arguments.layout, "of the devices: uniform, linear or random");
-  app.add_option("--ships", ranch.ships, "rescue squads")->check(CLI::Range(1, 64));
-  app.add_option("--speed", ranch.speed_kn, "knots of a ship with a device in tow")
+  app.add_option(
+      "--port", arguments.ports,
+      "LATITUDE,LONGITUDE of a port, which is put on the nearest shore; may be repeated");
+  app.add_option("--devices", ranch.devices, "number of devices")->check(CLI::Range(1, 1000));
+  app.add_option("--layout", arguments.layout, "layout of the devices: uniform, linear or random");
+  app.add_option("--ships", ranch.ships, "number of rescue squads")->check(CLI::Range(1, 64));
+  app.add_option("--speed", ranch.speed_kn, "speed in knots of a ship with a device in tow")
       ->check(CLI::Range(0.1, 60.0));
-  app.add_option("--step", ranch.step_s, "seconds a step, instead of --speed");
-  app.add_option("--lead", ranch.lead_h, "hours before the widest ring comes")
+  app.add_option("--step", ranch.step_s, "seconds per step, instead of --speed");
+  app.add_option("--lead", ranch.lead_h,
+                 "hours from the start until the widest ring reaches the ranch")
       ->check(CLI::Range(0.0, 240.0))
       ->needs(app.get_option("--track"));
-  app.add_option("--start", arguments.start, "UTC as 2021-07-24T12:00Z, instead of --lead");
-  app.add_option("--seed", ranch.seed, "of the layout");
+  app.add_option("--start", arguments.start,
+                 "UTC of the start, such as 2021-07-24T12:00Z, instead of --lead");
+  app.add_option("--seed", ranch.seed, "seed of the layout");
 }
 
 void AddSeaOptions(CLI::App& app, Arguments& arguments) {
   RanchRequest& ranch = arguments.ranch;
   CLI::Option* sea = app.add_option("--sea", arguments.sea,
-                                    "NAME=FILE:VARIABLE of a netCDF field; any number of times");
-  app.add_option("--sea-depth", ranch.sea_depth_m, "metres below the surface of those fields");
+                                    "NAME=FILE:VARIABLE of a netCDF field; may be repeated");
+  app.add_option("--sea-depth", ranch.sea_depth_m,
+                 "depth of these fields in metres below the surface");
   app.add_option("--value", ranch.value,
                  "expression of the fields for each device's value, such as '100 - 2 * warmth'");
   app.add_option(
@@ -269,13 +276,15 @@ void AddSeaOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--notices", ranch.notices,
                  "warnings or anchorage forecasts (JSON); those in force are listed");
   app.add_option("--write-map", arguments.map, "write the chart for map_server to this .yaml");
-  app.add_option("-o,--output", arguments.output, "scenario file; empty: only shown");
+  app.add_option("-o,--output", arguments.output,
+                 "scenario file to write; empty: the ranch is only shown");
 }
 
 int Main(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app("Makes a ranch from a chart, a place and a storm, shows it and what it decided.",
-               "aquafarm scenario");
+  CLI::App app(
+      "Makes a ranch from a chart, a place and a storm, and shows it with the chosen defaults.",
+      "aquafarm scenario");
   app.footer("exit codes: 0 made, 2 bad argument or file");
   app.option_defaults()->always_capture_default();
   AddPlaceOptions(app, arguments);

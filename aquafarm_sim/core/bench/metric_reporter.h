@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Prints the table of Google Benchmark, then one line `metric value unit` per metric, so that runs
-/// can be compared. Values are medians over the repetitions of a run.
+/// Prints the table of Google Benchmark, and one line `metric value unit` per metric, so that runs
+/// can be compared.
 
 #include <benchmark/benchmark.h>
 
@@ -13,7 +13,8 @@
 
 namespace aquafarm::bench {
 
-/// Collects the median items per second of each benchmark in addition to the default table.
+/// Prints the default table and collects the items per second of each benchmark: the median over
+/// its repetitions.
 class MetricReporter : public benchmark::ConsoleReporter {
  public:
   MetricReporter() : ConsoleReporter(OO_None) {}
@@ -26,6 +27,7 @@ class MetricReporter : public benchmark::ConsoleReporter {
       }
     }
   }
+  /// Returns the items per second of a benchmark `NAME` or `NAME/ARGUMENT`; 0 if there is none.
   double median(const std::string& name) const {
     const auto found = median_.find(name);
     return found == median_.end() ? 0.0 : found->second;
@@ -36,7 +38,8 @@ class MetricReporter : public benchmark::ConsoleReporter {
   std::map<std::string, double> median_;
 };
 
-/// Runs all benchmarks with five repetitions, unless the arguments specify other options.
+/// Runs the benchmarks with five repetitions. Options in the arguments override this and the other
+/// defaults below.
 /// @returns false if an argument is not recognized
 inline bool RunMedians(int argc, char** argv, MetricReporter& reporter) {
   std::vector<char*> arguments(argv, argv + argc);

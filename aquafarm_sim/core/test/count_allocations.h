@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Counts the allocations of the complete program. Include it in one source of a test program.
+/// Counts all allocations of a test program. Include this file in one source of the program only.
 
 #include <atomic>
 #include <cstdlib>
@@ -12,7 +12,7 @@ std::atomic<long> allocations{0};
 std::atomic<std::size_t> allocated_bytes{0};
 }  // namespace
 
-// Not inlined, because gcc would then report a mismatch of new and free.
+// noinline: GCC otherwise reports a mismatch of new and free.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   allocated_bytes += size;

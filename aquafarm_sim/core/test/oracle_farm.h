@@ -2,8 +2,8 @@
 #pragma once
 
 // Second implementation of the farm's rules, written for clarity instead of speed: it searches
-// lists, finds risks by sorting rings, and stores nothing that can be derived. It uses the
-// disasters of the farm under test, whose motion has separate oracles, and checks everything else.
+// lists, sorts rings to find risks, and stores nothing that can be derived. It does not move
+// disasters: it reads those of the farm under test. Other tests check their motion.
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +48,8 @@ class OracleFarm {
     }
   }
 
-  /// @param after the farm under test after the same step; its disasters are used as they are
+  /// Executes one step.
+  /// @param actions one per ship @param after the farm under test after the same step
   void Step(const std::vector<Action>& actions, const Farm& after) {
     ++steps;
     std::vector<std::pair<int, int>> moved_from;
@@ -124,7 +125,7 @@ class OracleFarm {
     ship.terms.energy = static_cast<float>(-scenario_.energy->weight * ship.kwh);
   }
 
-  // Without a kind of device, risks have no factors.
+  // Returns the worst risk at a cell; with a kind of device, times its damage factors.
   static float Risk(const Farm& farm, std::pair<int, int> at,
                     std::optional<DeviceKind> kind = std::nullopt) {
     float worst = 0.0F;

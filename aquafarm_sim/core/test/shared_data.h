@@ -6,12 +6,12 @@
 
 namespace aquafarm {
 
-/// Folder of the real data files, next to the project. Tests that need it are skipped if it is
-/// missing.
+/// Returns the folder of the real data files: AQUAFARM_SHARED_DATA, else shared/data next to the
+/// project. Tests that need missing files are skipped.
 inline std::filesystem::path SharedData() {
   namespace fs = std::filesystem;
   if (const char* path = std::getenv("AQUAFARM_SHARED_DATA")) return path;
-  // A workspace can contain a link to the project.
+  // Resolves links, because a workspace can contain a link to the project.
   const fs::path core = fs::weakly_canonical(AQUAFARM_CORE_DIR);
   return core.parent_path().parent_path().parent_path() / "shared" / "data";
 }

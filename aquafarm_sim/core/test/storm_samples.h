@@ -27,7 +27,7 @@ inline std::string Sample(const std::string& name) {
 
 inline StormFile Load(const std::string& name) { return LoadStormFile((kData / name).string()); }
 
-/// Returns the fix of a time, which the track must have.
+/// Returns the fix at a time. The track must have such a fix.
 inline const StormFix& At(const StormTrack& track, std::int64_t time) {
   return *std::find_if(track.fixes.begin(), track.fixes.end(),
                        [time](const StormFix& fix) { return fix.time == time; });
@@ -40,7 +40,7 @@ inline std::string With(std::string text, const std::string& from, const std::st
   return text.replace(at, from.size(), to);
 }
 
-/// Returns the error of parsing a text as file "x", or "was read".
+/// Returns the message of the error of parsing a text as file "x"; "was read" without an error.
 inline std::string Refusal(const std::string& text) {
   try {
     ParseStormFile(text, "x");

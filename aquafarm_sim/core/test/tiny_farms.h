@@ -13,8 +13,8 @@ namespace aquafarm::test {
 
 inline std::uint8_t Act(Action action) { return static_cast<std::uint8_t>(action); }
 
-/// 5 × 5, an island block at the south-west corner (0,0)-(1,1), a rock at (3,3), a port at (2,0),
-/// one device of value 80 at (2,2), no disaster.
+/// A farm of 5 × 5 cells without a disaster: an island block from (0, 0) to (1, 1), a rock at
+/// (3, 3), a port at (2, 0), and a device of value 80 at (2, 2).
 ///
 ///   4 . . . . .
 ///   3 . . . o .
@@ -38,7 +38,7 @@ inline Scenario TinyScenario() {
   return scenario;
 }
 
-/// A disaster at (x, y) that does not move.
+/// Returns a disaster at (x, y) that does not move.
 inline DisasterSpec StillDisaster(float x, float y, std::vector<float> radii,
                                   std::vector<float> risks) {
   DisasterSpec disaster;

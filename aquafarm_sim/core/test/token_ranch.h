@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// A ranch without a symmetry of its own, its turned and reflected forms, and their entity tokens.
+// An asymmetric ranch, its turned and reflected forms, and their entity tokens.
 
 #include <memory>
 #include <vector>
@@ -14,8 +14,8 @@ namespace aquafarm::test {
 inline constexpr std::int32_t kTokenSide = 24;
 inline constexpr Cell kTokenShip{11, 10};
 
-/// 24 × 24, with entities of all kinds and a disaster that moves west; everything is at least 8
-/// cells from the border, so that it can be moved and turned.
+/// A ranch of 24 × 24 cells with a disaster that moves west. All objects are at least 8 cells from
+/// the border, so that tests can move and turn the ranch.
 inline Scenario TokenScenario() {
   Scenario scenario;
   scenario.name = "open";
@@ -35,7 +35,8 @@ inline Scenario TokenScenario() {
   return scenario;
 }
 
-/// Returns the ranch with every cell moved by `place`, a symmetry of the map: Cell(Cell).
+/// Returns TokenScenario with every object at place(cell) instead of its cell.
+/// @param place symmetry of the map: Cell(Cell)
 template <typename Place>
 Scenario TurnedTokenScenario(const Place& place) {
   Scenario scenario = TokenScenario();
@@ -53,7 +54,7 @@ Scenario TurnedTokenScenario(const Place& place) {
   return scenario;
 }
 
-/// Returns the features of a ship at a cell, as the encoder orders them.
+/// Returns the features of ship 0 at a cell, in the order of the encoder.
 inline std::vector<float> TokensOf(const Scenario& scenario, Cell ship) {
   ValidateScenario(scenario);
   Farm farm(std::make_shared<const Scenario>(scenario));

@@ -11,8 +11,9 @@
 namespace aquafarm {
 
 /// Writes a netCDF file with one field along lat and lon.
+/// @param values [latitude, longitude]
 /// @param kind format of the file, such as NC_64BIT_DATA
-/// @param time_h time of the field, hours since 1970; nullopt: the file has no time
+/// @param time_h time of the field [hours since 1970]; nullopt: the file has no time
 inline void WriteSea(const std::string& path, const std::string& name,
                      const std::vector<double>& latitude, const std::vector<double>& longitude,
                      const std::vector<float>& values, int kind = 0,
@@ -42,8 +43,8 @@ inline void WriteSea(const std::string& path, const std::string& name,
   nc_close(file);
 }
 
-/// Writes a field of 1600 x 1600 values of 17 (10.2 MB), 0.001 degrees apart, starting at 30 N
-/// 122 E.
+/// Writes a field of 1600 x 1600 values (10.2 MB), all equal to 17. They are 0.001 degrees apart,
+/// from 30 N 122 E on.
 inline void WriteSeaOfTenMegabytes(const std::string& path) {
   constexpr std::size_t kSide = 1600;
   std::vector<double> latitude(kSide);

@@ -11,9 +11,9 @@
 
 namespace aquafarm_sim {
 
-/// Reads messages of other nodes. roscpp allocates as many entries as an array states before it
-/// looks for them, so that a message of a few bytes could take all memory. This stream first
-/// requires that so many bytes follow.
+/// Reads messages of other nodes. roscpp allocates an array with the length that a message states
+/// before it reads the entries, so that a message of a few bytes could exhaust the memory. This
+/// stream first checks that the message is long enough for the entries.
 struct CheckedStream : ros::serialization::IStream {
   using IStream::IStream;
 
@@ -34,7 +34,8 @@ struct CheckedStream : ros::serialization::IStream {
   }
 };
 
-/// Reads a request or response. @throws ros::serialization::StreamOverrunException if it is cut off
+/// Reads a request or response.
+/// @throws ros::serialization::StreamOverrunException if the message is too short
 template <typename Content>
 void ReadMessage(const ros::SerializedMessage& message, Content& content) {
   const auto header = static_cast<std::size_t>(message.message_start - message.buf.get());

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Topics and services of other nodes, whose messages are read through CheckedStream. Our nodes use
-/// these functions instead of ros::NodeHandle::subscribe and ros::ServiceClient::call.
+/// Subscribes to topics and calls services of other nodes, and reads their messages with
+/// CheckedStream. Our nodes use these functions instead of ros::NodeHandle::subscribe and
+/// ros::ServiceClient::call.
 
 #include <ros/node_handle.h>
 #include <ros/service_client.h>
@@ -26,8 +27,8 @@ class CheckedSubscription
   using ros::SubscriptionCallbackHelperT<
       const boost::shared_ptr<const Message>&>::SubscriptionCallbackHelperT;
 
-  /// @throws ros::serialization::StreamOverrunException if the message is cut off; roscpp then
-  ///         logs an error and drops it
+  /// @throws ros::serialization::StreamOverrunException if the message is too short; roscpp then
+  ///         logs an error and drops the message
   ros::VoidConstPtr deserialize(
       const ros::SubscriptionCallbackHelperDeserializeParams& params) override {
     auto message = boost::make_shared<Message>();
@@ -37,7 +38,8 @@ class CheckedSubscription
   }
 };
 
-/// Subscribes to a topic until the last copy of the result is destroyed.
+/// Subscribes to a topic. The subscription ends when the last copy of the result is destroyed.
+/// @param queue max number of queued messages
 template <typename Message>
 ros::Subscriber Subscribe(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue,
                           std::function<void(const boost::shared_ptr<const Message>&)> callback,
@@ -49,7 +51,7 @@ ros::Subscriber Subscribe(ros::NodeHandle& node, const std::string& topic, std::
   return node.subscribe(options);
 }
 
-/// Calls a service. @returns false if there was no response, or none that can be read
+/// Calls a service. @returns false if the call failed, or its response cannot be read
 template <typename Service>
 bool Call(ros::ServiceClient& client, Service& service) {
   ros::SerializedMessage response;

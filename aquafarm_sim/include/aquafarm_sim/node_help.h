@@ -11,14 +11,13 @@ namespace aquafarm_sim {
 struct NodeHelp {
   const char* package{};
   const char* node{};     ///< name of the program
-  const char* summary{};  ///< a sentence
-  const char*
-      launch{};  ///< a file of aquafarm_bringup that starts it; null if no launch file starts it
+  const char* summary{};  ///< what the node does, in a sentence
+  const char* launch{};   ///< launch file of aquafarm_bringup that starts it; null: there is none
 };
 
 /// Prints the help of a node if `-h` or `--help` is among its arguments. Call it before ros::init,
-/// so that it needs no master.
-/// @return whether it was printed; the program then ends with exit code 0
+/// so that the help needs no master.
+/// @returns true if the help was printed; main must then return 0
 inline bool PrintHelpIfRequested(int argc, char** argv, const NodeHelp& help) {
   const auto is_help_option = [](std::string_view word) {
     return word == "-h" || word == "--help";

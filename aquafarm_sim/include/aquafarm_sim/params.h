@@ -14,7 +14,8 @@
 
 namespace aquafarm_sim {
 
-/// Reads a node's private parameters. Every parameter is either used or refused.
+/// Reads a node's private parameters. RefuseOthers, called last, refuses all other parameters, so
+/// that a misspelled name is an error.
 class Params {
  public:
   explicit Params(const ros::NodeHandle& private_node) : node_(private_node) {}
@@ -24,7 +25,7 @@ class Params {
 
   void Text(const std::string& name, std::string& value) { Read(name, "a text", value); }
   void Flag(const std::string& name, bool& value) { Read(name, "true or false", value); }
-  /// A number with a fraction is refused; NodeHandle::getParam would round it.
+  /// Refuses a number with a fraction, which NodeHandle::getParam would round.
   void Int(const std::string& name, int min, int max, int& value) {
     double number = value;
     if (node_.getParam(name, number) && !(number == std::trunc(number))) {
@@ -37,7 +38,7 @@ class Params {
     if (Read(name, "a number", value)) CheckRange(name, value, min, max);
   }
 
-  /// Allows a parameter that other code reads, such as a library.
+  /// Allows a parameter that other code reads, for example a library.
   void Allow(const std::string& name) { known_.push_back(name); }
 
   /// @throws InputError that names an unknown parameter and lists the known ones
@@ -82,7 +83,7 @@ class Params {
 
   template <typename T>
   static void CheckRange(const std::string& name, T value, T min, T max) {
-    if (value >= min && value <= max) return;  // false for NaN
+    if (value >= min && value <= max) return;  // the condition is false for NaN
     throw aquafarm::InputError("~" + name + ": got " + ToText(value) + ", expected [" +
                                ToText(min) + ", " + ToText(max) + "]");
   }

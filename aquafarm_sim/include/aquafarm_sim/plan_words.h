@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Words for the fields of a rescue plan, the same in the panel and in rviz. Header only, so that a
-/// package needs no more than the messages.
+/// Texts for the fields of a rescue plan, which the panel and rviz share. The code is only in this
+/// header, so that a package that uses it depends only on the messages.
 
 #include <aquafarm_msgs/RescuePlan.h>
 
@@ -13,8 +13,9 @@
 
 namespace aquafarm_sim {
 
-/// Returns a probability for people: "> 99 %", "87 %", "< 1 %". A share of a sample is never
-/// certain. @param probability [0, 1]; NaN: "unknown"
+/// Returns a probability as text: "> 99 %", "87 %", "< 1 %". It never returns "100 %" or "0 %",
+/// because the probability is a share of a sample.
+/// @param probability in [0, 1]; NaN returns "unknown"
 inline std::string PercentText(double probability) {
   if (std::isnan(probability)) return "unknown";
   if (probability >= 0.995) return "> 99 %";
@@ -22,7 +23,8 @@ inline std::string PercentText(double probability) {
   return std::to_string(std::lround(100.0 * probability)) + " %";
 }
 
-/// Returns a local time, with day if it is not that of the plan's start: "14:05", "25 Jul 02:10".
+/// Returns a time as local time of the ranch, with the day unless it is the day on which the plan
+/// starts: "14:05", "25 Jul 02:10".
 /// @param time UTC
 inline std::string LocalText(const aquafarm_msgs::RescuePlan& plan, ros::Time time) {
   const auto local = [&plan](ros::Time utc) {
@@ -38,8 +40,8 @@ inline std::string LocalText(const aquafarm_msgs::RescuePlan& plan, ros::Time ti
   return {text, std::strftime(text, sizeof(text), same_day ? "%H:%M" : "%d %b %H:%M", &at)};
 }
 
-/// Returns what a ship without a route does. A ship at sea never gets the order to stay, and one
-/// with devices aboard has a route unless it reaches no port.
+/// Returns the instruction for a ship without a route: "stay" in a port, "return to port" at sea. A
+/// ship with devices aboard has no route only if it can reach no port, which the text then states.
 inline std::string WithoutRouteText(const aquafarm_msgs::RescuePlan& plan,
                                     const aquafarm_msgs::RescueShip& ship) {
   const bool in_port = std::any_of(plan.ports.begin(), plan.ports.end(), [&ship](const auto& port) {

@@ -27,7 +27,8 @@
 namespace aquafarm_sim {
 namespace {
 
-// Whether a definition has the text of this version or, with other comments, of an earlier one.
+// Returns whether a definition in a bag has the text of this version or of version 0.1.0, comments
+// included.
 bool IsSameText(const std::string& type, const std::string& in_bag,
                 const std::string& in_this_version) {
   // Checksums of the texts of version 0.1.0 (commit 859eafa).
@@ -70,10 +71,10 @@ Definitions OlderDefinitions(const rosbag::Bag& bag) {
   return definitions;
 }
 
-/// Simulates one episode of a bag in parallel with reading it.
+/// Simulates one episode of a bag while its messages are read.
 class Simulation {
  public:
-  /// @param definitions of the bag's messages
+  /// @param definitions definitions of an earlier version in the bag
   /// @throws InputError if the spec does not contain a valid scenario
   Simulation(const FarmSpec& spec, const Definitions& definitions)
       : definitions_(definitions),
@@ -84,11 +85,12 @@ class Simulation {
     farm_.Reset(spec.seed, spec.episode);
   }
 
-  /// Each Check returns the first difference; empty if there is none.
+  /// Each Check returns the first difference between a message and the simulation; empty if they
+  /// are equal.
   std::string Check(const FarmSpec& spec) const {
     const aquafarm::Encoder encoder(*scenario_);
     FarmSpec simulated;
-    // A bag of an older version has the old names of keys.
+    // A bag of an earlier version contains the old names of scenario keys.
     const bool old_names = spec.scenario_yaml == aquafarm::ToYaml(*scenario_, true);
     ToMsg(farm_, encoder, spec.farms, aquafarm::ToYaml(*scenario_, old_names), {}, simulated);
     simulated.header = spec.header;
@@ -124,7 +126,8 @@ class Simulation {
     return difference.empty() ? "" : "episode." + difference;
   }
 
-  /// Checks a grid of the current state. A grid of another time is skipped.
+  /// Compares the chart of the episode, or the risk of the current state. Skips a grid with another
+  /// stamp.
   std::string Check(const OccupancyGrid& grid, bool is_chart) const {
     OccupancyGrid simulated;
     if (is_chart) {
@@ -189,7 +192,7 @@ class Simulation {
   std::string Difference(Message got, Message& simulated) const {
     const auto found = definitions_.find(ros::message_traits::datatype<Message>());
     if (found == definitions_.end()) return FirstDifference(got, simulated);
-    DropAddedFields(found->second, got);  // where a bag has messages of two versions
+    DropAddedFields(found->second, got);  // a bag may contain messages of two versions
     DropAddedFields(found->second, simulated);
     return FirstDifference(got, simulated);
   }
@@ -262,11 +265,12 @@ class Checker {
     return true;
   }
 
-  /// Checks messages that belong to no state. @returns false if there is a difference
+  /// Checks that no states are missing for a summary. @returns false if there is a difference
   bool End() {
     if (!EndEpisode()) return false;
     for (const auto& [key, summary] : summaries_) {
-      // A live recording of many farms has the summaries of all farms, but the states of farm 0.
+      // A live recording of many farms contains the summaries of all farms, but only the states of
+      // farm 0.
       const bool of_other_farm = summary.farm != 0 && specs_.count(key) == 0 && check_.episodes > 0;
       if (of_other_farm && specs_.begin()->second.farms > 1) continue;
       check_.difference = "episode " + Number(key.second) + " of seed " + Number(key.first) +
@@ -384,7 +388,9 @@ BagCheck CheckBag(const std::string& path, const std::string& ns) {
       if (!checker.Take(message, message.getTopic() == chart)) return checker.check();
     }
     if (!checker.EndEpisode()) return checker.check();
-    if (checker.check().episodes == 0) throw InputError(path + ": no state follows its spec");
+    if (checker.check().episodes == 0) {
+      throw InputError(path + ": got no state of an episode with a spec, expected at least one");
+    }
     checker.End();
     return checker.check();
   });

@@ -30,7 +30,8 @@ namespace {
 // Iterates over the records of a bag or of a chunk (format 2.0, wiki.ros.org/Bags/Format).
 class BagRecords {
  public:
-  // @param whole suffix " of ..." for error messages if the bytes are only a part of the bag
+  // @param whole suffix of positions in error messages, " of ...", if the bytes are only a part of
+  //        the bag
   explicit BagRecords(std::string_view bytes, std::size_t position = 0, std::string whole = "")
       : bytes_(bytes), position_(position), whole_(std::move(whole)) {}
 
@@ -39,7 +40,7 @@ class BagRecords {
   std::string_view data() const { return data_; }
   bool AtEnd() const { return position_ == bytes_.size(); }
 
-  // Advances to the next record. @throws Damage if the bytes do not contain a whole record
+  // Advances to the next record. @throws Damage if the bytes end before the record does
   void Next() {
     begin_ = position_;
     fields_ = Fields(Take());
@@ -64,21 +65,23 @@ class BagRecords {
 
   std::string_view Text(std::string_view name) const {
     const auto found = fields_.find(name);
-    if (found == fields_.end()) throw Damage("no field " + std::string(name) + Where());
+    if (found == fields_.end())
+      throw Damage("a record without field " + std::string(name) + Where());
     return found->second;
   }
 
   template <typename Number>
   Number Get(std::string_view name) const {
     const std::string_view text = Text(name);
-    if (text.size() != sizeof(Number)) throw Damage("field " + std::string(name) + Where());
+    if (text.size() != sizeof(Number))
+      throw Damage("a wrong length of field " + std::string(name) + Where());
     return Read<Number>(text, 0);
   }
 
   bool Is(BagOp op) const { return Get<std::uint8_t>("op") == static_cast<std::uint8_t>(op); }
 
   void Expect(BagOp op) const {
-    if (!Is(op)) throw Damage("another kind of record" + Where());
+    if (!Is(op)) throw Damage("an unexpected kind of record" + Where());
   }
 
   // Reads a number at an offset. The bytes must contain it; this is not checked.
@@ -94,7 +97,7 @@ class BagRecords {
  private:
   std::string_view TakeFrom(std::string_view& bytes) const {
     constexpr std::size_t kLength = sizeof(std::uint32_t);
-    if (bytes.size() < kLength) throw Damage("no length" + Where());
+    if (bytes.size() < kLength) throw Damage("a length that is cut off" + Where());
     const std::size_t length = Read<std::uint32_t>(bytes, 0);
     if (length > bytes.size() - kLength) throw Damage("a length beyond its end" + Where());
     const std::string_view taken = bytes.substr(kLength, length);
@@ -134,10 +137,10 @@ struct ChunkMessages {
   }
 };
 
-// The connections by number. The value holds the topic and the fields of the connection header.
+// The connections by number. Each is a map of the topic and the fields of the connection header.
 using Connections = std::map<std::uint32_t, std::map<std::string, std::string>>;
 
-// Adds a connection. The connection records of the chunks and of the index must be equal.
+// Adds a connection. A bag contains its record in a chunk and in the index; both must be equal.
 // @throws Damage if a connection with the same number differs
 void TakeConnection(const BagRecords& record, Connections& connections) {
   std::map<std::string, std::string> fields{{"/topic", std::string(record.Text("topic"))}};
@@ -145,7 +148,8 @@ void TakeConnection(const BagRecords& record, Connections& connections) {
     fields[std::string(name)] = std::string(value);
   }
   const auto [known, is_new] = connections.insert({record.Get<std::uint32_t>("conn"), fields});
-  if (!is_new && known->second != fields) throw Damage("another connection" + record.Where());
+  if (!is_new && known->second != fields)
+    throw Damage("two different records of one connection" + record.Where());
 }
 
 // Reads the messages of a chunk.
@@ -159,9 +163,10 @@ ChunkMessages ReadChunk(const BagRecords& chunk, Connections& connections) {
   std::vector<std::uint8_t> room;
   std::string_view content = chunk.data();
   if (kind == "none") {
-    if (content.size() != size) throw Damage("a chunk's size" + chunk.Where());
+    if (content.size() != size) throw Damage("a chunk of another size than stated" + chunk.Where());
   } else {
-    if (kind != "lz4" && kind != "bz2") throw Damage("a chunk's compression" + chunk.Where());
+    if (kind != "lz4" && kind != "bz2")
+      throw Damage("a chunk of unknown compression" + chunk.Where());
     room.resize(size);
     std::vector<std::uint8_t> source(content.begin(), content.end());
     rosbag::ChunkedFile no_file;
@@ -192,7 +197,7 @@ void ReadIndex(const BagRecords& index, ChunkMessages& messages) {
   constexpr std::size_t kBytes = 12;  // per entry: time and offset
   const std::size_t count = index.Get<std::uint32_t>("count");
   if (index.Get<std::uint32_t>("ver") != 1 || index.data().size() != count * kBytes) {
-    throw Damage("an index" + index.Where());
+    throw Damage("an invalid index record" + index.Where());
   }
   for (std::size_t i = 0; i < count; ++i) {
     messages.entries.emplace_back(
@@ -201,8 +206,8 @@ void ReadIndex(const BagRecords& index, ChunkMessages& messages) {
   }
 }
 
-// Compares a chunk-info record with its chunk.
-// @param chunks chunks that no chunk-info record has described so far; the chunk is removed
+// Compares a chunk-info record with its chunk, and removes the chunk from `chunks`.
+// @param chunks chunks that no chunk-info record has described so far
 // @throws Damage if the chunk-info record disagrees with the chunk
 void CheckChunkInfo(const BagRecords& info, const Connections& connections,
                     std::map<std::uint64_t, ChunkMessages>& chunks) {
@@ -236,21 +241,24 @@ void CheckChunkInfo(const BagRecords& info, const Connections& connections,
   chunks.erase(chunk);
 }
 
-// Compares the index behind the header record with the content of the chunks.
+// Compares the index of the bag with the content of its chunks.
+// @param records is at the bag header record
+// @param bytes size of the bag
 // @throws Damage if they disagree
 void CheckIndex(BagRecords& records, std::size_t bytes) {
   const std::uint64_t index = records.Get<std::uint64_t>("index_pos");
   const std::uint32_t chunk_count = records.Get<std::uint32_t>("chunk_count");
   const std::uint32_t connection_count = records.Get<std::uint32_t>("conn_count");
   if (index == 0) return;  // the recording was killed
-  // No recording of a ranch is compressed this much. Reading such a bag would take hours.
+  // No recording of a ranch is compressed this much, and reading such a bag would take hours.
   const std::uint64_t max_bytes = (std::uint64_t{1} << 30U) + 4'000 * std::uint64_t{bytes};
   std::uint64_t all_bytes = 0;
   std::map<std::uint64_t, ChunkMessages> chunks;
   Connections connections;
   while (records.position() < index) {
     records.Next();
-    // 'rosbag reindex' leaves what a killed recorder wrote of its index in front of the new index.
+    // If a recorder was killed while it wrote the index, 'rosbag reindex' leaves that part of the
+    // index in front of the new one.
     if (records.Is(BagOp::kConnection)) TakeConnection(records, connections);
     if (records.Is(BagOp::kConnection) || records.Is(BagOp::kChunkInfo)) continue;
     records.Expect(BagOp::kChunk);
@@ -267,19 +275,21 @@ void CheckIndex(BagRecords& records, std::size_t bytes) {
     indexed.Sort();
     if (!(indexed == messages)) throw Damage("an index that is not of its chunk" + where);
   }
-  if (records.position() != index || chunks.size() != chunk_count) throw Damage("its index");
+  if (records.position() != index || chunks.size() != chunk_count)
+    throw Damage("its header disagrees with its chunks");
   for (std::uint32_t i = 0; i < connection_count; ++i) {
     records.Next();
     records.Expect(BagOp::kConnection);
     TakeConnection(records, connections);
   }
-  if (connections.size() != connection_count) throw Damage("its connections");
+  if (connections.size() != connection_count)
+    throw Damage("its header disagrees with its connections");
   for (std::uint32_t i = 0; i < chunk_count; ++i) {
     records.Next();
     records.Expect(BagOp::kChunkInfo);
     CheckChunkInfo(records, connections, chunks);
   }
-  if (!records.AtEnd()) throw Damage("more chunks than its index lists");
+  if (!records.AtEnd()) throw Damage("records after its index");
 }
 
 }  // namespace
@@ -292,7 +302,7 @@ void CheckStructure(const std::string& path) {
     throw aquafarm::InputError(path + ": no such file");
   }
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw rosbag::BagIOException("no regular file");  // opening another kind may wait forever
+    throw rosbag::BagIOException("no regular file");  // opening a pipe may wait forever
   }
   std::ifstream readable(path, std::ios::binary | std::ios::ate);
   if (!readable || readable.tellg() <= static_cast<std::streamoff>(kBegin.size())) return;

@@ -17,10 +17,10 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::string_view kBegin{"#ROSBAG V2.0\n"};
-// Length of the first record's fields and padding. Tools that append or reindex overwrite the
-// record in place, so it must be as long as rosbag's.
+// Length of the first record's fields and padding. Tools that append or reindex overwrite this
+// record in place, so it must be as long as the one that rosbag writes.
 constexpr std::size_t kHeaderBytes = 4096;
-constexpr std::size_t kMaxChunkBytes = std::size_t{256} << 20U;  // lz4 and readers count in int
+constexpr std::size_t kMaxChunkBytes = std::size_t{256} << 20U;  // lz4 and readers use int sizes
 constexpr int kLz4Block = 6;                                     // 1 MiB, as in rosbag
 
 // The format requires little-endian byte order. All machines that ROS supports are little-endian.
@@ -41,7 +41,7 @@ void Put(const ros::Time& time, Bytes& bytes) {
   Put(time.nsec, bytes);
 }
 
-/// Serializes fields, each preceded by its length, and all preceded by the total length.
+/// Serializes fields. Each field is preceded by its length, and all of them by the total length.
 class Fields {
  public:
   explicit Fields(Bytes& bytes) : bytes_(bytes), begin_(bytes.size()) {
@@ -187,7 +187,8 @@ void ChunkedBag::EndChunk() {
 void ChunkedBag::Close() {
   if (!chunk_.empty()) EndChunk();
   const auto position = static_cast<std::uint64_t>(file_.tellp());
-  // In one call: 'rosbag reindex' loses every chunk if only the first of these records are written.
+  // All records in one write: if only the first of them are in the file, 'rosbag reindex' loses
+  // every chunk.
   Bytes index;
   for (const auto& [topic, connection] : connections_) Put(connection.record, index);
   Put(chunk_infos_, index);

@@ -27,10 +27,10 @@ constexpr std::int32_t kRiskPeriod = 10;  // steps
 constexpr std::int32_t kMoment_ns = 1000;
 
 constexpr const char* kPrefix = "episode_";
-// Not ".active": rosbag record gives its own bags that name and holds no lock on them.
+// Not ".active", the name that rosbag record gives to its partial bags, on which it holds no lock.
 constexpr const char* kPartial = ".partial";
 
-/// Holds a lock on a file; the kernel releases it if the process is killed.
+/// Holds a lock on a file. The kernel releases the lock if the process is killed.
 class FileLock {
  public:
   FileLock(const std::string& path, int open_flags)
@@ -107,7 +107,8 @@ class Messages {
     context_.stamp = stamp;
   }
 
-  // Readers get messages of equal time in any order, so each message is kMoment_ns after the last.
+  // Readers receive messages of equal time in any order, so the messages of a step are kMoment_ns
+  // apart.
   template <typename Message>
   void Write(const char* name, const Message& message) {
     bag_.Write(format_.ns + name, context_.stamp + ros::Duration(0, kMoment_ns * order_++),
@@ -134,7 +135,7 @@ void Play(Farm& farm, const EpisodeLog& log, Messages& messages) {
   if (log.first_step == 0) {
     messages.State(farm);
   } else {
-    farm.Load(log.changes.front().state);  // the first change is then at the farm's step
+    farm.Load(log.changes.front().state);  // sets the farm's step to that of the first change
   }
   take_changes();
   const std::size_t agents = farm.ships().size();
@@ -147,7 +148,7 @@ void Play(Farm& farm, const EpisodeLog& log, Messages& messages) {
       farm.record().episode_return != log.record.episode_return ||
       farm.record().reason != log.record.reason) {
     throw ReplayError("episode " + std::to_string(log.episode) +
-                      ": its actions do not give its result again");
+                      ": its actions, when repeated, do not give the same result");
   }
 }
 

@@ -17,11 +17,11 @@
 namespace aquafarm_sim {
 namespace {
 
-/// Gives the stepping threads priority over this thread. SCHED_IDLE is not used: the thread would
-/// starve next to other programs, and a user without privileges cannot leave SCHED_IDLE when the
-/// farms have to wait.
+/// Lowers the priority of the calling thread, so that the stepping threads take precedence.
+/// SCHED_IDLE is not used for two reasons: the thread would starve next to other programs; and the
+/// farms may have to wait for it, but without privileges a thread cannot leave SCHED_IDLE.
 void StepBack() {
-  // As in sched_setattr(2), whose header conflicts with sched.h.
+  // The struct of sched_setattr(2); the kernel header that defines it conflicts with sched.h.
   struct {
     std::uint32_t size{48};
     std::uint32_t policy{SCHED_OTHER};
@@ -198,7 +198,8 @@ void EpisodeRecorder::Run() {
 void EpisodeRecorder::Write(const EpisodeLog& log) {
   const std::string name = BagName(log);
   std::string path = folder_ + "/" + name;
-  // A file of the same name belongs to another farm, a load_state or an earlier run.
+  // A bag of this name exists if an earlier run, another farm or an episode before load_state had
+  // the same episode number, seed and return.
   for (int i = 2; std::filesystem::exists(path); ++i) {
     path = folder_ + "/" + name.substr(0, name.size() - 4) + "_" + std::to_string(i) + ".bag";
   }

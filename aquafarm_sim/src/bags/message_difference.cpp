@@ -13,8 +13,8 @@ struct Line {
   std::string value;
 };
 
-// roscpp prints "name: value", indented by two spaces per level. An array entry repeats the name of
-// its array.
+// Parses the next line of a printed message. roscpp prints "name: value", indented by two spaces
+// per level; the line of an array entry is "name[index]: value".
 Line ReadLine(std::istringstream& text) {
   std::string line;
   std::getline(text, line);

@@ -19,8 +19,9 @@ namespace aquafarm_sim {
 namespace internal {
 namespace {
 
-// Returns the translator from a definition of an earlier version to that of this one, or back.
-// @throws TranslationError if the definition is not one of an earlier version
+// Returns the translator from the definition of an earlier version to that of this version, or in
+// the opposite direction if `is_back`.
+// @throws TranslationError if the definition cannot be parsed or a field has another type
 const MessageTranslator& TranslatorOf(const MessageType& type, const std::string& definition,
                                       bool is_back) {
   struct Key {

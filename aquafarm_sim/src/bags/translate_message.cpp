@@ -56,7 +56,8 @@ std::uint32_t Length(const Bytes& in, std::size_t& at) {
   return length;
 }
 
-// Reads the number of entries of a field. An entry without fields cannot occur in our messages.
+// Reads the number of entries of a field. Every entry has at least one byte, because all of our
+// messages have fields.
 std::uint64_t CountOf(const Field& field, const Bytes& in, std::size_t& at) {
   if (field.count == MessageDefinition::kScalar) return 1;
   const std::uint64_t count = field.count == MessageDefinition::kAnyLength
@@ -114,7 +115,8 @@ void CopyField(const Field& from, const Field& to, const Bytes& in, std::size_t 
   }
 }
 
-// Copies a message whose fields are found by name. @param at its position in `in`, then its end
+// Copies a message; fields are matched by name.
+// @param at position of the message in `in`; receives the position of its end
 void Copy(const Type& from, const Type& to, const Bytes& in, std::size_t& at, Bytes& out) {
   std::map<std::string_view, std::size_t> begins;
   for (const Field& field : from.fields) {

@@ -44,7 +44,7 @@ void FillShip(const aquafarm::Farm& farm, std::int32_t id, aquafarm_msgs::ShipSt
   message.legal_actions = farm.LegalActions(id);
 }
 
-/// Fills a ship of which at most the position is known.
+/// Fills another ship in an observation in partial view.
 void FillOtherShip(const aquafarm::Farm& farm, const aquafarm::KnownShip& known,
                    aquafarm_msgs::ShipState& message) {
   const aquafarm::Ship& ship = farm.ships()[static_cast<std::size_t>(known.id)];
@@ -147,7 +147,7 @@ void FillPlaces(const aquafarm::Farm& farm, aquafarm_msgs::FarmSpec& message) {
   }
 }
 
-// @param weight of energy
+// @param weight weight of energy: reward points that are subtracted per kWh
 void FillRewards(const aquafarm::RewardSpec& rewards, double weight,
                  aquafarm_msgs::RewardTable& message) {
   aquafarm::VisitRewardWeights([](const aquafarm::RewardKey&, float from, float& to) { to = from; },

@@ -12,10 +12,10 @@ namespace aquafarm_sim {
 namespace {
 
 constexpr std::size_t kMaxFixes = 10000;
-constexpr std::size_t kMaxRings = 8;  // max number of wind radii in any source
+constexpr std::size_t kMaxRings = 8;  // per fix; no source contains more
 
 void CheckNumber(const std::string& name, double value, double low, double high) {
-  if (value >= low && value <= high) return;  // false for NaN
+  if (value >= low && value <= high) return;  // the condition is false for NaN
   char text[120];
   std::snprintf(text, sizeof(text), ": got %g, expected a number in [%g, %g]", value, low, high);
   throw aquafarm::InputError(name + text);

@@ -30,7 +30,7 @@ double ResidentMebibytes() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
 }
 
-// Returns the ships that were absent between two reports only.
+// Returns the ships that became absent after the report `before` and have returned since then.
 std::vector<std::int32_t> ReturnedShips(const ServerCounters& before, const ServerCounters& now) {
   std::vector<std::int32_t> ships;
   for (std::size_t i = 0; i < now.absences.size(); ++i) {
@@ -70,11 +70,12 @@ void FarmDiagnostics::Fill(diagnostic_updater::DiagnosticStatusWrapper& status) 
   const std::vector<std::int32_t> returned = ReturnedShips(seen_, now);
   if (!returned.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
-                   "held without a command in time, and returned: ship " + Joined(returned));
+                   "late ships that have returned: " + Joined(returned));
   }
   if (!now.absent.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
-                   "not waiting until their next command: ship " + Joined(now.absent));
+                   "late ships that the farm does not wait for until their next command: " +
+                       Joined(now.absent));
   }
   const std::string lost = recorder_ == nullptr ? "" : recorder_->fault();
   if (!lost.empty()) {
@@ -86,7 +87,8 @@ void FarmDiagnostics::Fill(diagnostic_updater::DiagnosticStatusWrapper& status) 
                         "something was not published: " + now.dropped_reason);
   }
   if (!now.fault.empty()) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, "paused itself: " + now.fault);
+    status.summary(diagnostic_msgs::DiagnosticStatus::ERROR,
+                   "the farm has paused itself: " + now.fault);
   }
   status.add("version", aquafarm::kVersion);
   status.add("farm steps per second", steps_per_s);

@@ -16,21 +16,21 @@ using aquafarm::MutexLock;
 
 constexpr std::uint32_t kQueue = 10;
 constexpr std::uint32_t kRecordQueue = 10000;
-// rosbag record queues 100 messages per topic while it writes a chunk and drops further ones.
+// While rosbag record writes a chunk, it queues at most 100 messages per topic and drops others.
 constexpr std::chrono::milliseconds kRecordPeriod{2};
-// After it, a new subscriber gets the current state with all others.
+// Max wait for the queue before a message is sent to a new subscriber alone.
 constexpr std::chrono::milliseconds kSendLimit{1000};
 constexpr std::size_t kMaxSummaries = 1000;
-// A recorder connects to its topics one after the other. It is ready if no connection is added for
-// this time.
+// A recorder connects to its topics one after the other. It counts as ready if the number of
+// connections has not changed for this time.
 const ros::WallDuration kRecorderGrace(0.5);
 
 }  // namespace
 
-// A late subscriber gets the last message immediately, but after those that are still being sent,
-// so that the time of a recording does not go back. The topic is not latched: a latched message may
-// come before those, and it is marked in bags, where a slice without its start would show an
-// outdated state.
+// A new subscriber immediately receives the last message. It is sent after the messages that are
+// still in the queue, so that the time in a recording never decreases. The topic is not latched for
+// two reasons: roscpp sends a latched message before the queued ones; and bags mark latched
+// messages, so that a player that starts in the middle of a bag would first send an outdated state.
 template <typename Message>
 void FarmPublisher::Advertise(ros::NodeHandle& node, const std::string& name,
                               Topic<Message>& topic) {
@@ -65,7 +65,7 @@ FarmPublisher::FarmPublisher(const ros::NodeHandle& node_handle, const SimParams
   Advertise(node, names::kState, state_);
   Advertise(node, names::kRisk, risk_);
   for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {
-    // A ship's driver that subscribes late receives the current observation immediately.
+    // A driver that subscribes receives the current observation immediately.
     const ros::SubscriberStatusCallback greet =
         [this, ship](const ros::SingleSubscriberPublisher& subscriber) {
           ranch_.Inspect([&](const ServerView& view) {
@@ -154,12 +154,12 @@ void FarmPublisher::OnPresence(const std::vector<std::int32_t>& ships, bool is_p
   std::string names;
   for (const std::int32_t ship : ships) names += (names.empty() ? "" : ", ") + std::to_string(ship);
   if (is_present) {
-    ROS_WARN("back: ship %s", names.c_str());
+    ROS_WARN("returned: ship %s", names.c_str());
     return;
   }
   ROS_WARN(
       "barrier timed out: no command from ship %s within ~barrier_timeout_s, %g s; it holds until "
-      "it returns",
+      "its next command",
       names.c_str(), params_.ranch.barrier_timeout_s);
 }
 
@@ -206,7 +206,7 @@ void FarmPublisher::Fill(const ServerView& view) {
   FillFrames(view);
 }
 
-// A node that drives a ship by its observations must receive every step; other nodes need not.
+// A node that drives a ship by its observations must receive the observation of every step.
 void FarmPublisher::PublishObservations(const ServerView& view) {
   const MutexLock lock(observation_mutex_);
   for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {
@@ -278,8 +278,8 @@ void FarmPublisher::Send() {
   frames_.sendTransform(frame_messages_);
 }
 
-// Sea layers are constant. They are sent again at each episode's start so that a slice of a bag
-// from there contains them.
+// Sea layers are constant. They are sent again at the start of each episode, so that a bag that is
+// cut there contains them.
 void FarmPublisher::SendSeas() {
   const aquafarm::Scenario& scenario = ranch_.scenario();
   for (std::size_t i = 0; i < seas_.size(); ++i) {

@@ -37,8 +37,8 @@ std::shared_ptr<const aquafarm::Scenario> Load(const std::string& scenario) {
       aquafarm::LoadScenario(ResolveScenario(scenario, ScenarioFolder())));
 }
 
-/// Advertises a service with the callback `handle`, which gets the request, the response and the
-/// name of the calling node. Its exceptions are logged and fail the call.
+/// Advertises a service with the callback `handle`, which receives the request, the response and
+/// the name of the calling node. An exception of the callback is logged, and the call fails.
 template <typename Service, typename Handle>
 ros::ServiceServer ServeCaller(ros::NodeHandle& node, const std::string& name, Handle handle) {
   const auto callback = [name, handle](typename Service::Request& request,
@@ -97,7 +97,7 @@ SimNode::SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_nod
   AdvertiseFarm();
   diagnostics_ =
       std::make_unique<FarmDiagnostics>(node_, private_node, ranch_, publisher_, recorder_.get());
-  // At most one command per ship waits, so one thread is always free.
+  // At most one command per ship waits, so one thread is always free. A single ship never waits.
   const std::int32_t threads = agents == 1 ? 1 : agents + 1;
   ship_spinner_ =
       std::make_unique<ros::AsyncSpinner>(static_cast<std::uint32_t>(threads), &ship_queue_);
@@ -182,7 +182,8 @@ void SimNode::AdvertiseFarm() {
       node_, names::kSetDisaster, [this](const auto& q, auto& a) { ranch_.SetDisaster(q, a); }));
 }
 
-// Ctrl-C in a launch reaches trainer and farm together. A running trainer gets time to save.
+// Ctrl-C in a launch stops trainer and sim node at the same time. A running trainer gets time to
+// save.
 void SimNode::LetClientsSave() {
   const ros::WallTime start = ros::WallTime::now();
   const auto elapsed_s = [&start] { return (ros::WallTime::now() - start).toSec(); };
@@ -195,7 +196,8 @@ void SimNode::LetClientsSave() {
 }
 
 int RunSimNode() {
-  // rosconsole ends with the last node handle, so refusals are printed to stderr directly.
+  // rosconsole stops with the last node handle, so errors of the start are printed to stderr
+  // directly.
   try {
     SimNode node(ros::NodeHandle(), ros::NodeHandle("~"));
     ros::AsyncSpinner spinner(kCommonThreads);

@@ -20,7 +20,7 @@ std::string Numbers(std::uint64_t episode, std::uint64_t step) {
   return "episode " + std::to_string(episode) + " step " + std::to_string(step);
 }
 
-// The result of a command that has not stepped the farm.
+// Clears the values of a step, for a command that has not stepped the farm.
 void ClearReward(CommandResult& result) {
   result.reward = 0.0F;
   result.terms = aquafarm_msgs::RewardTerms();
@@ -138,8 +138,8 @@ aquafarm_msgs::CommandResult FarmServer::Refuse(std::int32_t ship, std::uint8_t 
   return result;
 }
 
-// A paced farm whose episode has ended starts the next episode at its next tick. Until then there
-// is not a step that a command could address.
+// A paced farm whose episode has ended starts the next episode at its next tick. Until then a
+// command has no step in which it could be executed.
 aquafarm_msgs::CommandResult FarmServer::AcceptPaced(const ShipCommand& command) {
   if (batch_->farm(0).over()) {
     return Refuse(command.ship, Outcome::EPISODE_OVER,
@@ -206,7 +206,7 @@ aquafarm_msgs::CommandResult FarmServer::RefuseAfter(CommandBarrier::WaitEnd end
                     std::to_string(options_.barrier_timeout_s) + " s: " + missing);
 }
 
-// A ship whose node has died or is late holds. The farm ignores it until its next command.
+// Missing ships hold in this step. Lockstep does not wait for them until their next command.
 void FarmServer::MarkMissingAbsent() {
   const std::vector<std::int32_t> missing = barrier_.MissingShips(batch_->farm(0));
   for (const std::int32_t ship : missing) {
@@ -224,7 +224,8 @@ std::optional<FarmServer::Refusal> FarmServer::CheckHolder(std::int32_t ship,
                  "ship " + std::to_string(ship) + " is held by " + claims_.holder(ship)};
 }
 
-// A client that may command a ship is present if it sends a command, even a late one.
+// Marks the client that sent a command as present, even if the command is late. Returns a refusal
+// if another node holds the ship.
 std::optional<FarmServer::Refusal> FarmServer::MarkPresent(const ShipCommand& command) {
   if (command.ship < 0 || command.ship >= agents_) return std::nullopt;
   if (auto refusal = CheckHolder(command.ship, command.caller)) return refusal;
@@ -269,7 +270,7 @@ void FarmServer::StepPublishedFarm() {
   barrier_.Wake();  // last: a woken thread needs the lock
 }
 
-// Waiting calls return STALE. The last answers go as well, because step numbers may repeat.
+// Waiting calls return STALE. The last answers are forgotten, because step numbers may repeat.
 void FarmServer::DropCommands() {
   barrier_.Drop();
   barrier_.ForgetAnswers();
@@ -348,7 +349,7 @@ void FarmServer::Advance() {
   clock_.Advance();
 }
 
-// The start of an episode has a separate tick, so that its stamp differs from that of the last end.
+// The start of an episode advances the clock, so that its stamp differs from that of the last step.
 void FarmServer::EpisodeBegan(bool by_joint_step) {
   ++episode_count_;
   Advance();

@@ -95,7 +95,8 @@ std::optional<FarmServer::Refusal> FarmServer::Check(const aquafarm_msgs::Step::
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
     if (auto refusal = CheckHolder(ship, caller)) return refusal;
   }
-  // Checked last: a client that waits for the farms then gets STALE only once, when they are free.
+  // Checked after pauses and claims: a client that retries until the farms are free gets STALE only
+  // then.
   if (request.state_id != 0 && request.state_id != state_id_) {
     return Refusal{Outcome::STALE,
                    "state_id: got " + std::to_string(request.state_id) + ", the farms are at " +
@@ -251,7 +252,8 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
   resets_.Complete(key);
 }
 
-// If a layout cannot be generated, the current episodes must stay unchanged.
+// Generates new layouts in a new batch: if one cannot be generated, the current episodes stay
+// unchanged.
 void FarmServer::StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first,
                                std::uint32_t stride) {
   if (farms != batch_->farms() || scenario_->layout == aquafarm::LayoutMode::kPerEpisode) {
@@ -383,8 +385,8 @@ void FarmServer::IssueForecast(const aquafarm_msgs::SetDisaster::Request& reques
           aquafarm::ToDisaster(FromMsg(request.storm), *scenario_, request.id, farm.step());
       if (storm.forecasts.empty()) {
         throw aquafarm::InputError(
-            "storm.forecast: got none after the last position, expected "
-            "positions: forecast_only is set");
+            "storm.forecast: got no positions after the last fix, expected at least "
+            "one: forecast_only is set");
       }
       issued.push_back(aquafarm::FitForecast(farm, request.id, storm));
     } else if (request.forecasts.size() == 1) {
@@ -445,7 +447,8 @@ void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
                       response);
       }
     }
-    // All differences between farms are checked, so a disaster that the first accepts, all accept.
+    // The checks above cover all differences between farms: if the first farm accepts the disaster,
+    // all farms do.
     for (std::int32_t i = first; i < end; ++i) {
       if (left(i) <= 0) continue;  // the storm has ended for this farm
       aquafarm::DisasterSpec fitted = spec;

@@ -5,8 +5,9 @@
 
 namespace aquafarm::agents {
 
+/// Seconds of an hour.
 inline constexpr std::int64_t kHour_s = 3600;
-/// Half the width of a 95 % interval of a normal distribution, in standard deviations.
+/// Half the width of the central 95 % interval of a normal distribution, in standard deviations.
 inline constexpr double kNormal95 = 1.96;
 
 }  // namespace aquafarm::agents

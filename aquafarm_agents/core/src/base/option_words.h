@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Helpers for reading options of learners. The value before is the default.
+/// Functions that read one option of a learner. The default is the value that the last parameter,
+/// or `fallback`, has before the call.
 
 #include <array>
 #include <string>
@@ -13,7 +14,8 @@
 
 namespace aquafarm::agents {
 
-/// Reads one of `words`, which are in the order of Kind.
+/// Reads an option whose value is one of `words`.
+/// @param words one for each value of the enum Kind, in its order
 /// @throws InputError "loss: got 'l1', expected one of: huber, mse"
 template <typename Kind, std::size_t size>
 Kind ReadWord(OptionReader& reader, const std::string& key, Kind fallback,
@@ -27,8 +29,9 @@ Kind ReadWord(OptionReader& reader, const std::string& key, Kind fallback,
   throw InputError(key + ": got '" + text + "', expected one of: " + Join(names));
 }
 
-/// Reads a whole number in [min, max]; `value` is also the default.
-/// @throws InputError "batch_size: got 2.5, expected a whole number"
+/// Reads a whole number in [min, max].
+/// @throws InputError if the value is out of range, or "batch_size: got 2.5, expected a whole
+///   number"
 template <typename Whole>
 void ReadWhole(OptionReader& reader, const std::string& key, double min, double max, Whole& value) {
   const double got = reader.Number(key, static_cast<double>(value), min, max);
@@ -37,21 +40,25 @@ void ReadWhole(OptionReader& reader, const std::string& key, double min, double 
   throw InputError(key + ": got " + FormatNumber(got) + ", expected a whole number");
 }
 
+/// Reads a number in [min, max]. @throws InputError as OptionReader::Number
 inline void ReadNumber(OptionReader& reader, const std::string& key, double min, double max,
                        double& value) {
   value = reader.Number(key, value, min, max);
 }
 
+/// Reads true or false. @throws InputError as OptionReader::Flag
 inline void ReadFlag(OptionReader& reader, const std::string& key, bool& value) {
   value = reader.Flag(key, value);
 }
 
+/// Reads a schedule of numbers in [min, max]. @throws InputError as ParseSchedule
 inline void ReadSchedule(OptionReader& reader, const std::string& key, double min, double max,
                          Schedule& value) {
   value = reader.GetSchedule(key, value, min, max);
 }
 
-/// Reads the device: auto, cpu or cuda. @throws InputError
+/// Reads the option `device`: auto (the default), cpu or cuda.
+/// @throws InputError if it has another value
 inline std::string ReadDevice(OptionReader& reader) {
   constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
   enum class Device : std::uint8_t { kAuto, kCpu, kCuda };

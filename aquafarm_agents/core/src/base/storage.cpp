@@ -19,7 +19,8 @@ namespace {
 
 constexpr char kTemporary[] = ".tmp";
 
-// The rename must be on disk before the caller removes older files.
+// Syncs the folder of a renamed file. The rename must be on disk before the caller removes older
+// files. Returns false on error.
 bool SyncFolderOf(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const int handle =

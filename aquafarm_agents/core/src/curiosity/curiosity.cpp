@@ -11,7 +11,7 @@ namespace aquafarm::agents {
 namespace {
 
 constexpr float kMeanShare = 0.01F;    // weight of a step in the moving average of the error
-constexpr float kMaxIntrinsic = 5.0F;  // in mean intrinsic rewards: bounds outliers
+constexpr float kMaxIntrinsic = 5.0F;  // of a step, in multiples of the mean
 
 class CuriousLearner final : public Learner {
  public:
@@ -44,12 +44,12 @@ class CuriousLearner final : public Learner {
   const Schedule weight_;
   CuriosityModule module_;
   StepResults augmented_;                 // results with the intrinsic reward added
-  std::vector<float> seen_;               // [N, S, F] at the last step; empty before it
-  std::vector<std::uint8_t> taken_;       // [N, S] there
-  std::vector<std::uint8_t> was_active_;  // [N, S] there
-  float mean_error_{};                    // moving average; 0 before the first step
-  std::uint64_t steps_{};                 // of all farms
-  // Scratch: the transitions of this step.
+  std::vector<float> seen_;               // [N, S, F] at the last step; empty before the first
+  std::vector<std::uint8_t> taken_;       // [N, S] at the last step
+  std::vector<std::uint8_t> was_active_;  // [N, S] at the last step
+  float mean_error_{};                    // moving average of e; 0 before the first transition
+  std::uint64_t steps_{};                 // farm steps so far
+  // Scratch memory: the transitions of this step.
   std::vector<float> from_;
   std::vector<float> to_;
   std::vector<std::int64_t> actions_;

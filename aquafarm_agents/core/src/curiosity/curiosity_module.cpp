@@ -14,10 +14,10 @@ namespace nn = torch::nn;
 
 constexpr std::int64_t kHiddenSize = 64;
 constexpr std::int64_t kSize = 32;     // length of φ
-constexpr double kForwardShare = 0.2;  // β of the paper
+constexpr double kForwardShare = 0.2;  // β of Pathak et al. 2017
 constexpr double kLearningRate = 1e-3;
 constexpr double kGradientLimit = 10.0;
-constexpr std::size_t kBatch = 64;  // transitions per update
+constexpr std::size_t kBatch = 64;  // min number of transitions per update
 
 nn::Sequential TwoLayers(std::int64_t inputs, std::int64_t outputs) {
   return nn::Sequential(nn::Linear(inputs, kHiddenSize), nn::ReLU(),
@@ -82,10 +82,10 @@ void CuriosityModule::Learn(std::uint64_t farm_steps) {
   const torch::Tensor loss =
       output.inverse * (1.0 - kForwardShare) + output.error.mean() * kForwardShare;
   if (!std::isfinite(loss.item<float>()) || !adam_.Step(loss, kLearningRate, kGradientLimit)) {
-    throw LearnerFailed("curiosity: its loss, or the gradient of it, is not finite after " +
+    throw LearnerFailed("curiosity: its loss or gradient is not finite after " +
                         std::to_string(farm_steps) + " farm steps, on the last " +
                         std::to_string(count) + " transitions of seed " + std::to_string(seed_) +
-                        "; expected a number");
+                        "; expected a number: train without icm");
   }
   from_.clear();
   to_.clear();

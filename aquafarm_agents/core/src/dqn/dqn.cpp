@@ -62,19 +62,19 @@ class GreedyDqnPolicy final : public Policy {
   std::unique_ptr<ValueNetwork<Scalar>> computed_;
 };
 
-/// A minibatch of B samples for the network. A sample contains the transition of one agent, or of
-/// all agents of a farm: R rows in total.
+/// A minibatch of B samples for the network. A sample is a transition of one agent, or of all
+/// agents of a farm (VDN). Each agent of each sample has one row; R is the number of rows.
 template <typename Scalar>
 struct Batch {
-  std::vector<Scalar> seen;  // [2, R, …] observations before and after the transition
-  std::vector<std::uint8_t> actions;
-  std::vector<float> present;           // [R] 1 if the agent is active, 0 if it finished before
+  std::vector<Scalar> seen;             // [2, R, …] observations before and after the transition
+  std::vector<std::uint8_t> actions;    // [R]
+  std::vector<float> present;           // [R] 1 if the agent is active, 0 if it was done before
   std::vector<float> rewards;           // [B]
-  std::vector<float> discounts;         // [R] of the value after the transition
-  std::vector<ActionMask> allowed;      // [R] among the next actions
-  std::vector<ActionMask> allowed_now;  // [R] among the actions taken
+  std::vector<float> discounts;         // [R] factor of the value after the transition
+  std::vector<ActionMask> allowed;      // [R] actions allowed after the transition
+  std::vector<ActionMask> allowed_now;  // [R] actions allowed before the transition
   std::vector<float> weights;           // [B]
-  std::vector<std::size_t> drawn;       // [B] row in the replay buffer
+  std::vector<std::size_t> drawn;       // [B] row of the sample in the replay buffer
   std::vector<float> predicted;         // [B]
   std::vector<float> targets;           // [B]
   std::vector<float> slopes;            // [B] d loss / d predicted
@@ -186,7 +186,7 @@ void DqnLearner<Scalar>::DrawAlone(std::size_t i, const TransitionIndex& moment)
   Fill(i, one.from, one.to, one.discount);
 }
 
-// The value of an agent that is done is excluded from the team's value.
+// The team's value does not include the values of agents that are done.
 template <typename Scalar>
 void DqnLearner<Scalar>::DrawJoint(std::size_t i, const TransitionIndex& moment) {
   const std::size_t first = moment.slot;
@@ -194,7 +194,7 @@ void DqnLearner<Scalar>::DrawJoint(std::size_t i, const TransitionIndex& moment)
       replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
                       static_cast<float>(options_.gamma), team_rewards_.data());
   const float sum = std::accumulate(team_rewards_.begin(), team_rewards_.end(), 0.0F);
-  // A team reward is repeated for each agent.
+  // With a team reward, each agent's reward is already the sum over the team.
   const float reward = spec_.team_reward ? sum / static_cast<float>(group()) : sum;
   batch_.rewards[i] = reward * static_cast<float>(options_.reward_scale);
   const std::size_t from = replay_.Row(moment.age, first);
@@ -217,8 +217,8 @@ void DqnLearner<Scalar>::Fill(std::size_t k, std::size_t from, std::size_t to, f
   batch_.allowed_now[k] = LegalMask(replay_.legal(from), replay_.observation(from), options_);
 }
 
-// Predictions and targets (Eq. 15). Those of a team are the sums of its agents' values (value
-// decomposition, Sunehag et al. 2018).
+// Computes predictions and targets (Eq. 15). With VDN, each is a sum over the agents of a farm
+// (Sunehag et al. 2018).
 template <typename Scalar>
 void DqnLearner<Scalar>::Evaluate() {
   const Scalar* const to = batch_.seen.data() + rows() * observation_size_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What DQN and LSTM-DQN share: networks of action values, exploration around their greedy actions,
-/// and the optimizer.
+/// Base class of DQN and LSTM-DQN: networks of action values, their optimizer, and the choice of
+/// exploratory actions.
 
 #include <functional>
 #include <memory>
@@ -17,6 +17,8 @@
 
 namespace aquafarm::agents {
 
+/// @tparam Scalar type of an observation's values: float features, or bytes of planes
+/// @tparam Network the network module, QNetwork or RecurrentNetwork
 template <typename Scalar, typename Network>
 class QLearner : public ReplayLearner<Scalar> {
  public:
@@ -26,15 +28,15 @@ class QLearner : public ReplayLearner<Scalar> {
   }
 
  protected:
-  /// Sizes of a sample in the replay.
+  /// Sizes of observations and samples in the replay.
   struct Sample {
     std::size_t observation_size{};
     std::size_t recurrent_size{};  ///< of the recurrent state
-    std::size_t steps{};           ///< number of later time steps that it needs
-    std::size_t group{};           ///< number of agents; see ReplaySampler
+    std::size_t steps{};           ///< number of later time steps that a sample needs
+    std::size_t group{};           ///< number of agents of a sample; see ReplaySampler
   };
 
-  /// @param make makes a network with the weights of the seed
+  /// @param make makes a network; its initial weights are drawn from `seed`
   QLearner(const EnvironmentSpec& spec, std::uint64_t seed, const DeepOptions& options,
            std::string resolved, const std::function<std::shared_ptr<Network>()>& make,
            const Sample& sample)
@@ -54,7 +56,7 @@ class QLearner : public ReplayLearner<Scalar> {
         optimizer_(options, *online_, *target_, *average_, this->device_),
         repetitions_(spec, options.repetition_penalty * options.reward_scale) {}
 
-  /// Values by which the agents act: [slots, kActionCount].
+  /// Returns the action values by which the agents act, [slots, kActionCount].
   virtual const float* ActingValues(const StepResults& results) = 0;
 
   void CountSteps(std::uint64_t farm_steps) final { optimizer_.Count(farm_steps, this->progress_); }
@@ -77,7 +79,8 @@ class QLearner : public ReplayLearner<Scalar> {
     repetitions_.Save(checkpoint);
     checkpoint.SetArray("chance", std::vector<std::uint64_t>{this->rng_.position()});
   }
-  /// Fills the slopes of all values [count, kActionCount] from those of the taken actions.
+  /// Sets value_slopes_ [count, kActionCount] to `slopes` [count] at the actions taken, and to 0 at
+  /// all others.
   void SpreadSlopes(const std::vector<float>& slopes, const std::vector<std::uint8_t>& actions) {
     value_slopes_.assign(slopes.size() * kActionCount, 0.0F);
     for (std::size_t i = 0; i < slopes.size(); ++i) {
@@ -96,7 +99,7 @@ class QLearner : public ReplayLearner<Scalar> {
   const std::size_t observation_size_;
   std::shared_ptr<Network> online_;
   std::shared_ptr<Network> target_;
-  std::shared_ptr<Network> average_;  // of its weights; online_ without
+  std::shared_ptr<Network> average_;  // moving average of online_; online_ itself if ema_rate is 0
   ValueOptimizer optimizer_;
   std::vector<float> value_slopes_;  // d loss / d Q
   RepetitionPenalty repetitions_;

@@ -118,7 +118,7 @@ class RecurrentDqnLearner final : public QLearner<float, RecurrentNetwork> {
   const std::unique_ptr<RecurrentValueNetwork> target_values_;
   const std::unique_ptr<RecurrentValueNetwork> average_values_;  // null without a moving average
   SequenceBatch batch_;
-  std::vector<float> state_;      // [B, 2, hidden] along the sequences; [2, B, 2, hidden] of tuples
+  std::vector<float> state_;  // state for Forward: [B, 2, hidden], or of tuples [2, B, 2, hidden]
   std::vector<float> predicted_;  // [T, B]
   std::vector<float> targets_;    // [T, B]
   std::vector<float> slopes_;     // [T, B] d loss / d predicted
@@ -167,8 +167,9 @@ void RecurrentDqnLearner::Draw() {
   for (float& weight : batch_.weights) weight /= sum;
 }
 
-// Returns [T + 1, B, kActionCount]. Algorithm 2 evaluates both ends of a tuple with the state
-// stored there: as rows of one step. A sequence is evaluated from the state at its beginning.
+// Returns the values at all time steps of the batch, [T + 1, B, kActionCount]. A sequence is
+// evaluated from the recurrent state at its beginning. Algorithm 2 evaluates each end of a tuple
+// with the recurrent state stored there, so both ends are rows of one time step.
 const float* RecurrentDqnLearner::ValuesAlong(RecurrentValueNetwork& network) {
   state_ = batch_.recurrent_state;
   if (options_.paper_tuple) {
@@ -189,12 +190,12 @@ const float* RecurrentDqnLearner::ValuesAlong(RecurrentValueNetwork& network) {
                          batch_.observations.data(), state_.data());
 }
 
-// Line 20 of Algorithm 2. @param values of the online network
+// Computes the targets: line 20 of Algorithm 2. @param values ValuesAlong of the online network
 void RecurrentDqnLearner::SetTargets(const float* values) {
   const float* const target = ValuesAlong(*target_values_);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     targets_[i] = batch_.rewards[i];
-    if (batch_.weights[i] == 0.0F) continue;  // after the end of its episode
+    if (batch_.weights[i] == 0.0F) continue;  // the episode has ended
     if (batch_.discounts[i] > 0.0F) {
       const std::size_t next =
           static_cast<std::size_t>(batch_.next[i]) * batch_.size() + i % batch_.size();

@@ -27,14 +27,14 @@ Farm MakeRanch(const Scenario& family, std::uint64_t seed, std::uint64_t episode
       Farm farm(std::make_shared<const Scenario>(DrawRanch(family, seed, episode, attempt)));
       farm.Reset(seed, episode);
       return farm;
-    } catch (const InputError& error) {  // its parts do not fit its map
+    } catch (const InputError& error) {  // the objects of the drawn ranch do not fit its map
       last = error.what();
     }
   }
   throw InputError("family: no ranch with a valid layout in " + std::to_string(kMaxAttempts) +
                    " attempts (seed " + std::to_string(seed) + ", episode " +
                    std::to_string(episode) +
-                   "), expected larger maps or fewer objects; the last: " + last);
+                   "), expected larger maps or fewer objects; the last attempt: " + last);
 }
 
 FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,

@@ -130,13 +130,13 @@ const StepResults& LocalEnvironment::Step(const std::vector<std::uint8_t>& actio
 
 void LocalEnvironment::Complete() {
   if (own_rewards_) UseOwnRewards(results_);
-  for (std::size_t i = 0; i < results_.states.size(); ++i) {  // Load replaces the farms
+  for (std::size_t i = 0; i < results_.states.size(); ++i) {  // Load may have moved the farms
     results_.states[i] = &std::as_const(batch_).farm(static_cast<std::int32_t>(i));
   }
   results_.finished.clear();
 }
 
-// A finished farm starts its next episode in the next step, so each reason marks a new result.
+// A farm has an end reason in one step only, because it starts its next episode in the next step.
 void LocalEnvironment::CollectFinished() {
   for (std::int32_t i = 0; i < spec_.farms; ++i) {
     if (results_.end_reasons[static_cast<std::size_t>(i)] == 0) continue;

@@ -50,7 +50,7 @@ void Summarise(Evaluation& evaluation) {
   if (delivering > 0.0) evaluation.mean_delivered_health /= delivering;
 }
 
-// Null, as JSON has no NaN.
+// Returns null for NaN and infinity, which JSON does not have.
 nlohmann::json NumberOrNull(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }
@@ -96,7 +96,7 @@ nlohmann::json ToJson(const DeviceTally& one) {
   return json;
 }
 
-// Writes the outcomes by id, or by kind if an id is another device in another episode.
+// Writes the outcomes by id, or by kind if the episodes have different devices.
 void WriteDevices(const DeviceOutcomes& outcomes, nlohmann::json& json) {
   if (outcomes.empty()) return;
   if (!outcomes.are_same) {
@@ -114,8 +114,8 @@ void WriteDevices(const DeviceOutcomes& outcomes, nlohmann::json& json) {
   }
 }
 
-// Returns half the width of the 95 % interval of the mean return: kNormal95 standard errors, where
-// repetitions of a start do not count as evidence. NaN with fewer than two distinct starts.
+// Returns half the width of the 95 % interval of the mean return: kNormal95 standard errors. The
+// sample size is the number of distinct starts. NaN with fewer than two distinct starts.
 double ReturnMargin(const Evaluation& evaluation) {
   const auto count = static_cast<double>(evaluation.episodes.size());
   if (evaluation.distinct < 2) return std::numeric_limits<double>::quiet_NaN();
@@ -159,9 +159,9 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
   return json;
 }
 
-// Sets what depends on the starts of the episodes. Episodes depend on scenario, seed and number
-// alone, also behind ROS, so they can be started here.
-// @param accounts [episodes]; empty if they are unknown
+// Sets `distinct` and `losses`. To compare the starts of the episodes, it starts them again in this
+// process. They depend only on scenario, seed and number, even if the episodes were played through
+// ROS services. @param accounts [episodes]; empty if they are unknown
 void CompareStarts(const EnvironmentSpec& spec, std::vector<Accounts> accounts,
                    Evaluation& evaluation) {
   const auto scenario =
@@ -218,7 +218,7 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
       reported = present;
       on_progress(done);
     }
-    if (environment.ConsumeRestart()) {  // new farms; finished episodes are kept
+    if (environment.ConsumeRestart()) {  // the farms are new; finished episodes are kept
       policy.Begin(rng, environment.spec().farms);
       now = &environment.Reset(evaluation.seed);
     }

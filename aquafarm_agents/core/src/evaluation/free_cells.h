@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Copies of a farm with ship 0 in each cell that it can occupy, in groups of kCellsAtOnce, so that
-// one call of a policy covers many cells.
+// Copies a farm for each cell that ship 0 can occupy and places ship 0 there. A group of
+// kCellsAtOnce copies forms one environment, so that a policy chooses the actions for many cells at
+// once.
 
 #include <vector>
 
@@ -24,7 +25,7 @@ inline std::vector<Cell> FreeCells(const Farm& farm) {
   return cells;
 }
 
-// Makes farm i of `farms` a copy of `farm` with ship 0 in cells[first + i].
+// Makes farm i of `farms` a copy of `farm` with ship 0 in cells[first + i]. Returns the results.
 inline const StepResults& PlaceInEach(const Farm& farm, const std::vector<Cell>& cells,
                                       std::size_t first, LocalEnvironment& farms) {
   return farms.Change([&](std::size_t i, Farm& one) {

@@ -14,8 +14,7 @@ std::string WhyNoBestMoves(const Scenario& scenario) {
   const std::int64_t cells = std::int64_t{scenario.width} * scenario.height;
   if (cells <= kMaxCells) return "";
   return "the farm has " + std::to_string(cells) +
-         " cells, and values and best moves are of farms " + "with up to " +
-         std::to_string(kMaxCells);
+         " cells, but values and best moves are computed for at most " + std::to_string(kMaxCells);
 }
 
 std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t observation_types,
@@ -24,7 +23,7 @@ std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t observati
   const std::vector<Cell> cells = FreeCells(farm);
   std::vector<GreedyAction> moves;
   std::vector<std::uint8_t> actions;
-  std::unique_ptr<LocalEnvironment> farms;  // made again only for the last, smaller batch
+  std::unique_ptr<LocalEnvironment> farms;  // remade only for the last group, which may be smaller
   while (moves.size() < cells.size() && (stop == nullptr || !*stop)) {
     const std::size_t first = moves.size();
     const auto count = static_cast<std::int32_t>(std::min(kCellsAtOnce, cells.size() - first));

@@ -36,8 +36,8 @@ Tail TailOf(const std::vector<Loss>& descending, const std::vector<std::size_t>&
   std::size_t total = 0;
   for (const Loss& loss : descending) total += drawn[loss.start];
   Tail tail;
-  std::size_t above = 0;  // losses up to the present one
-  double sum = 0.0;       // of the losses before the VaR
+  std::size_t above = 0;  // number of drawn losses before the present one
+  double sum = 0.0;       // sum of these losses
   for (const Loss& loss : descending) {
     const std::size_t count = drawn[loss.start];
     tail.var = loss.amount;
@@ -50,7 +50,7 @@ Tail TailOf(const std::vector<Loss>& descending, const std::vector<std::size_t>&
   return tail;
 }
 
-// Returns the interval between the 2.5 % and the 97.5 % percentile.
+// Returns `value` with the interval from the 2.5 % to the 97.5 % percentile of `resampled`.
 Estimate WithInterval(double value, std::vector<double> resampled) {
   if (resampled.empty()) return {value, kNan, kNan};
   std::sort(resampled.begin(), resampled.end());
@@ -58,7 +58,8 @@ Estimate WithInterval(double value, std::vector<double> resampled) {
   return {value, resampled[cut], resampled[resampled.size() - 1 - cut]};
 }
 
-// Cluster-robust variance of a mean: sums of deviations by start, with the factor G / (G - 1).
+// Returns the cluster-robust standard error of the mean: from the sums of deviations of each start,
+// with the factor G / (G - 1) for G distinct starts.
 double StandardError(const std::vector<Loss>& losses, double mean, std::size_t starts,
                      std::size_t distinct) {
   if (distinct < 2) return kNan;

@@ -77,11 +77,11 @@ void AppendAdded(const EpisodeSummary& result, std::string& text, std::size_t co
 
 namespace {
 
-// Returns how many of AddedColumns a file has after the first columns. @throws InputError if it has
-// others
+// Returns how many of AddedColumns a file has after FirstColumns. @throws InputError if the file
+// has other columns
 std::size_t CountAdded(const std::string& path) {
   std::ifstream file(path);
-  if (!file) return 0;  // reported where it is opened for writing
+  if (!file) return 0;  // the constructor reports it when it opens the file
   std::string columns;
   std::getline(file, columns);
   const std::string first = FirstColumns();
@@ -89,7 +89,7 @@ std::size_t CountAdded(const std::string& path) {
   const bool has_first = columns.compare(0, first.size(), first) == 0;
   if (!has_first || all.compare(0, columns.size() + 1, columns + ',') != 0) {
     throw InputError(path + ":1: got the columns '" + columns + "', expected '" + first +
-                     "' and none, some or all of '" + AddedColumns() +
+                     "', alone or followed by the first of '" + AddedColumns() +
                      "'; resume with the version that began this run, or train in another folder");
   }
   return static_cast<std::size_t>(

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-// The reward of all agents of a farm in the last step.
+// Returns the reward of all agents of a farm in the last step.
 double RewardOf(const StepResults& results, const EnvironmentSpec& spec, std::size_t farm) {
   const auto agents = static_cast<std::size_t>(spec.agents);
   double sum = 0.0;
@@ -28,8 +28,8 @@ double RewardOf(const StepResults& results, const EnvironmentSpec& spec, std::si
   return spec.team_reward ? sum / static_cast<double>(agents) : sum;  // each agent receives the sum
 }
 
-// Plays all farms to the end of their current episodes. @param results of the farms as they are
-// @returns the return of each farm
+// Plays all farms to the end of their current episodes. @param results current results of the farms
+// @returns the return of each farm, from now on if it is discounted, else of the whole episode
 std::vector<double> PlayOut(LocalEnvironment& environment, const StepResults* results,
                             Policy& policy, std::uint64_t seed, double discount,
                             const std::atomic<bool>* stop) {
@@ -37,7 +37,7 @@ std::vector<double> PlayOut(LocalEnvironment& environment, const StepResults* re
   std::vector<double> returns(static_cast<std::size_t>(count));
   std::vector<bool> over(returns.size());
   std::int32_t left = count;
-  double weight = 1.0;  // of the reward of the next step
+  double weight = 1.0;  // discount of the reward of the next step
   policy.Begin(seed, count);
   std::vector<std::uint8_t> actions;
   while (left > 0 && !IsStopped(stop)) {
@@ -49,7 +49,7 @@ std::vector<double> PlayOut(LocalEnvironment& environment, const StepResults* re
     weight *= discount;
     for (const EpisodeSummary& ended : results->finished) {
       const auto farm = static_cast<std::size_t>(ended.farm);
-      if (over[farm]) continue;  // this is a later episode of the farm
+      if (over[farm]) continue;  // this is a later episode of the same farm
       over[farm] = true;
       if (discount >= 1.0) returns[farm] = static_cast<double>(ended.episode_return);
       --left;

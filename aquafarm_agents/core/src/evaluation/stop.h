@@ -5,7 +5,7 @@
 
 namespace aquafarm::agents {
 
-/// Whether another thread has set `stop`, which may be null.
+/// Returns whether a signal handler or another thread has set `stop`, which may be null.
 inline bool IsStopped(const std::atomic<bool>* stop) { return stop != nullptr && *stop; }
 
 }  // namespace aquafarm::agents

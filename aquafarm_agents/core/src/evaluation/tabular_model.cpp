@@ -19,7 +19,8 @@ constexpr std::int32_t kNoLimit = 10'000'000;  // steps; the largest step limit 
 constexpr int kMaxSweeps = 100'000;
 constexpr double kConverged = 1e-12;
 
-// The same farm without what ends an episode early.
+// Returns the scenario without disasters and with the longest step limit, so that no episode ends
+// before the last device is delivered. @throws InputError as TabularModel
 std::shared_ptr<const Scenario> WithoutEnds(Scenario scenario) {
   if (scenario.AgentCount() != 1 || scenario.ships.count != 1) {
     throw InputError("matrices: got " + std::to_string(scenario.AgentCount()) +

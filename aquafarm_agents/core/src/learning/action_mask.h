@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Which actions a learner or policy chooses among.
+/// Masks of the actions among which a learner or policy chooses.
 
 #include "aquafarm/agents/learning/exploration.h"
 #include "aquafarm/grid/action.h"
 
 namespace aquafarm::agents {
 
-/// Mask of the allowed actions: all actions, or the legal ones.
+/// Returns the allowed actions: the legal ones if mask_illegal is true, else all.
 inline ActionMask LegalMask(ActionMask legal, bool mask_illegal) {
   return mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
 }
 
-/// Mask of the allowed actions. With mask_blocked it also excludes moves that do not lead into open
-/// water, unless no move does.
-/// @param features of the ship, a row of Results::features
-/// @tparam Options DeepOptions, MaddpgOptions or another type with both switches
+/// Returns the allowed actions. With options.mask_blocked it also excludes moves onto a rock, an
+/// island or off the map, unless that would exclude every move.
+/// @param features of the ship, a row of StepResults::features
+/// @tparam Options a type with the members mask_illegal and mask_blocked, such as DeepOptions
 template <typename Options>
 ActionMask LegalMask(ActionMask legal, const float* features, const Options& options) {
   const ActionMask allowed = LegalMask(legal, options.mask_illegal);

@@ -34,7 +34,7 @@ std::string Hex(std::uint64_t hash) {
   return text;
 }
 
-// All sections by name.
+// Returns all sections by name.
 std::map<std::string, std::string_view> SectionsOf(const Checkpoint& checkpoint) {
   std::map<std::string, std::string_view> all = checkpoint.lent;
   for (const auto& [name, bytes] : checkpoint.sections) all[name] = bytes;
@@ -66,11 +66,11 @@ nlohmann::json ToIndex(const Checkpoint& c) {
           {"sections", sections}};
 }
 
-// Returns recorded options as this version would record them: with the current names, and with the
-// value that an option had before it existed.
+// Returns recorded options as this version would record them. Old names are replaced by the current
+// ones. Options that did not exist are added, with the value that keeps the earlier behaviour.
 std::string CompleteOptions(const std::string& algorithm, const std::string& recorded) {
   struct Added {
-    std::string_view algorithm;  // part of its name
+    std::string_view algorithm;  // part of the algorithm's name
     std::string_view key;
     std::string_view value;
   };
@@ -138,7 +138,7 @@ Checkpoint Parse(std::string_view bytes) {
     throw InputError("not a checkpoint: does not start with 'aquaCKPT'");
   }
   if (header.format != kCheckpointFormat) {
-    throw InputError("of format " + std::to_string(header.format) + ", expected " +
+    throw InputError("got a checkpoint of format " + std::to_string(header.format) + ", expected " +
                      std::to_string(kCheckpointFormat));
   }
   bytes.remove_prefix(sizeof(header));
@@ -181,7 +181,7 @@ std::map<std::string, Checkpoint::Number> Checkpoint::GetNumbers(const std::stri
   nlohmann::json fields;
   try {
     fields = ParseCbor(section);
-  } catch (const InputError&) {  // stays null, which is not an object
+  } catch (const InputError&) {  // `fields` stays null, which is not an object
   }
   std::map<std::string, Number> numbers;
   bool is_valid = fields.is_object();

@@ -8,13 +8,15 @@
 
 namespace aquafarm::agents {
 
+/// Reads the option `exploration`; `exploration` is also the default. @throws InputError
 inline void ReadExploration(OptionReader& reader, ExplorationOptions& exploration,
                             ExplorationOf learners = ExplorationOf::kValues) {
   exploration = ParseExploration(reader.Text("exploration", ToString(exploration)), learners);
   reader.Resolve("exploration", ToString(exploration));
 }
 
-/// Reads what all learners with networks have, except `exploration`.
+/// Reads the options that all learners with networks have, except `exploration`.
+/// @throws InputError if a value is out of range
 template <typename Options>
 void ReadNetworkOptions(OptionReader& reader, Options& options) {
   ReadWhole(reader, "hidden_size", 1, 4096, options.hidden_size);
@@ -26,7 +28,9 @@ void ReadNetworkOptions(OptionReader& reader, Options& options) {
   ReadWhole(reader, "threads", 1, 256, options.threads);
 }
 
-/// Reads what all learners with a replay have. @param max_priority of priority_exponent
+/// Reads the options that all learners with a replay buffer have.
+/// @param max_priority max of priority_exponent
+/// @throws InputError if a value is out of range
 template <typename Options>
 void ReadReplayOptions(OptionReader& reader, double max_priority, Options& options) {
   ReadWhole(reader, "batch_size", 1, 65536, options.batch_size);

@@ -13,11 +13,11 @@ namespace {
 constexpr double kMinTemperature = 1e-6;
 constexpr double kMaxTemperature = 1e6;
 
-// Rewards are of the order of 100, so this decays from nearly uniform to nearly greedy.
+// Rewards are of the order of 100, so the choice changes from nearly uniform to nearly greedy.
 const Schedule kBoltzmannDefault{ScheduleKind::kExponential, 20.0, 0.5, 0.5};
 
-// Starts at the cost of a step. It is 0 in the second half, so that the final values are those of
-// the farm's own reward.
+// The intrinsic reward starts at the cost of a step. It is 0 in the second half of the run, so that
+// the learner finally learns values of the farm's reward alone.
 const Schedule kCuriosityDefault{ScheduleKind::kLinear, 1.0, 0.0, 0.5};
 constexpr double kMaxCuriosity = 1e6;
 constexpr std::string_view kCuriosity = "icm";

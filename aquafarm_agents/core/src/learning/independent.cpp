@@ -15,7 +15,8 @@ EnvironmentSpec SpecOfOne(EnvironmentSpec spec) {
   return spec;
 }
 
-// Seeds of the agents' random streams, distinct from those of runs with nearby seeds.
+// Returns the seed of an agent's random streams. It differs from the seeds of runs with nearby
+// seeds.
 std::uint64_t SeedOf(std::uint64_t seed, std::size_t agent) {
   return seed ^ (static_cast<std::uint64_t>(agent) << 48U);
 }
@@ -28,10 +29,10 @@ Checkpoint PartOf(const Checkpoint& whole, std::size_t agent) {
   return part;
 }
 
-/// Extracts the results of one agent from those of all farms. Reuses its buffers.
+/// Extracts the results of one agent of every farm. Reuses its buffers.
 class Share {
  public:
-  /// @param agents of one farm
+  /// @param agents number of agents of one farm
   const StepResults& Of(const StepResults& all, std::size_t agent, std::size_t agents) {
     VisitStepFields(
         [&](const StepField& field, const auto& from, auto& to) {

@@ -5,10 +5,10 @@
 
 namespace aquafarm::agents {
 
-/// Returns the moving average of a mean squared error after a new one.
-///
-/// average: before it; NaN if there was none
-/// share: weight of the new error
+/// Returns the updated exponential moving average of a mean squared error.
+/// @param average previous average; NaN before the first error
+/// @param error new mean squared error
+/// @param share weight of the new error
 inline float MoveError(float average, float error, float share = 0.01F) {
   return std::isnan(average) ? error : average + share * (error - average);
 }

@@ -7,7 +7,7 @@ namespace aquafarm::agents {
 
 struct Checkpoint;
 
-/// Reads a checkpoint from the content of its file. @param path of the file, for messages
+/// Parses the content of a checkpoint file. @param path path of the file, for messages
 /// @throws InputError if it is not a checkpoint, is damaged or has another format
 Checkpoint ParseCheckpoint(const std::string& bytes, const std::string& path);
 

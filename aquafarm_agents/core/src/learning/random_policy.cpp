@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<std::string_view, kRandomActionsCount> kNames{"all", "reachable"};
 
-// The masks that leave reachable actions alone.
+// The options with which LegalMask allows exactly the reachable actions.
 struct Reachable {
   bool mask_illegal{true};
   bool mask_blocked{true};

@@ -9,7 +9,7 @@
 namespace aquafarm::agents {
 namespace {
 
-/// The stored time steps of a replay, as saved.
+/// Position of the stored time steps in the ring, as saved.
 struct Place {
   std::uint64_t oldest{};
   std::uint64_t size{};
@@ -77,7 +77,7 @@ void Replay<Scalar>::Add(const StepResults& results, const Scalar* observations,
   std::copy_n(results.legal.data(), slots, legal_.data() + row);
   for (std::size_t i = 0; i < slots; ++i) {
     const std::size_t farm = i / static_cast<std::size_t>(options_.agents);
-    // An agent that is not in play is done, even if its farm's episode continues.
+    // An inactive agent is done, even if the episode of its farm continues.
     constexpr auto kDone = static_cast<std::uint8_t>(EndReason::kAllRetrieved);
     end_reasons_[row + i] = results.active[i] != 0 ? results.end_reasons[farm] : kDone;
     is_first_[row + i] = results.is_first[farm];
@@ -99,7 +99,7 @@ Transition Replay<Scalar>::At(std::size_t age, std::size_t slot, std::size_t ste
   transition.discount = 1.0F;
   for (std::size_t k = 1; k <= steps; ++k) {
     const std::size_t row = Row(age + k, slot);
-    if (k > 1 && is_first(row)) break;  // the episode was lost: end at its last stored time step
+    if (k > 1 && is_first(row)) break;  // the farms were lost: end at the last time step before
     transition.reward += transition.discount * rewards_[row];
     transition.discount *= discount;
     transition.to = row;

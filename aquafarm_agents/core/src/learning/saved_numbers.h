@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Numbers of a learner as a checkpoint's section of named numbers. One list of fields serves to
-// save and to load them: fields(visit) calls visit(name, number) for each. A random stream is saved
-// as the number of its draws.
+// Saves and loads the numbers of a learner as a section of named numbers (Checkpoint::SetNumbers).
+// One list of fields serves both directions: fields(visit) calls visit(name, number) for each
+// number. A field may also be a random stream, which is saved as the number of draws taken from it.
 
 #include <cstdint>
 #include <map>
@@ -41,8 +41,9 @@ void SaveNumbers(Checkpoint& checkpoint, const std::string& section, const Field
   checkpoint.SetNumbers(section, numbers);
 }
 
-// Loads the numbers from `section`, or from the array `positional` of older versions, which had
-// values of type `Positional` in the order of the fields.
+// Loads the numbers from `section`. Checkpoints of older versions have the array `positional`
+// instead, with values of type `Positional` in the order of the fields.
+// @throws InputError if a number or both sections are missing
 template <typename Positional, typename Fields>
 void LoadNumbers(const Checkpoint& checkpoint, const std::string& section,
                  const std::string& positional, const Fields& fields) {

@@ -37,13 +37,14 @@ void MarkOne(std::uint8_t action, float mark, float* out) {
   out[action] = mark;
 }
 
-/// Observations of the actors of B farms in a window of T steps; the last is the sampled time step.
+/// Inputs of the actors of B farms at T consecutive time steps. The last one is the sampled time
+/// step, or the time step from which its target bootstraps.
 struct Window {
   std::vector<float> observations;     // [T, B, S, F]
-  std::vector<float> keeps;            // [T, B, S]
+  std::vector<float> keeps;            // [T, B, S] as in ActorTeam::Forward
   std::vector<float> recurrent_state;  // [B, S, recurrent_size] before the first step
-  std::vector<float> forbidden;        // [B, S, kActionCount] by MaskLogits, at the last step
-  std::vector<float> present;          // [B, S] 1 if in play at the last step
+  std::vector<float> forbidden;        // [B, S, kActionCount] MaskLogits at the last step
+  std::vector<float> present;          // [B, S] 1 if the agent is not done at the last step
 };
 
 ReplayLearnerOptions SharedOptions(const EnvironmentSpec& spec, const MaddpgOptions& options) {
@@ -124,7 +125,7 @@ class MaddpgLearner final : public ReplayLearner<float> {
   std::uint64_t updates_{};
   float loss_;
 
-  // The minibatch of B time steps.
+  // The minibatch of B transitions.
   Window from_;
   Window to_;
   std::vector<TransitionIndex> drawn_;  // [B]
@@ -214,8 +215,9 @@ void MaddpgLearner::Choose(const StepResults& results, std::vector<std::uint8_t>
   }
 }
 
-// Draws a time step whose complete window, or the start of its episode, is stored. The oldest time
-// steps of the replay may have neither; the first one of the same farm that has replaces them.
+// Draws a time step. Either its complete window is stored, or the first step of its episode. The
+// oldest time steps of the replay may have neither; such a time step is replaced by the oldest one
+// of the same farm with a complete window.
 TransitionIndex MaddpgLearner::DrawMoment(std::size_t i) {
   const TransitionIndex drawn = sampler_.Draw(rng_, i);
   for (std::size_t back = 0; back <= drawn.age; ++back) {
@@ -258,7 +260,7 @@ void MaddpgLearner::Draw() {
       rewards_[k] = agent_rewards_[agent] * scale;
       discounts_[k] = is_done ? 0.0F : all.discount;
       // With a team reward the values of agents that are done are trained as well, because the
-      // targets of the others depend on them.
+      // target of an agent's last transition bootstraps from them.
       weights_[k] = spec_.team_reward ? 1.0F : from_.present[k];
     }
   }
@@ -266,7 +268,7 @@ void MaddpgLearner::Draw() {
   for (std::size_t k = 0; k < weights_.size(); ++k) weights_[k] *= importance[k / agents()];
 }
 
-// Sets the priority of a time step to the mean error of the agents that learn from it.
+// Sets the priority of each transition to the mean error of the agents that learn from it.
 // @param errors [B, S]
 void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
   const torch::Tensor learnt = ToDevice(weights_, {options_.batch_size, spec_.agents}) > 0.0F;
@@ -278,8 +280,8 @@ void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
   }
 }
 
-// Near an episode's start the window is padded with the first time step, and the recurrent state is
-// reset after the padding.
+// Near the start of an episode the window is padded with the first time step, and the recurrent
+// state is reset after the padding.
 void MaddpgLearner::Fill(std::size_t i, std::size_t age, std::size_t first, Window& to) {
   std::size_t back = 0;
   while (back + 1 < window() && back < age && !replay_.is_first(replay_.Row(age - back, first))) {

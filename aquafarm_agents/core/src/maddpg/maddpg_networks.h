@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Actors and critic of MADDPG on libtorch.
+/// Actors and critic of MADDPG, as modules of libtorch.
 
 #include <torch/torch.h>
 
@@ -19,15 +19,15 @@ class ActorTeam final : public torch::nn::Module {
  public:
   ActorTeam(const EnvironmentSpec& spec, const MaddpgOptions& options);
 
-  /// Number of values of an agent's recurrent state (h, c); 0 if the actors are not recurrent.
+  /// Returns the number of values of an agent's recurrent state (h, c); 0 if the actors are not
+  /// recurrent.
   std::int64_t recurrent_size() const { return recurrent_size_; }
 
-  /// Logits at the last step of a window. Advances the recurrent state through the window.
+  /// Returns the logits at the last step of a window of T steps.
   /// @param observations [T, B, S, F]
-  /// @param keeps [T, B, S] 0 resets the recurrent state before that step
+  /// @param keeps [T, B, S] 0 resets the recurrent state before that step, 1 keeps it
   /// @param recurrent_state [B, S, recurrent_size] recurrent state before the window; receives the
-  /// state after
-  ///        it. Undefined if the actors are not recurrent
+  ///   one after it. Undefined if the actors are not recurrent
   /// @returns [B, S, kActionCount]
   torch::Tensor Forward(const torch::Tensor& observations, const torch::Tensor& keeps,
                         torch::Tensor& recurrent_state);
@@ -41,14 +41,14 @@ class ActorTeam final : public torch::nn::Module {
   std::vector<std::shared_ptr<RecurrentNetwork>> recurrent_;
 };
 
-/// Q of each action of each agent, given all observations and the other agents' actions. One
-/// network serves all agents.
+/// Computes Q for each action of each agent from all observations and the other agents' actions.
+/// The same network evaluates every agent.
 class JointCritic final : public torch::nn::Module {
  public:
   JointCritic(const EnvironmentSpec& spec, std::int64_t hidden);
   /// @param observations [B, S, F]
   /// @param actions [B, S, kActionCount] one-hot, or zeros for an agent that is done
-  /// @returns [B, S, kActionCount]
+  /// @returns Q [B, S, kActionCount]
   torch::Tensor Forward(const torch::Tensor& observations, const torch::Tensor& actions);
 
  private:

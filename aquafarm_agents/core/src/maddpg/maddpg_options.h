@@ -10,9 +10,9 @@ namespace aquafarm::agents {
 
 /// Hyperparameters of MADDPG. docs/several_agents.md lists their sources.
 struct MaddpgOptions {
-  std::int32_t hidden_size{256};  ///< units of a hidden layer; of the LSTM when recurrent
-  Schedule actor_rate{ScheduleKind::kLinear, 1e-3, 1e-5, 1.0};   ///< learning rate of Adam
-  Schedule critic_rate{ScheduleKind::kLinear, 1e-3, 1e-5, 1.0};  ///< learning rate of Adam
+  std::int32_t hidden_size{256};  ///< units of each hidden layer; if recurrent, units of the LSTM
+  Schedule actor_rate{ScheduleKind::kLinear, 1e-3, 1e-5, 1.0};   ///< learning rate of the actors
+  Schedule critic_rate{ScheduleKind::kLinear, 1e-3, 1e-5, 1.0};  ///< learning rate of the critic
   double gamma{0.97};
   ExplorationOptions exploration{
       ExplorationKind::kEpsilonGreedy, {ScheduleKind::kLinear, 1.0, 0.005, 0.1}, {}};
@@ -22,24 +22,25 @@ struct MaddpgOptions {
   std::uint64_t buffer_size{200000};    ///< capacity in transitions
   double priority_exponent{0.6};        ///< exponent α of prioritised replay; 0: uniform
   double importance_exponent{0.4};      ///< initial exponent β; rises to 1
-  double tau{0.01};                     ///< soft target update rate per update
-  std::int32_t n_step{1};
-  double temperature{1.0};     ///< temperature of the Gumbel-softmax
-  double logit_penalty{3e-4};  ///< prevents premature convergence of the actors
-  double reward_scale{0.05};
-  double max_grad_norm{10.0};  ///< max norm of the gradient; 0: no limit
-  bool best_response{true};    ///< targets use the best response to the others' target actors;
-                               ///< false: the action of the own target actor, as printed
-  bool mask_illegal{true};     ///< mask ILLEGAL actions when acting and bootstrapping
-  bool mask_blocked{true};     ///< also mask moves onto a charted rock, an island or off the map
+  double tau{0.01};                     ///< rate of the soft target update in each update
+  std::int32_t n_step{1};               ///< steps of a return (Sutton 1988)
+  double temperature{1.0};              ///< temperature of the Gumbel-softmax
+  double logit_penalty{3e-4};           ///< prevents premature convergence of the actors
+  double reward_scale{0.05};            ///< factor of the rewards; 1: unscaled
+  double max_grad_norm{10.0};           ///< max norm of the gradient; 0: no limit
+  bool best_response{true};    ///< targets use an agent's best response to the others' target
+                               ///< actors; false: the action of its own target actor, as printed
+  bool mask_illegal{true};     ///< exclude illegal actions when acting and bootstrapping
+  bool mask_blocked{true};     ///< also exclude moves onto a rock, an island or off the map
   bool shared{true};           ///< one network for all actors, with the agent's index as input
   bool recurrent{false};       ///< actors with an LSTM
-  std::int32_t window{4};      ///< training steps per sequence of a recurrent actor
+  std::int32_t window{4};      ///< time steps through which a recurrent actor is differentiated
   std::string device{"auto"};  ///< auto, cpu or cuda
   std::int32_t threads{1};
 
-  /// Parses "key=value …". @param resolved receives all options with their effective values
-  /// @throws InputError
+  /// Parses "key=value …".
+  /// @param resolved receives all options with their effective values
+  /// @throws InputError if an option is unknown or out of range
   static MaddpgOptions Parse(const std::string& text, std::string& resolved);
 };
 

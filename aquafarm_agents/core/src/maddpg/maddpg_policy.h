@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Policies that use the actors of MADDPG, without the critic.
+/// The policy of MADDPG, which uses only the actors.
 
 #include <torch/torch.h>
 
@@ -16,19 +16,20 @@
 
 namespace aquafarm::agents {
 
-/// Resets the recurrent state of farms whose episodes begin.
-/// @param recurrent_state recurrent state of each agent between steps, on the host: [farms,
-/// size_of_farm];
-///        empty if the actors are not recurrent
+/// Sets the recurrent state of farms whose episode begins to 0.
+/// @param size_of_farm number of values per farm
+/// @param recurrent_state [farms, size_of_farm]; empty if the actors are not recurrent
 void ClearStarted(const StepResults& results, std::size_t size_of_farm,
                   std::vector<float>& recurrent_state);
 
-/// Runs all actors for one step. @param recurrent_state as above; advanced by one step
+/// Evaluates all actors for one step.
+/// @param recurrent_state [slots, recurrent_size] before the step; receives the state after it;
+///   empty if the actors are not recurrent
 /// @returns logits [slots, kActionCount], on the CPU
 torch::Tensor StepActors(ActorTeam& actors, const StepResults& results, const EnvironmentSpec& spec,
                          std::vector<float>& recurrent_state, torch::Device device);
 
-/// Makes a policy that plays the most likely action of every actor.
+/// Makes a policy that takes the most likely action of every actor.
 /// @throws InputError if the weights belong to another network
 std::unique_ptr<Policy> MakeActorsPolicy(const EnvironmentSpec& spec, const MaddpgOptions& options,
                                          const std::vector<float>& weights);

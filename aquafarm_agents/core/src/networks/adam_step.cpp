@@ -13,12 +13,12 @@ namespace {
 constexpr double kMeanDecay = 0.9;
 constexpr double kSquareDecay = 0.999;
 
-/// Factors of one step, rounded once.
+/// Factors of one step, computed in double precision and rounded to float once.
 struct Factors {
-  float mean;    // of the gradient in its moving average
-  float square;  // of the squared gradient
-  float rate;
-  float root;
+  float mean;    // weight of the gradient in its moving average
+  float square;  // weight of the squared gradient in its moving average
+  float rate;    // learning rate with the bias correction of the mean
+  float root;    // bias correction of the root of the mean square
   float epsilon;
 };
 

@@ -20,12 +20,14 @@ DeepOptions Tuned(bool recurrent) {
   return options;
 }
 
-// The discount that §2.3 calls usual.
+// The discount factor that §2.3 of the paper calls usual.
 constexpr double kPaperDiscount = 0.99;
-// τ of Algorithm 2, line 22, which gives [0, 1]; the value of Haarnoja et al. 2018.
+// τ of Algorithm 2, line 22. The paper gives only the range [0, 1]; this is the value of Haarnoja
+// et al. 2018.
 constexpr double kPaperTargetRate = 0.005;
 
-// Sets only the values printed in Eq. 15 and Algorithm 2. The others keep the tuned defaults.
+// Sets the values printed in Eq. 15 and Algorithm 2 and disables the extensions. The other options
+// keep the tuned defaults.
 DeepOptions Paper(bool recurrent) {
   DeepOptions options = Tuned(recurrent);
   options.gamma = kPaperDiscount;
@@ -44,7 +46,8 @@ DeepOptions Paper(bool recurrent) {
   return options;
 }
 
-// Algorithm 2 as printed replays single tuples, each with its stored (h, c).
+// Values of the option replayed. Algorithm 2 as printed replays single tuples with their stored
+// recurrent states.
 enum class Replayed : std::uint8_t { kSequences, kPaperTuple };
 constexpr std::array<std::string_view, 2> kReplayed{"sequences", "paper_tuple"};
 
@@ -71,7 +74,8 @@ void ReadSequences(OptionReader& reader, bool is_paper, DeepOptions& options) {
                      ", expected at most sequence_length, which is " +
                      std::to_string(options.sequence_length));
   }
-  // With a longer burn-in, steps near an episode's beginning would never be trained on.
+  // With a longer burn-in, the network would never be trained at some steps near the beginning of
+  // an episode.
   if (options.burn_in > 0 && options.burn_in >= options.sequence_length) {
     throw InputError("burn_in: got " + std::to_string(options.burn_in) +
                      ", expected less than sequence_length, which is " +

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Helpers shared by the deep learners and their policies around libtorch: observations as tensors
-/// and masks of values.
+/// Helpers of the learners with networks and of their policies: conversion of observations to
+/// tensors, and masks of forbidden actions.
 
 #include <torch/torch.h>
 
@@ -20,26 +20,29 @@
 
 namespace aquafarm::agents {
 
-/// Device for playing a saved policy: a policy trained on CUDA also plays without it.
+/// Returns the device on which a saved policy plays. A policy trained with device=cuda plays with
+/// device=auto, so that it also plays on a machine without CUDA.
 inline std::string PlayingDevice(const std::string& trained_on) {
   return trained_on == "cuda" ? "auto" : trained_on;
 }
 
-/// Writes an additive mask: 0 for allowed actions, −1e9 for forbidden ones. The mask is finite, so
-/// that no NaN arises. @param out [kActionCount]
+/// Writes an additive mask: 0 for allowed actions, −1e9 for forbidden ones. Infinite values could
+/// lead to NaN. @param out [kActionCount]
 inline void MaskLogits(ActionMask allowed, float* out) {
   for (std::size_t a = 0; a < kActionCount; ++a) {
     out[a] = ((allowed >> a) & 1U) != 0 ? 0.0F : -1e9F;
   }
 }
 
-/// Advantage gap max_a Q − Q(s, a) of an action over the allowed ones, for advantage learning.
-/// @param values [kActionCount]
+/// Returns the advantage gap max_a' Q(s, a') − Q(s, a) of an action a, where a' is allowed.
+/// @param values Q(s, ·), [kActionCount]
 inline float AdvantageGap(const float* values, ActionMask allowed, std::size_t action) {
   return BestOf(values, allowed).value - values[action];
 }
 
-/// Observation traits of a network: float features, or bytes of planes (255 represents 1).
+/// Access to observations of type Scalar: float features, or bytes of planes (255 represents 1).
+/// Shape() returns the shape of one observation, Of() the observations of all slots. ToInput()
+/// converts rows of observations to a float tensor of the given shape.
 template <typename Scalar>
 struct ObservationTraits;
 
@@ -70,13 +73,13 @@ struct ObservationTraits<std::uint8_t> {
   }
 };
 
-/// Number of values of one observation.
+/// Returns the number of values of a tensor of this shape.
 inline std::size_t ElementCount(const std::vector<std::int64_t>& shape) {
   return static_cast<std::size_t>(
       std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>()));
 }
 
-/// Shape {count, rest…}.
+/// Returns the shape {count, rest…}.
 inline std::vector<std::int64_t> WithCount(std::size_t count, std::vector<std::int64_t> rest) {
   rest.insert(rest.begin(), static_cast<std::int64_t>(count));
   return rest;

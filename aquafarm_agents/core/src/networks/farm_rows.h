@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Helpers of learners on features or planes that need no network library: counts, masks for
-/// planes, and the check of a saved network against the farms of a run.
+/// Helpers of learners with networks that do not include the network library: masks for planes, the
+/// count of farm steps, and checks that a saved network fits the farms of a run.
 
 #include <algorithm>
 #include <cstddef>
@@ -16,24 +16,24 @@
 
 namespace aquafarm::agents {
 
-/// Mask of the allowed actions for planes. DeepOptions rejects mask_blocked with planes, which lack
-/// the required features.
+/// Returns the allowed actions of an agent that is observed by planes. They do not contain the
+/// features that mask_blocked requires, so DeepOptions rejects mask_blocked with planes.
 inline ActionMask LegalMask(ActionMask legal, const std::uint8_t*, const DeepOptions& options) {
   return LegalMask(legal, options.mask_illegal);
 }
 
-/// Number of farms that took a step; the others began an episode.
+/// Returns the number of farms that took a step. The other farms began an episode.
 inline std::uint64_t FarmSteps(const StepResults& results) {
   return static_cast<std::uint64_t>(
       std::count(results.is_first.begin(), results.is_first.end(), std::uint8_t{0}));
 }
 
-/// Checks that a policy fits farms of `spec`.
+/// Checks that the number of agents and the observations of a policy fit farms of `spec`.
 /// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
 void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, NetworkKind network);
 
-/// Checks that a network that plays each agent by its own features fits farms of `spec`, which may
-/// have another number of agents.
+/// Checks that the features of a policy fit farms of `spec`. The number of agents may differ, for
+/// policies that evaluate the same network for each agent.
 /// @throws InputError as CheckFits
 void CheckFeaturesFit(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 

@@ -47,8 +47,8 @@ bool FlatAdam::Step(double learning_rate, double max_grad_norm) {
   return true;
 }
 
-// The library creates the state at its first step. It is created here earlier, so that it can be
-// saved and loaded at any time.
+// libtorch creates the state of Adam at its first step. This function creates it earlier, so that
+// it can be saved and loaded at any time.
 torch::optim::AdamParamState& FlatAdam::MakeState() {
   auto& states = adam_.state();
 #if TORCH_VERSION_MAJOR >= 2

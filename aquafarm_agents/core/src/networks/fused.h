@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Layers for libtorch whose products are computed by BLAS and whose gradients are written out. For
-/// the small batches of value learners, each operation of libtorch costs as much as its arithmetic
-/// (docs/decisions/fused_layers.md). All tensors are floats in the memory of the CPU.
+/// Functions of libtorch that compute several layers at once, with the products of gemm.h and
+/// gradients in closed form. For small batches, the overhead of single operations of libtorch is as
+/// large as their arithmetic (docs/decisions/fused_layers.md). All tensors are floats in the memory
+/// of the CPU.
 
 #include <torch/torch.h>
 
@@ -11,23 +12,26 @@
 
 namespace aquafarm::agents {
 
+/// Returns the values of a contiguous tensor of floats.
 inline const float* Data(const torch::Tensor& tensor) { return tensor.data_ptr<float>(); }
 
-/// Returns whether the functions below accept an input and a network's weight. They throw
-/// LogicError for shapes other than those in their comments.
+/// Returns whether `input` and `weight` are floats in the memory of the CPU, as the functions below
+/// require. These functions throw LogicError if the sizes of an input or state do not fit the
+/// weights.
 bool CanFuse(const torch::Tensor& input, const torch::Tensor& weight);
 
-/// Q = head(ReLU(Linear(ReLU(Linear(input))))) with weights and biases as in torch::nn::Linear. The
-/// head is V + A − mean A if `value_weight` is defined, else A.
-/// @param input [..., F] @returns [..., A]
+/// Returns head(ReLU(Linear(ReLU(Linear(input))))) with weights and biases as in torch::nn::Linear.
+/// The head is V + A − mean A if `value_weight` is defined, else A.
+/// @param input [..., F]
+/// @returns Q [..., actions]
 torch::Tensor FusedMlp(const torch::Tensor& input, const torch::Tensor& first_weight,
                        const torch::Tensor& first_bias, const torch::Tensor& second_weight,
                        const torch::Tensor& second_bias, const torch::Tensor& advantage_weight,
                        const torch::Tensor& advantage_bias, const torch::Tensor& value_weight,
                        const torch::Tensor& value_bias);
 
-/// An LSTM of one layer, with the weights of torch::nn::LSTM.
-/// @param input [T, B, F] @param hidden, cell [1, B, H]: the state before the first step
+/// Evaluates an LSTM of one layer with H units, with weights as in torch::nn::LSTM.
+/// @param input [T, B, F] @param hidden, cell [1, B, H] state before the first step
 /// @param input_weight [4H, F] @param hidden_weight [4H, H] @param input_bias, hidden_bias [4H]
 /// @returns h of each step [T, B, H], and h and c after the last step, each [1, B, H]
 std::tuple<torch::Tensor, torch::Tensor, torch::Tensor> FusedLstm(

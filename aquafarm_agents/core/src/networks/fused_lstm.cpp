@@ -19,8 +19,8 @@ LstmShape ShapeOf(const Tensor& input, const Tensor& hidden_weight) {
 }
 
 struct Sequence {
-  Tensor gates;      // [T, B, 4H] after the nonlinearity
-  Tensor cells;      // [T + 1, B, H]; the first is the state before
+  Tensor gates;      // [T, B, 4H] after the nonlinear function
+  Tensor cells;      // [T + 1, B, H]; element 0 is c before the first step
   Tensor cell_tanh;  // [T, B, H]
   Tensor output;     // [T, B, H]
 };
@@ -53,10 +53,11 @@ Sequence Evaluate(const Tensor& input, const Tensor& hidden, const Tensor& cell,
   return made;
 }
 
-// The last element of the first dimension, which is kept.
+// Returns the last element along the first dimension; the result has size 1 there.
 Tensor Last(const Tensor& tensor) { return tensor.narrow(0, tensor.size(0) - 1, 1); }
 
-// d loss / d value at the end of the sequence; zeros if nothing reads the value.
+// Returns `slopes` as a vector; zeros if they are undefined, because the loss does not depend on
+// the value.
 std::vector<float> EndSlopes(const Tensor& slopes, std::size_t size) {
   if (!slopes.defined()) return std::vector<float>(size);
   const Tensor values = slopes.contiguous();

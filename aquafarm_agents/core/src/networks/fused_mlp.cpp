@@ -16,7 +16,7 @@ std::size_t Size(const Tensor& tensor, std::int64_t dimension) {
   return static_cast<std::size_t>(tensor.size(dimension));
 }
 
-// One layer: its weight, and its output or input.
+// A fully connected layer. Its bias is passed to Forward.
 struct Layer {
   const Tensor& weight;
   std::size_t inputs() const { return Size(weight, 1); }
@@ -34,7 +34,7 @@ struct Layer {
     Rectify(static_cast<std::size_t>(out.numel()), out.data_ptr<float>());
     return out;
   }
-  // Puts the gradients of weight and bias into two elements.
+  // Sets gradients[0] to the gradient of the weight and gradients[1] to that of the bias.
   void Gradient(const Tensor& in, const std::vector<float>& slopes, Tensor* gradients) const {
     gradients[0] = torch::empty_like(weight);
     gradients[1] = torch::empty({weight.size(0)}, weight.options());
@@ -139,7 +139,7 @@ Tensor FusedMlp(const Tensor& input, const Tensor& first_weight, const Tensor& f
   const Tensor rows = input.reshape({-1, input.size(-1)}).contiguous();
   std::vector<std::int64_t> shape = input.sizes().vec();
   shape.back() = advantage_weight.size(0);
-  // Function::apply takes no undefined tensors.
+  // Function::apply does not accept undefined tensors.
   const bool dueling = value_weight.defined();
   const Tensor value = dueling ? value_weight : torch::empty({0});
   const Tensor bias = dueling ? value_bias : value;

@@ -11,18 +11,22 @@
 
 namespace aquafarm::agents {
 
-/// out [rows, outputs] = in [rows, inputs] · Wᵀ + b with W [outputs, inputs]
+/// Computes out [rows, outputs] = in [rows, inputs] · Wᵀ + b with W [outputs, inputs].
 inline void LinearForward(std::size_t rows, std::size_t inputs, std::size_t outputs,
                           const float* in, const float* weight, const float* bias, float* out) {
   for (std::size_t row = 0; row < rows; ++row) std::copy_n(bias, outputs, out + row * outputs);
   MultiplyByTransposed(rows, outputs, inputs, in, weight, 1.0F, out);
 }
 
+/// Applies the ReLU to `values`.
 inline void Rectify(std::size_t size, float* values) {
   for (std::size_t i = 0; i < size; ++i) values[i] = std::max(values[i], 0.0F);
 }
 
-/// Receives d loss / d (W, b) from slopes [rows, outputs], which are d loss / d out.
+/// Computes the gradient of W and b of LinearForward.
+/// @param slopes [rows, outputs] d loss / d out
+/// @param weight receives d loss / d W, [outputs, inputs]
+/// @param bias receives d loss / d b, [outputs]
 inline void LinearGradient(std::size_t rows, std::size_t inputs, std::size_t outputs,
                            const float* in, const float* slopes, float* weight, float* bias) {
   MultiplyTransposed(outputs, inputs, rows, slopes, in, 0.0F, weight);
@@ -32,7 +36,9 @@ inline void LinearGradient(std::size_t rows, std::size_t inputs, std::size_t out
   }
 }
 
-/// in_slopes [rows, inputs] = slopes · W + beta · in_slopes
+/// Computes d loss / d in: in_slopes = slopes · W + beta · in_slopes.
+/// @param slopes [rows, outputs] d loss / d out
+/// @param in_slopes [rows, inputs]
 inline void LinearInputSlopes(std::size_t rows, std::size_t inputs, std::size_t outputs,
                               const float* slopes, const float* weight, float beta,
                               float* in_slopes) {
@@ -44,7 +50,9 @@ inline void BackwardRelu(std::size_t size, const float* out, float* slopes) {
   for (std::size_t i = 0; i < size; ++i) slopes[i] = out[i] > 0.0F ? slopes[i] : 0.0F;
 }
 
-/// q [rows, count] = V + A − mean A, in place of A. @param values [rows] V
+/// Replaces A by Q = V + A − mean A.
+/// @param values [rows] V
+/// @param q [rows, count] A; receives Q
 inline void AddStateValue(std::size_t rows, std::size_t count, const float* values, float* q) {
   for (std::size_t row = 0; row < rows; ++row, q += count) {
     const float mean = std::accumulate(q, q + count, 0.0F) / static_cast<float>(count);
@@ -52,7 +60,9 @@ inline void AddStateValue(std::size_t rows, std::size_t count, const float* valu
   }
 }
 
-/// The slopes of q [rows, count] become those of A. @param values [rows] receives those of V
+/// Computes the gradient of AddStateValue.
+/// @param slopes [rows, count] d loss / d Q; receives d loss / d A
+/// @param values receives d loss / d V, [rows]
 inline void SplitStateValue(std::size_t rows, std::size_t count, float* slopes, float* values) {
   for (std::size_t row = 0; row < rows; ++row, slopes += count) {
     values[row] = std::accumulate(slopes, slopes + count, 0.0F);

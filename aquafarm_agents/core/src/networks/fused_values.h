@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Networks of features on the CPU, with their gradients written out. Parameters have the order of
-/// the modules of networks.h, each weight [outputs, inputs]. Buffers grow to the largest number of
-/// rows; then no call allocates.
+/// The value networks for features on the CPU, which compute their gradients without libtorch. The
+/// parameters are in the order of the modules of networks.h; each weight is [outputs, inputs]. The
+/// buffers grow with the largest number of rows so far, so that later calls allocate nothing.
 
 #include <cstddef>
 #include <vector>
@@ -19,21 +19,26 @@ struct ParameterMemory {
   float* gradient{};
 };
 
-/// Linear - ReLU - head: the second half of both networks.
+/// Linear - ReLU - head: the last layers of both networks.
 class HiddenAndHead {
  public:
   HiddenAndHead(std::size_t inputs, std::size_t hidden, bool dueling)
       : inputs_(inputs), hidden_(hidden), dueling_(dueling) {}
 
-  /// @param in [rows, inputs] @returns Q [rows, kActionCount]
+  /// @param in [rows, inputs]
+  /// @param parameters parameters of these layers
+  /// @returns Q [rows, kActionCount], valid until the next call
   const float* Forward(std::size_t rows, const float* in, const float* parameters);
-  /// @param slopes [rows, kActionCount] of Q @param in of the last Forward
-  /// @returns slopes of `in`, [rows, inputs]
+  /// Replaces the gradient of the parameters of these layers.
+  /// @param slopes [rows, kActionCount] d loss / d Q
+  /// @param in the input of the last Forward
+  /// @returns d loss / d in, [rows, inputs], valid until the next call
   float* Backward(std::size_t rows, const float* slopes, const float* in,
                   const ParameterMemory& parameters);
 
  private:
-  std::size_t head() const { return (inputs_ + 1) * hidden_; }  // index of its first parameter
+  // Returns the index of the head's first parameter.
+  std::size_t head() const { return (inputs_ + 1) * hidden_; }
 
   const std::size_t inputs_;
   const std::size_t hidden_;
@@ -47,6 +52,7 @@ class HiddenAndHead {
   std::vector<float> in_slopes_;
 };
 
+/// A value network with the layers of the MLP that MakeNetwork makes.
 class FusedMlpValues final : public ValueNetwork<float> {
  public:
   FusedMlpValues(std::size_t features, std::size_t hidden, bool dueling,
@@ -70,6 +76,7 @@ class FusedMlpValues final : public ValueNetwork<float> {
   std::vector<float> first_;
 };
 
+/// A value network with the layers of RecurrentNetwork.
 class FusedLstmValues final : public RecurrentValueNetwork {
  public:
   FusedLstmValues(std::size_t features, std::size_t hidden, bool skip_connection, bool dueling,
@@ -95,7 +102,7 @@ class FusedLstmValues final : public RecurrentValueNetwork {
   HiddenAndHead rest_;
   LstmShape shape_;  // of the last Forward
   const float* seen_{};
-  std::vector<float> bias_;        // sum of both
+  std::vector<float> bias_;        // sum of the two biases of the LSTM
   std::vector<float> transposed_;  // scratch
   std::vector<float> hidden_before_;
   std::vector<float> input_;  // x

@@ -16,7 +16,7 @@
 
 #include "aquafarm/base/check.h"
 
-// The own products need target attributes and builtin functions of GCC 12.
+// The products for AVX need target attributes and builtin functions of GCC 12.
 #if defined(__x86_64__) && defined(__GNUC__) && __GNUC__ >= 12 && !defined(__clang__)
 #define AQUAFARM_OWN_PRODUCTS
 #define AQUAFARM_INLINE inline __attribute__((always_inline))
@@ -63,10 +63,10 @@ void TransposeSquare(const float* in, std::size_t in_step, float* out, std::size
 
 #endif
 
-// out [columns, rows] = inᵀ; the steps lead to the next row of each.
+// Computes out [columns, rows] = inᵀ. Rows of `in` are in_step apart, rows of `out` out_step.
 void TransposeBlock(std::size_t rows, std::size_t columns, const float* in, std::size_t in_step,
                     float* out, std::size_t out_step) {
-  constexpr std::size_t kLine = 16;  // numbers of a cache line
+  constexpr std::size_t kLine = 16;  // floats of a cache line
   for (std::size_t first = 0; first < columns; first += kLine) {
     const std::size_t end = std::min(first + kLine, columns);
     std::size_t row = 0;
@@ -88,23 +88,24 @@ void TransposeBlock(std::size_t rows, std::size_t columns, const float* in, std:
 
 #ifdef AQUAFARM_OWN_PRODUCTS
 
-/// The left factor, or its transpose: element (i, p) is values[i · row_step + p · step].
+/// The left factor, possibly stored transposed: element (i, p) is values[i · row_step + p · step].
 struct Left {
   const float* values;
   std::size_t row_step;
   std::size_t step;
 };
 
-/// Some columns of the right factor, and of the result below them.
+/// Some adjacent columns of the right factor, and the same columns of the result.
 struct Panel {
   const float* values;   // the first row of the right factor
-  std::size_t step;      // to the next row
+  std::size_t step;      // distance to the next row of the right factor
   float* result;         // the first row of the result
-  std::size_t row_step;  // to its next row
-  std::size_t columns;   // of the result; the right factor has zeros up to the full width
+  std::size_t row_step;  // distance to the next row of the result
+  std::size_t columns;   // number of columns; `values` has zeros up to the full width
 };
 
-// Some elements of the result at a time stay in registers: kRows × (kVectors · kLanes).
+// Computes kRows rows of a panel's result, which stay in registers: kRows × (kVectors · kLanes)
+// floats.
 template <std::size_t kLanes, std::size_t kVectors, std::size_t kRows>
 AQUAFARM_INLINE void AddTile(std::size_t k, const Left& left, std::size_t row, const Panel& panel,
                              float beta) {
@@ -159,15 +160,15 @@ AQUAFARM_INLINE void MultiplyPanel(std::size_t m, std::size_t k, const Left& lef
   for (; row < m; ++row) AddTile<kLanes, kVectors, 1>(k, left, row, panel, beta);
 }
 
-// One row of MultiplyByTransposed, whose results are scalar products. The 64 partial sums and their
-// order do not depend on the number of lanes.
+// Computes one row of MultiplyByTransposed, whose elements are scalar products. The 64 partial sums
+// and their order do not depend on the number of lanes, so the results are equal in all bits.
 template <std::size_t kLanes>
 AQUAFARM_INLINE void MultiplyRow(std::size_t n, std::size_t k, const float* a, const float* b,
                                  float beta, float* c) {
   using Vector = typename VectorOf<kLanes>::Type;
   constexpr std::size_t kGroup = 16;
   constexpr std::size_t kGroups = 4;
-  constexpr std::size_t kVectors = kGroup / kLanes;  // of a group
+  constexpr std::size_t kVectors = kGroup / kLanes;  // vectors per group
   for (std::size_t j = 0; j < n; ++j, b += k) {
     Vector sums[kGroups * kVectors] = {};
     std::size_t p = 0;
@@ -195,7 +196,7 @@ AQUAFARM_INLINE void MultiplyRow(std::size_t n, std::size_t k, const float* a, c
 #define AQUAFARM_AVX512 __attribute__((target("arch=x86-64-v4,prefer-vector-width=512")))
 #define AQUAFARM_AVX2 __attribute__((target("arch=x86-64-v3")))
 
-// 32 registers of 16 numbers
+// AVX-512 has 32 registers of 16 floats.
 AQUAFARM_AVX512 void MultiplyPanel512(std::size_t m, std::size_t k, const Left& left,
                                       const Panel& panel, float beta) {
   MultiplyPanel<16, 8>(m, k, left, panel, beta);
@@ -205,7 +206,7 @@ AQUAFARM_AVX512 void MultiplyRow512(std::size_t n, std::size_t k, const float* a
   MultiplyRow<16>(n, k, a, b, beta, c);
 }
 
-// 16 registers of 8 numbers
+// AVX2 has 16 registers of 8 floats.
 AQUAFARM_AVX2 void MultiplyPanel256(std::size_t m, std::size_t k, const Left& left,
                                     const Panel& panel, float beta) {
   MultiplyPanel<8, 6>(m, k, left, panel, beta);
@@ -223,7 +224,8 @@ struct Code {
   const char* name;
 };
 
-// By the processor or, for comparisons, by an environment variable. BLAS has no function here.
+// Returns the code that the environment variable AQUAFARM_PRODUCTS names, else the fastest that the
+// processor supports. For BLAS or Eigen, the functions are null.
 const Code& Selected() {
   static const Code code = [] {
     __builtin_cpu_init();
@@ -237,21 +239,22 @@ const Code& Selected() {
       return Code{MultiplyPanel256, MultiplyRow256, 16, "avx2"};
     }
     if (takes(kLibrary)) return Code{nullptr, nullptr, 0, kLibrary};
-    throw InputError("AQUAFARM_PRODUCTS: got '" + name + "', expected avx512 or avx2, which this " +
-                     "processor must have, or " + kLibrary + "; or unset it");
+    throw InputError("AQUAFARM_PRODUCTS: got '" + name + "', expected avx512 or avx2, if this " +
+                     "processor has it, or " + kLibrary + "; or unset the variable");
   }();
   return code;
 }
 
-/// The right factor, or its transpose: element (p, j) is values[p · step + j · column_step].
+/// The right factor, possibly stored transposed: element (p, j) is
+/// values[p · step + j · column_step].
 struct Right {
   const float* values;
   std::size_t step;
   std::size_t column_step;
 };
 
-// Copies `columns` columns and appends zeros up to `width`. The panel then fills the first-level
-// cache in one piece.
+// Copies `columns` columns to `out` [k, width] and appends zeros up to `width`. The copy is
+// contiguous, which suits the first-level cache.
 void Pack(const Right& right, std::size_t k, std::size_t columns, std::size_t width, float* out) {
   if (right.column_step == 1) {
     for (std::size_t p = 0; p < k; ++p, out += width) {
@@ -266,12 +269,13 @@ void Pack(const Right& right, std::size_t k, std::size_t columns, std::size_t wi
   }
 }
 
-// @returns false if the processor has no code
+// Computes c = left · right + beta · c. Returns false, without a result, if BLAS or Eigen is
+// selected.
 bool MultiplyOwn(std::size_t m, std::size_t n, std::size_t k, const Left& left, Right right,
                  float beta, float* c) {
   const Code& code = Selected();
   if (code.multiply == nullptr) return false;
-  constexpr std::size_t kFewRows = 16;  // copying a panel costs more than it saves
+  constexpr std::size_t kFewRows = 16;  // up to here, copying a panel costs more than it saves
   constexpr std::size_t kFewTransposedRows = 4;
   if (right.column_step != 1 && m <= kFewTransposedRows) {
     for (std::size_t i = 0; i < m; ++i) {
@@ -300,7 +304,7 @@ bool MultiplyOwn(std::size_t m, std::size_t n, std::size_t k, const Left& left, 
 
 using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Views a row-major matrix [rows, columns].
+// Returns a view of a row-major matrix [rows, columns].
 auto AsMatrix(const float* values, std::size_t rows, std::size_t columns) {
   return Eigen::Map<const RowMajor>(values, static_cast<Eigen::Index>(rows),
                                     static_cast<Eigen::Index>(columns));

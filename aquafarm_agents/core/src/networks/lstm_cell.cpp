@@ -10,11 +10,11 @@
 namespace aquafarm::agents {
 namespace {
 
-// e^x − 1 = 2^n e^r − 1 with x = n ln 2 + r, and the series of e^r − 1 for |r| ≤ ln 2 / 2.
-// Compilers turn loops of it into vector instructions. @param x in [-87, 87], or NaN
+// Returns e^x − 1 = 2^n e^r − 1 with x = n ln 2 + r, where e^r − 1 is a Taylor series for |r| ≤ ln
+// 2 / 2. Compilers vectorize loops that call it. @param x in [-87, 87], or NaN
 inline float ExpMinusOne(float x) {
   constexpr float kPerLog2 = 1.44269504F;
-  constexpr float kLog2 = 0.693359375F;         // with few digits: n · kLog2 is exact
+  constexpr float kLog2 = 0.693359375F;         // has few digits, so that n · kLog2 is exact
   constexpr float kLog2Rest = -2.12194440e-4F;  // ln 2 − kLog2
   constexpr float kToWhole = 12582912.0F;       // 1.5 · 2^23: adding it rounds to a whole number
   const float shifted = x * kPerLog2 + kToWhole;
@@ -27,13 +27,13 @@ inline float ExpMinusOne(float x) {
   series = series * r * r + r;
   std::uint32_t bits = 0;
   std::memcpy(&bits, &shifted, sizeof bits);
-  bits = (bits << 23U) + 0x3F800000U;  // of 2^n
+  bits = (bits << 23U) + 0x3F800000U;  // the bits of 2^n
   float power = 0.0F;
   std::memcpy(&power, &bits, sizeof power);
   return power * series + (power - 1.0F);
 }
 
-// NaN stays NaN.
+// Limits x to [-limit, limit]. NaN stays NaN.
 inline float Bound(float x, float limit) { return std::max(std::min(x, limit), -limit); }
 
 inline float Logistic(float x) { return 1.0F / (2.0F + ExpMinusOne(Bound(-x, 87.0F))); }

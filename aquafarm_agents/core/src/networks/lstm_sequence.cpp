@@ -52,7 +52,8 @@ void LstmBackward(const LstmShape& shape, const float* in, const float* hidden,
   }
   LinearInputSlopes(rows, shape.inputs, shape.gates(), gate_slopes, weights.input, 0.0F, in_slopes);
   LinearGradient(rows, shape.inputs, shape.gates(), in, gate_slopes, gradient.input, gradient.bias);
-  // h before the first step is the state, before the others the output of the one before.
+  // h before the first step is `hidden`; h before each other step is the output of the previous
+  // step.
   MultiplyTransposed(shape.gates(), shape.hidden, shape.rows, gate_slopes, hidden, 0.0F,
                      gradient.hidden);
   if (shape.steps == 1) return;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// An LSTM of one layer along sequences, with the weights of torch::nn::LSTM, and its gradient, in
-/// memory of the caller.
+/// An LSTM of one layer, evaluated along sequences, and its gradient. The weights have the layout
+/// of torch::nn::LSTM. The caller provides all memory.
 
 #include <cstddef>
 
@@ -24,30 +24,34 @@ template <typename Float>
 struct LstmWeights {
   Float* input{};   ///< [4H, F]
   Float* hidden{};  ///< [4H, H]
-  Float* bias{};    ///< [4H] the sum of both biases
+  Float* bias{};    ///< [4H] the sum of the two biases of torch::nn::LSTM
 };
 
-/// What the gradient needs.
+/// Results of LstmForward, which LstmBackward needs.
 struct LstmTrace {
-  float* gates{};      ///< [T, B, 4H] after the nonlinearity
-  float* cells{};      ///< [T + 1, B, H]; the first is c before the first step, set by the caller
-  float* cell_tanh{};  ///< [T, B, H]
-  float* output{};     ///< [T, B, H] h
+  float* gates{};      ///< [T, B, 4H] gates, after the nonlinear function
+  float* cells{};      ///< [T + 1, B, H] c; the caller sets element 0, c before the first step
+  float* cell_tanh{};  ///< [T, B, H] tanh(c) after each step
+  float* output{};     ///< [T, B, H] h after each step
 };
 
-/// @param in [T, B, F] @param hidden [B, H] h before the first step
-/// @param transposed [H, 4H] scratch
+/// Evaluates the LSTM along T steps.
+/// @param in [T, B, F]
+/// @param hidden [B, H] h before the first step
+/// @param transposed [H, 4H] scratch memory
+/// @param trace receives the results
 void LstmForward(const LstmShape& shape, const float* in, const float* hidden,
                  const LstmWeights<const float>& weights, float* transposed,
                  const LstmTrace& trace);
 
-/// Slopes are d loss / d value.
-/// @param output_slopes [T, B, H] of h of each step; null if nothing reads them
-/// @param hidden_slopes, cell_slopes [B, H] of h and c after the last step; receive those of h and
-/// c
-///        before the first
-/// @param gate_slopes [T, B, 4H] scratch
-/// @param gradient receives the gradient @param in_slopes [T, B, F] receives the slopes of `in`
+/// Computes the gradient of LstmForward.
+/// @param in, hidden, weights, trace as in LstmForward; weights.bias is not read
+/// @param output_slopes [T, B, H] d loss / d h after each step; null if all are 0
+/// @param hidden_slopes, cell_slopes [B, H] further slopes d loss / d (h, c) after the last step;
+///   receive those before the first step
+/// @param gate_slopes [T, B, 4H] scratch memory
+/// @param gradient receives d loss / d weights
+/// @param in_slopes receives d loss / d in, [T, B, F]
 void LstmBackward(const LstmShape& shape, const float* in, const float* hidden,
                   const LstmWeights<const float>& weights, const LstmTrace& trace,
                   const float* output_slopes, float* hidden_slopes, float* cell_slopes,

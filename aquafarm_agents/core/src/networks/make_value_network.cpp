@@ -11,7 +11,7 @@
 namespace aquafarm::agents {
 namespace {
 
-/// The values of a module's last evaluation on the CPU, and their differentiation.
+/// Keeps the values of a module's last evaluation, copied to the CPU, and differentiates them.
 class ModuleOutput {
  public:
   ModuleOutput(FlatParameters& parameters, Learns learns)
@@ -92,7 +92,7 @@ class RecurrentModuleValues final : public RecurrentValueNetwork {
         features, {static_cast<std::int64_t>(steps), static_cast<std::int64_t>(rows), features_},
         output_.device());
   }
-  // Copies, since the differentiation needs the state that Store overwrites.
+  // Copies the state, because Store overwrites it before Backward needs it.
   RecurrentNetwork::State ToState(std::size_t rows, float* state) const {
     const torch::Tensor both =
         torch::from_blob(state, {static_cast<std::int64_t>(rows), 2, module_->hidden()})
@@ -112,7 +112,7 @@ class RecurrentModuleValues final : public RecurrentValueNetwork {
   ModuleOutput output_;
 };
 
-// Whether the parameters are floats in the memory of the CPU.
+// Returns whether the parameters are floats in the memory of the CPU.
 bool IsPlain(const FlatParameters& parameters) {
   return parameters.values().is_cpu() && parameters.values().scalar_type() == torch::kFloat;
 }

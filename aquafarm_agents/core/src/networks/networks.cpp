@@ -66,7 +66,7 @@ torch::Device FindDevice(const std::string& name) {
   if (name == "cpu") return torch::kCPU;
   const bool has_cuda = torch::cuda::is_available();
   if (name == "cuda" && !has_cuda) {
-    throw InputError("device: got cuda, but this machine or this libtorch has none; expected cpu");
+    throw InputError("device: got cuda, which this machine or this libtorch lacks; expected cpu");
   }
   return has_cuda ? torch::kCUDA : torch::kCPU;
 }
@@ -156,7 +156,7 @@ std::vector<float> FlatParameters::ToVector() const {
 void FlatParameters::FromVector(const std::vector<float>& values) {
   if (static_cast<std::int64_t>(values.size()) != size()) {
     throw InputError("weights: got " + std::to_string(values.size()) + " numbers, expected " +
-                     std::to_string(size()) + ": another network");
+                     std::to_string(size()) + ": they are of another network");
   }
   const torch::NoGradGuard no_grad;
   values_.copy_(torch::from_blob(const_cast<float*>(values.data()), {size()}));
@@ -179,8 +179,8 @@ void DrawWeights(nn::Module& module, std::uint64_t seed, std::uint32_t stream) {
   std::int64_t fan_in = 1;
   for (auto& item : module.named_parameters()) {
     torch::Tensor& weights = item.value();
-    // A bias follows its weights and has the same fan-in. For an LSTM it is the hidden size, which
-    // is also the width of the recurrent weights before the biases.
+    // A bias has the fan-in of the weights before it. The biases of an LSTM follow its recurrent
+    // weights, so that their fan-in is the hidden size.
     if (weights.dim() > 1) fan_in = weights.numel() / weights.size(0);
     const float limit = 1.0F / std::sqrt(static_cast<float>(fan_in));
     float* const values = weights.data_ptr<float>();

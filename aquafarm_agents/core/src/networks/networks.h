@@ -17,11 +17,12 @@
 
 namespace aquafarm::agents {
 
-/// Device of a name. @throws InputError if the name is cuda and there is no CUDA device
+/// Returns the device for an option value: cpu, cuda, or auto (CUDA if available, else the CPU).
+/// @throws InputError if the value is cuda and there is no CUDA device
 torch::Device FindDevice(const std::string& name);
 
-/// Q(s, ·) from features: hidden - ReLU - hidden - ReLU - head.
-/// The head is one layer, or V + A − mean A when dueling.
+/// Last layer of a network: Q = A, a linear layer, or Q = V + A − mean A if dueling (Wang et al.
+/// 2016).
 class HeadImpl : public torch::nn::Module {
  public:
   HeadImpl(std::int64_t inputs, bool dueling);
@@ -35,19 +36,21 @@ class HeadImpl : public torch::nn::Module {
 };
 TORCH_MODULE(Head);
 
+/// A network for Q(s, ·): hidden - ReLU - hidden - ReLU - head for features, or two convolutions
+/// with ReLU and hidden - ReLU - head for planes.
 class QNetwork : public torch::nn::Module {
  public:
-  /// [B, F] or [B, P, H, W], floats → [B, kActionCount]
+  /// @param input [B, F] or [B, P, H, W], floats
+  /// @returns Q [B, kActionCount]
   virtual torch::Tensor Forward(const torch::Tensor& input) = 0;
 };
 
-/// Makes a network for farms of `spec`. Initial weights follow PyTorch's distribution, drawn from
-/// (seed, kLearner).
+/// Makes a network for farms of `spec`. DrawWeights draws the initial weights from `seed`.
 std::shared_ptr<QNetwork> MakeNetwork(const EnvironmentSpec& spec, const DeepOptions& options,
                                       std::uint64_t seed);
 
-/// An LSTM between two hidden layers. With the skip connection, which the paper does not have, it
-/// learns several times as fast:
+/// A network for Q with an LSTM between two hidden layers. With the skip connection, which the
+/// paper does not have, it learns several times as fast:
 ///
 ///   Linear - ReLU --+-- LSTM --+-- Linear - ReLU - head
 ///                   +----------+   skip connection
@@ -58,11 +61,12 @@ class RecurrentNetwork : public torch::nn::Module {
 
   using State = std::pair<torch::Tensor, torch::Tensor>;  ///< h, c, each [1, B, hidden]
   /// @param input [T, B, F]
-  /// @param state before the first step; receives the state after the last
-  /// @returns [T, B, kActionCount]
+  /// @param state recurrent state before the first step; receives the one after the last step
+  /// @returns Q [T, B, kActionCount]
   torch::Tensor Forward(const torch::Tensor& input, State& state);
-  /// Advances only the state.
+  /// As Forward, but computes only the state.
   void WarmUp(const torch::Tensor& input, State& state);
+  /// Returns the number of units of the LSTM.
   std::int64_t hidden() const { return lstm_weights_[1].size(1); }
 
  private:
@@ -84,7 +88,7 @@ class FlatParameters {
   /// them.
   FlatParameters(torch::nn::Module& module, torch::Device device);
 
-  /// Leaf tensor with a gradient, [size].
+  /// Returns the tensor of all parameters, [size], a leaf with a gradient.
   torch::Tensor& values() { return values_; }
   const torch::Tensor& values() const { return values_; }
   std::int64_t size() const { return values_.numel(); }
@@ -92,16 +96,17 @@ class FlatParameters {
   std::vector<float> ToVector() const;
   /// @throws InputError unless `values` has size() values
   void FromVector(const std::vector<float>& values);
-  /// Moves each parameter by `rate` of its distance towards those of a module of the same
-  /// architecture; 1 copies them.
+  /// Moves each parameter towards that of `other` by `rate` times their difference; 1 copies it.
+  /// @param other parameters of a module of the same architecture
   void MoveTowards(const FlatParameters& other, double rate);
 
  private:
   torch::Tensor values_;
 };
 
-/// Draws initial weights as PyTorch does, uniform in ±1/√fan_in, but from (seed, kLearner). They
-/// are the same with every version of the library.
+/// Draws initial weights uniformly in ±1/√fan_in, the distribution of PyTorch, from stream `stream`
+/// of (seed, RngStream::kLearner). The weights do not depend on the version of libtorch. The
+/// parameters must be on the CPU.
 void DrawWeights(torch::nn::Module& module, std::uint64_t seed, std::uint32_t stream);
 
 }  // namespace aquafarm::agents

@@ -14,8 +14,9 @@ namespace {
 constexpr unsigned kActionBits = 4;
 static_assert(kActionCount < 1 << kActionBits);
 
-// Names as in Encoder::feature_names. @param has_cell the features contain the ship's cell; if not,
-// the relative positions of the ports identify it
+// Returns whether a feature is part of the situation. @param name as in Encoder::feature_names
+// @param has_cell whether the features contain the ship's cell; if not, the relative positions of
+// the ports identify the cell
 bool DescribesSituation(const std::string& name, bool has_cell) {
   if (name == "self.x" || name == "self.y" || EndsWith(name, "free_capacity")) return true;
   if (name.rfind("device", 0) == 0) return EndsWith(name, ".deployed") || EndsWith(name, ".aboard");
@@ -37,7 +38,7 @@ RepetitionPenalty::RepetitionPenalty(const EnvironmentSpec& spec, double penalty
   done_.resize(steps_.size() * kRemembered);
 }
 
-// Hash of the situation, above the bits of an action.
+// Returns the hash of the situation, shifted to leave the low bits free for an action.
 std::uint64_t RepetitionPenalty::SituationOf(const float* features) const {
   Hasher situation;
   for (const std::size_t feature : described_) situation.Add(features[feature], 0.0F);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What DQN, LSTM-DQN and MADDPG share. A step adds the results to the replay, makes the updates
-/// that are due from samples of it, and chooses actions.
+/// Base class of DQN, LSTM-DQN and MADDPG. A step adds the results to the replay buffer, makes the
+/// updates that are due with samples from the buffer, and chooses actions.
 
 #include <string>
 #include <utility>
@@ -16,17 +16,17 @@
 
 namespace aquafarm::agents {
 
-/// Settings of the parts that the learners share.
+/// Settings of the base class.
 struct ReplayLearnerOptions {
   ExplorationOptions exploration;
-  double value_scale{1.0};  ///< of the values passed to the explorer, per unit of reward
+  double value_scale{1.0};  ///< scale of the values passed to the explorer, per unit of reward
   ReplayOptions replay;
-  DeepOptions sampling;  ///< batch_size, priority_exponent and importance_exponent
+  DeepOptions sampling;  ///< only batch_size, priority_exponent and importance_exponent
   std::size_t steps{1};  ///< number of later time steps that a sample needs
   std::size_t group{1};  ///< number of agents of a sample; see ReplaySampler
 };
 
-/// @tparam Scalar of an observation: float features, or bytes of planes
+/// @tparam Scalar type of an observation's values: float features, or bytes of planes
 template <typename Scalar>
 class ReplayLearner : public Learner {
  public:
@@ -69,21 +69,26 @@ class ReplayLearner : public Learner {
         replay_(options.replay),
         sampler_(replay_, options.sampling, options.steps, options.group) {}
 
-  /// Recurrent states of all agents before this step, reset where an episode starts; null without.
+  /// Returns the recurrent states of all agents before this step, zero where an episode starts;
+  /// null if the network is not recurrent.
   virtual const float* RecurrentStates(const StepResults&) { return nullptr; }
+  /// Adds farm steps, from which the number of due updates follows.
   virtual void CountSteps(std::uint64_t farm_steps) = 0;
   /// Consumes one due update. @returns false if no update is due
   virtual bool TakeDue() = 0;
-  /// Whether the replay is long enough for a sample.
+  /// Returns whether the replay has enough time steps for a sample.
   virtual bool CanSample() const { return true; }
   /// Samples a batch and learns from it.
   virtual void Update() = 0;
-  /// @param actions [slots]
+  /// Chooses the exploratory actions. @param actions receives them, [slots]
   virtual void Choose(const StepResults& results, std::vector<std::uint8_t>& actions) = 0;
   /// Saves the state of the derived class.
   virtual void SaveOwn(Checkpoint& checkpoint) const = 0;
+  /// Restores the state saved by SaveOwn. @throws InputError if sections are missing or do not fit
   virtual void LoadOwn(const Checkpoint& checkpoint) = 0;
 
+  /// Copies `values` to the device, as a tensor of `shape`. On the CPU the tensor refers to
+  /// `values` without a copy.
   template <typename T>
   torch::Tensor ToDevice(std::vector<T>& values, std::vector<std::int64_t> shape) const {
     return torch::from_blob(values.data(), shape, torch::CppTypeToScalarType<T>::value).to(device_);
@@ -94,7 +99,7 @@ class ReplayLearner : public Learner {
   const std::string resolved_;
   const torch::Device device_;
   Explorer explorer_;
-  RandomStream rng_;  // of the samples
+  RandomStream rng_;  // draws the samples
   Replay<Scalar> replay_;
   ReplaySampler<Scalar> sampler_;
   double progress_{};

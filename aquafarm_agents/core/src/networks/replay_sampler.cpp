@@ -28,7 +28,7 @@ ReplaySampler<Scalar>::ReplaySampler(const Replay<Scalar>& replay, const DeepOpt
 template <typename Scalar>
 void ReplaySampler<Scalar>::Add() {
   for (std::size_t slot = 0; slot < replay_.slots(); slot += group_) {
-    Mark(replay_.Row(replay_.size() - 1, slot), false);  // clears the overwritten time step
+    Mark(replay_.Row(replay_.size() - 1, slot), false);  // its row may have been overwritten
     if (replay_.size() <= steps_) continue;
     const std::size_t age = replay_.size() - 1 - steps_;
     Mark(replay_.Row(age, slot), Begins(age, slot));
@@ -57,7 +57,7 @@ TransitionIndex ReplaySampler<Scalar>::Draw(RandomStream& rng, std::size_t i) {
     return {replay_.Age(row), row % replay_.slots()};
   }
   const auto moments = static_cast<std::uint32_t>(replay_.size() - steps_);
-  for (;;) {  // terminates: IsReady holds, and most time steps begin a transition
+  for (;;) {  // terminates, because IsReady() holds
     const std::size_t age = rng.Below(moments);
     const std::size_t slot =
         group_ * rng.Below(static_cast<std::uint32_t>(replay_.slots() / group_));
@@ -109,7 +109,7 @@ void ReplaySampler<Scalar>::Load(const Checkpoint& checkpoint) {
   if (!priorities_) return;
   std::vector<float> priorities;
   std::vector<float> largest;
-  // In older checkpoints the largest priority follows those of the rows.
+  // In older checkpoints the largest priority is the last element of `priorities`.
   const bool is_apart = checkpoint.Has(kLargest);
   checkpoint.GetArray("priorities", replay_.rows() + (is_apart ? 0 : 1), priorities);
   if (is_apart) checkpoint.GetArray(kLargest, 1, largest);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Sampling of replayed transitions: uniform, or prioritised by the TD error (Schaul et al. 2016)
-/// with P(i) ∝ |δ_i|^α and importance weights (N P(i))^-β.
+/// Sampling of replayed transitions: uniform, or prioritised by the TD error δ (Schaul et al. 2016)
+/// with P(i) ∝ (|δ_i| + 1e-4)^α and importance weights (N P(i))^-β.
 
 #include <cstdint>
 #include <memory>
@@ -15,36 +15,41 @@
 
 namespace aquafarm::agents {
 
-/// Index of a time step of one agent, or of a whole farm, in a replay.
+/// Position of a transition in a replay.
 struct TransitionIndex {
-  std::size_t age{};
-  std::size_t slot{};
+  std::size_t age{};   ///< number of time steps after the oldest stored one
+  std::size_t slot{};  ///< slot of the agent, or of the first agent of a farm
 };
 
+/// Draws the transitions of minibatches.
 template <typename Scalar>
 class ReplaySampler {
  public:
   /// @param replay must outlive the sampler
-  /// @param steps number of later time steps that a drawn time step must have
-  /// @param group 1, or the number of agents of a farm to draw whole farms. The slot is then that
-  ///        of the farm's first agent, which may be done
+  /// @param steps number of later time steps that must be stored for a drawn time step
+  /// @param group 1 to draw transitions of single agents; the number of agents per farm to draw
+  ///        transitions of whole farms, of which at least one agent is not done
   ReplaySampler(const Replay<Scalar>& replay, const DeepOptions& options, std::size_t steps,
                 std::size_t group = 1);
 
   /// Updates the sampler after a time step was added to the replay.
   void Add();
-  /// True if a transition can be drawn. Precondition of Draw.
+  /// Returns whether a transition can be drawn. Precondition of Draw.
   bool IsReady() const;
-  /// Draws the i-th transition of a batch.
+  /// Draws transition i of [0, batch_size) of a batch.
   TransitionIndex Draw(RandomStream& rng, std::size_t i);
-  /// Importance weights of the last batch, [batch], scaled to a max of 1.
-  /// @param progress of the run, [0, 1]; β rises to 1 with it
+  /// Returns the importance weights of the drawn batch, [batch_size], scaled to a max of 1. Must be
+  /// called once after the draws of a batch.
+  /// @param progress of the run, [0, 1]; β rises linearly with it, from importance_exponent to 1
   const std::vector<float>& ImportanceWeights(double progress);
-  /// Sets the TD error at the row of a drawn transition. No effect with uniform sampling.
+  /// Sets the priority of a drawn transition. No effect with uniform sampling.
+  /// @param row Replay::Row of the transition
+  /// @param error absolute TD error
   void UpdatePriority(std::size_t row, float error);
 
   void Save(Checkpoint& checkpoint) const;
-  /// Requires a loaded replay. @throws InputError
+  /// Restores the priorities. The replay must be loaded before.
+  /// @throws InputError if sections are missing or do not fit
   void Load(const Checkpoint& checkpoint);
 
  private:
@@ -63,7 +68,7 @@ class ReplaySampler {
   std::size_t beginning_count_{};
   std::unique_ptr<SumTree> priorities_;  // by row; null if uniform
   float largest_priority_{1.0F};
-  std::vector<float> weights_;  // P(i) until Weigh is called
+  std::vector<float> weights_;  // [batch_size] P(i) of the draws, until ImportanceWeights is called
 };
 
 extern template class ReplaySampler<float>;

@@ -12,35 +12,40 @@
 
 namespace aquafarm::agents {
 
-/// A minibatch of B runs of time steps, time-major. A run has burn_in time steps that warm up the
-/// state, followed by time steps 0 … T. The first T of these are trained on as far as their episode
-/// lasts.
+/// A minibatch of B runs of time steps, time-major. A run has burn_in time steps that only warm up
+/// the recurrent state, followed by time steps 0 … T, where T is sequence_length. The network is
+/// trained at time steps 0 … T − 1 that lie before the end of the episode.
 struct SequenceBatch {
   std::vector<float> warm_up;          ///< [burn_in, B, F]
   std::vector<float> observations;     ///< [T + 1, B, F]
-  std::vector<float> recurrent_state;  ///< [B, 2, hidden] before the first time step of warm_up
-  std::vector<float>
-      recurrent_state_after;  ///< [B, 2, hidden] stored at time step 1; paper_tuple only
-  std::vector<float>
-      warms_up;  ///< [B] 0 if recurrent_state is already the state before time step 0
+  std::vector<float> recurrent_state;  ///< [B, 2, hidden] before the first time step of the run
+  /// [B, 2, hidden] state stored at time step 1; empty unless paper_tuple is set
+  std::vector<float> recurrent_state_after;
+  /// [B] 1 if warm_up must be read before time step 0; 0 if recurrent_state is the state before
+  /// time step 0
+  std::vector<float> warms_up;
   std::vector<std::uint8_t> actions;  ///< [T, B]
-  std::vector<float> rewards;         ///< [T, B] summed over the steps to `next`
-  std::vector<float> discounts;       ///< [T, B] factor of the value at `next`
-  std::vector<std::int64_t> next;     ///< [T, B] time step of the bootstrap value
-  std::vector<ActionMask> allowed;    ///< [T + 1, B]
-  std::vector<float> weights;         ///< [T, B] 1 if trained on, else 0
-  std::vector<std::size_t> rows;      ///< [T, B] rows of the replay
+  std::vector<float> rewards;       ///< [T, B] scaled, and discounted sum over the steps to `next`
+  std::vector<float> discounts;     ///< [T, B] factor of the value at `next`
+  std::vector<std::int64_t> next;   ///< [T, B] time step of the bootstrap value
+  std::vector<ActionMask> allowed;  ///< [T + 1, B] allowed actions
+  std::vector<float> weights;     ///< [T, B] 1 if the network is trained at this time step, else 0
+  std::vector<std::size_t> rows;  ///< [T, B] rows in the replay
 
   /// @param features F
   /// @param recurrent_size 2 · hidden
   SequenceBatch(const DeepOptions& options, std::size_t features, std::size_t recurrent_size);
 
+  /// Returns the number of runs, B.
   std::size_t size() const { return warms_up.size(); }
 
-  /// Fills run b, which trains from `moment` on. The state is warmed up over the burn_in time steps
-  /// before it, from the state stored at the first of them. A run never crosses an episode start:
-  /// near it the run begins at the first time step of the episode, whose state is exactly zero.
-  /// If earlier time steps are overwritten, it begins at the oldest one, with its stored state.
+  /// Fills run b. Time step 0 is `moment`. The warm-up has the burn_in time steps before it and
+  /// starts with the recurrent state stored at the first of them. There is no warm-up in two cases:
+  ///
+  ///   moment is within burn_in steps of     time step 0 is that first time step, whose state is
+  ///   the first time step of its episode    zero
+  ///   the replay has fewer than burn_in     time step 0 is the oldest stored time step; its stored
+  ///   earlier time steps                    state is used
   void Fill(std::size_t b, const Replay<float>& replay, const TransitionIndex& moment,
             const DeepOptions& options);
 

@@ -17,8 +17,8 @@ namespace {
 std::string torch_warning;
 std::string network_libraries;
 
-// True if the loaded BLAS is an optimized one, such as OpenBLAS or MKL. The reference BLAS has none
-// of these symbols.
+// Returns whether the loaded BLAS is an optimized one, such as OpenBLAS or MKL. The reference BLAS
+// has none of these symbols.
 bool HasFastBlas() {
   for (const char* symbol :
        {"openblas_get_config", "mkl_get_version", "bli_info_get_version_str", "ATL_buildinfo"}) {
@@ -31,7 +31,8 @@ bool HasFastBlas() {
 
 void PrepareTorch(std::int32_t threads) {
   at::set_num_threads(threads);
-  // Debian's OpenBLAS has its own threads, whose synchronization costs more than they gain here.
+  // Debian's OpenBLAS has its own threads. Their synchronization costs more time than they save
+  // with matrices of this size.
   using SetThreads = void (*)(int);
   const auto set_threads =
       reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));

@@ -11,7 +11,7 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr std::uint64_t kUpdatesPerLook = 8;
+constexpr std::uint64_t kUpdatesPerLook = 8;  // updates per measurement of the reported loss
 constexpr const char* kAverage = "average_weights";
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Parts shared by DQN and LSTM-DQN: the networks, the optimizer and the update schedule.
+/// The parameters of DQN and LSTM-DQN, their optimizer and the schedule of its updates.
 
 #include <torch/torch.h>
 
@@ -19,53 +19,62 @@
 
 namespace aquafarm::agents {
 
-/// Parameters of the acting network, from the checkpoint of a learner or of a policy.
+/// Returns the parameters of the network by which agents act, from the checkpoint of a learner or
+/// of a policy. @throws InputError if the section is missing
 std::vector<float> ActingWeights(const Checkpoint& checkpoint);
 
-/// Origin of a minibatch in the random stream, so that a faulty one can be reproduced.
+/// Where in the random stream a minibatch was drawn. A minibatch with a non-finite loss can thus be
+/// reproduced.
 struct BatchOrigin {
   std::uint64_t seed{};      ///< seed of the learner's random stream
   std::uint64_t position{};  ///< position in the stream before the first draw
 };
 
+/// Optimizes the online network and updates the target network and the moving average of the
+/// weights.
 class ValueOptimizer {
  public:
-  /// All modules have the same architecture. `target` and `acting` start as copies of `online`.
-  /// @param acting a separate module if options.ema_rate is set, else unused
+  /// All modules have the same architecture. The parameters of `target` and `acting` become those
+  /// of `online`.
+  /// @param acting module for the moving average of the weights; unused if options.ema_rate is 0
   ValueOptimizer(const DeepOptions& options, torch::nn::Module& online, torch::nn::Module& target,
                  torch::nn::Module& acting, torch::Device device);
 
-  /// Counts farm steps and sets the learning rate.
+  /// Counts farm steps, from which the number of due updates follows, and sets the learning rate.
+  /// @param progress of the run, [0, 1]
   void Count(std::uint64_t farm_steps, double progress);
   /// Consumes one due update. @returns false if no update is due
   bool TakeDue();
 
-  /// Computes the weighted sum of the losses of n predictions. @param slopes receives d loss /
-  /// d prediction [n]; may be `predicted` or `targets`
+  /// Computes the loss, a weighted sum over predictions, and its derivatives.
+  /// @param predicted, targets, weights [count]
+  /// @param slopes receives d loss / d predicted [count]; may be `predicted` or `targets`
   /// @throws LearnerFailed if the loss is not finite
   void Differentiate(std::size_t count, const float* predicted, const float* targets,
                      const float* weights, float* slopes, const BatchOrigin& origin);
-  /// Takes one step of Adam against the gradient of online(), and updates the target network.
+  /// Takes one step of Adam against the gradient of online(). Updates the target network and the
+  /// moving average of the weights.
   /// @throws LearnerFailed if the gradient is not finite; the parameters are then unchanged
   void Learn(const BatchOrigin& origin);
 
-  /// Statistics of the learner. The loss is the mean squared TD error with the weights of the
-  /// updates, in squared units of the unscaled reward, for every loss function (Fig. 12).
+  /// Returns the statistics of the learner. The loss is a moving average of the weighted mean
+  /// squared TD error, in units of the unscaled reward, for every loss function (Fig. 12).
   LearnerStatus status(double exploration) const;
-  /// Parameters by which agents act: the online parameters, or their moving average.
+  /// Returns the parameters by which agents act: the online parameters, or their moving average.
   const FlatParameters& acting() const { return average_ ? *average_ : online_.parameters(); }
   FlatParameters& online() { return online_.parameters(); }
   FlatParameters& target() { return target_; }
-  FlatParameters* average() { return average_ ? &*average_ : nullptr; }  ///< null without
+  /// Returns the moving average of the parameters; null if ema_rate is 0.
+  FlatParameters* average() { return average_ ? &*average_ : nullptr; }
   std::uint64_t updates() const { return updates_; }
 
   void Save(Checkpoint& checkpoint) const;
-  /// @throws InputError
+  /// @throws InputError if sections are missing or do not fit
   void Load(const Checkpoint& checkpoint);
 
  private:
   template <typename Self, typename Visit>
-  static void VisitNumbers(Self& self, const Visit& visit);  // the saved numbers, by name
+  static void VisitNumbers(Self& self, const Visit& visit);  // see saved_numbers.h
   [[noreturn]] void Fail(const std::string& what, const BatchOrigin& origin) const;
   void Measure(double mean_square);
 

@@ -10,14 +10,14 @@ namespace aquafarm::agents {
 namespace {
 
 constexpr auto kHoldCode = static_cast<std::uint8_t>(Action::kHold);
-// Steps that a ship waits for a ship with a higher id before it makes way itself.
+// Consecutive steps that a ship waits for a ship with a higher id before it makes way itself.
 constexpr std::int32_t kPatience = 3;
 
 std::size_t IndexOf(const Farm& farm, Cell cell) {
   return static_cast<std::size_t>(LinearIndex(cell, farm.scenario().width));
 }
 
-// Steps until the episode ends, if not all devices are delivered before.
+// Returns the steps until the episode ends, unless all devices are delivered earlier.
 std::int32_t StepsLeft(const Farm& farm) {
   std::int32_t left = farm.scenario().step_limit - farm.step();
   if (farm.disasters().empty()) return left;
@@ -28,7 +28,8 @@ std::int32_t StepsLeft(const Farm& farm) {
   return std::min(left, longest);
 }
 
-// Returns the value by which devices are chosen: the insured one where the scenario has money.
+// Returns the value by which devices are chosen: the insured value if the scenario has money, else
+// the value that the reward credits.
 double ValueOf(const Farm& farm, std::size_t device) {
   if (farm.scenario().money) return static_cast<double>(farm.layout().devices[device].insured);
   return static_cast<double>(farm.devices()[device].value);
@@ -66,7 +67,7 @@ void FetchByValue::Act(const Farm& farm, std::uint8_t* actions) {
 
 bool FetchByValue::CanBringHome(const Farm& farm, std::int32_t device, std::int32_t moves) const {
   const Cell cell = farm.devices()[static_cast<std::size_t>(device)].cell;
-  // Two more steps: pickup and drop-off.
+  // Pickup and drop-off take one step each.
   return moves + to_port_[IndexOf(farm, cell)] + 2 <= StepsLeft(farm);
 }
 
@@ -129,7 +130,8 @@ std::int32_t FetchByValue::Blocker(const Farm& farm, std::int32_t id, Cell cell)
   return kNone;
 }
 
-// A ship waits for a ship with a higher id, which makes way, and makes way for one with a lower id.
+// Returns a move along the route, a detour or kHold. If another ship blocks the way, the ship with
+// the higher id makes way and the ship with the lower id waits, for at most kPatience steps.
 std::uint8_t FetchByValue::Sail(const Farm& farm, std::int32_t id,
                                 const std::vector<std::int32_t>& moves) {
   const Cell from = cells_[static_cast<std::size_t>(id)];

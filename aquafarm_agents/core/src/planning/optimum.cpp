@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "aquafarm/agents/base/text.h"
 #include "aquafarm/agents/planning/planner.h"
@@ -20,12 +22,13 @@ struct Pair {
   double best{};
 };
 
-// Number of (cell, devices) states of a plan, without making a planner, which allocates them: each
-// device is deployed, aboard (paid or unpaid) or gone; at most the capacity is aboard.
+// Returns the number of states of a plan. A planner would allocate memory for all of them, so the
+// number is computed without one: each device is deployed, aboard (as paid or as unpaid) or gone,
+// and the number aboard is at most the capacity.
 double StatesOf(const Scenario& scenario) {
   const std::int32_t devices = scenario.devices.Total();
   double sets = 0.0;
-  double chosen = 1.0;  // ways to choose the devices aboard
+  double chosen = 1.0;  // number of ways to choose the devices aboard
   double aboard_ways = 1.0;
   for (std::int32_t aboard = 0; aboard <= std::min(devices, scenario.ships.capacity); ++aboard) {
     double rest = 1.0;
@@ -37,20 +40,21 @@ double StatesOf(const Scenario& scenario) {
   return sets * scenario.CellCount();
 }
 
-// Plays the best plan. Returns the farm at the end, or nothing if it is too large to plan.
+// Plays the best plan. Returns the farm at the end of the episode, or nullopt if the planner
+// refuses the farm.
 std::optional<Farm> PlayBest(Farm farm, std::size_t max_states) {
-  if (StatesOf(farm.scenario()) > static_cast<double>(max_states)) return std::nullopt;
-  try {
-    Planner planner(farm.scenario());
-    const Plan plan = planner.Solve(farm, Foresight::kOracle);
-    for (const std::uint8_t action : plan.actions) {
-      if (!farm.over()) farm.Step(&action);
-    }
-  } catch (const InputError&) {  // more devices than the planner supports
+  const std::size_t most = std::min(max_states, kMaxPlanStates);
+  if (farm.scenario().devices.Total() > kMaxPlanDevices ||
+      StatesOf(farm.scenario()) > static_cast<double>(most)) {
     return std::nullopt;
   }
+  Planner planner(farm.scenario());
+  const Plan plan = planner.Solve(farm, Foresight::kOracle);
+  for (const std::uint8_t action : plan.actions) {
+    if (!farm.over()) farm.Step(&action);
+  }
   const std::uint8_t any = 0;
-  while (!farm.over()) farm.Step(&any);  // its work is done; a plan ends with the last delivery
+  while (!farm.over()) farm.Step(&any);  // a plan ends before the episode if it has no more work
   return farm;
 }
 
@@ -85,7 +89,12 @@ OptimumShare CompareWithOptimum(
   std::vector<Pair> pairs;
   for (const EpisodeSummary& result : episodes) {
     if (stop != nullptr && *stop) break;
-    const std::optional<Farm> best = PlayBest(make_farm(result.seed, result.episode), max_states);
+    Farm farm = make_farm(result.seed, result.episode);
+    if (farm.scenario().AgentCount() > 1) {
+      throw InputError("optimum: got " + std::to_string(farm.scenario().AgentCount()) +
+                       " agents, expected one; use --bound, an upper bound for several");
+    }
+    const std::optional<Farm> best = PlayBest(std::move(farm), max_states);
     if (!best) {
       ++share.too_large;
       continue;

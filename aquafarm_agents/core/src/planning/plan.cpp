@@ -17,7 +17,7 @@ std::vector<Track> Foresee(const Farm& farm, Foresight foresight,
     const auto disaster = static_cast<std::int32_t>(id);
     disasters[id].turn_threshold = 0;
     disasters[id].waypoint = kNone;
-    // A disaster with a track may be far outside the map and ignores its border.
+    // A disaster with a track may be far outside the map. Its border must not affect its motion.
     if (!tracks[id]->empty()) disasters[id].border = Border::kLeave;
     if (!HasForecast(farm, disaster, farm.step())) continue;
     disasters[id].waypoint = 0;
@@ -31,8 +31,8 @@ void Reservations::Add(std::int32_t id, std::int32_t first, const std::vector<st
   for (std::size_t k = 0; k < path.size(); ++k) {
     const std::int32_t step = first + static_cast<std::int32_t>(k);
     taken_[Key(step, path[k])].push_back({id, 0});
-    // Ships move in id order: later ships see its new cell, earlier ones its old cell, and these
-    // must not be in its next cell.
+    // Ships move in id order. When a ship with a lower id moves, this ship is still in its previous
+    // cell. When this ship moves, a ship with a higher id must not be in the next cell.
     taken_[Key(step - 1, path[k])].push_back({id, 1});
     taken_[Key(step + 1, path[k])].push_back({id, -1});
   }

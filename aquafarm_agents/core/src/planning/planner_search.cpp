@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search for a plan: forward in time, max return so far per state, pruned by the bound.
+// The search for a plan, forward in time. It keeps the max return so far of each state, and prunes
+// states by Bound.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -59,7 +60,7 @@ void PlannerSolver::Prepare(const Farm& farm) {
   best_layer_ = 0;
 }
 
-// Returns the value lost when the paid devices aboard lose `share` of their health.
+// Returns the value lost if each paid device aboard loses the health `share`, [0, 1].
 double PlannerSolver::Loss(std::size_t set, float share) const {
   double loss = 0.0;
   for (std::size_t d = 0; d < devices_ && share > 0.0F; ++d) {
@@ -70,7 +71,7 @@ double PlannerSolver::Loss(std::size_t set, float share) const {
   return loss;
 }
 
-// Returns the value that the paid devices aboard lose by the risk at a cell in this step.
+// Returns the value that the paid devices aboard lose in this step at a cell, due to its risk.
 double PlannerSolver::Wear(std::size_t set, std::size_t cell) const {
   const float exposure = scenario_.damage.exposure_damage;
   double loss = 0.0;
@@ -129,7 +130,7 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   }
   if (IsInTheWay(step, cell)) return;
   const float risk = layers_of_step_->risk.data()[cell];
-  // The farm picks up the device with the lowest id in a cell.
+  // A pickup takes the first waiting device in the cell, as in the farm.
   for (std::size_t d = 0; d < devices_; ++d) {
     if (site_[d] != static_cast<std::int32_t>(cell) || PickupPlanOf(set, d) != kWaiting) continue;
     for (const PickupPlan pickup : {kPaid, kUnpaid}) {
@@ -159,7 +160,7 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   }
 }
 
-// Ports are never blocked.
+// Returns whether other ships exclude this ship from a cell. They never exclude it from a port.
 bool PlannerSolver::IsInTheWay(std::int32_t step, std::size_t cell) const {
   if (task_->others == nullptr) return false;
   const auto index = static_cast<std::int32_t>(cell);
@@ -174,7 +175,7 @@ Plan PlannerSolver::Solve(const Farm& farm, RiskSource& risks, const Task& task)
   task_ = &task;
   risks_ = &risks;
   Prepare(farm);
-  // A narrow search first: its result prunes the exact search.
+  // The result of a narrow search prunes the exact search.
   Search(farm, kBeam);
   Plan narrow = Trace();
   if (best_ != kNever) best_ -= kSlack;
@@ -206,7 +207,7 @@ void PlannerSolver::Search(const Farm& farm, std::size_t widest) {
   if (step == last_step_) EndOfTime();
 }
 
-// Devices aboard may be delivered as paid or as unpaid.
+// Reaches the states at the farm's present step: each device aboard may be paid or unpaid.
 void PlannerSolver::ReachStart(const Farm& farm) {
   layers_.emplace_back();
   ++mark_;
@@ -221,7 +222,7 @@ void PlannerSolver::ReachStart(const Farm& farm) {
     }
     const std::int32_t id = task_->devices[d];
     const Device& device = farm.devices()[static_cast<std::size_t>(id)];
-    // A ship that is a device carries itself.
+    // A self-propelled device counts as aboard its own ship.
     if (device.status == DeviceStatus::kDeployed && id != ship.own_device) continue;
     const std::size_t count = starts.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -240,7 +241,7 @@ void PlannerSolver::ReachStart(const Farm& farm) {
   }
 }
 
-// Keeps the states of the current layer with the highest upper bounds.
+// Keeps only the `widest` states of the newest layer with the highest upper bounds of the return.
 void PlannerSolver::Narrow(std::int32_t step, std::size_t widest) {
   std::vector<Node>& layer = layers_.back();
   if (layer.size() <= widest) return;
@@ -264,7 +265,8 @@ void PlannerSolver::Narrow(std::int32_t step, std::size_t widest) {
   next_values_ = std::move(kept_values);
 }
 
-// The episode ends: plans with an undelivered paid device are invalid.
+// Completes the plans that last until last_step_. Plans with an undelivered paid device are
+// invalid.
 void PlannerSolver::EndOfTime() {
   for (std::size_t index = 0; index < layers_.back().size(); ++index) {
     const Node& node = layers_.back()[index];
@@ -278,7 +280,7 @@ void PlannerSolver::EndOfTime() {
 
 Plan PlannerSolver::Trace() const {
   Plan plan;
-  if (best_layer_ == 0) return plan;  // no complete plan was found
+  if (best_layer_ == 0) return plan;  // there is no complete plan
   plan.expected_return = best_;
   std::uint32_t parent = best_parent_;
   plan.actions.push_back(best_action_);

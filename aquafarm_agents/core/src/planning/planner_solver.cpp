@@ -19,7 +19,6 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t max_devices)
     : scenario_(scenario),
       cells_(static_cast<std::size_t>(scenario.CellCount())),
       devices_(static_cast<std::size_t>(max_devices > 0 ? max_devices : scenario.devices.Total())) {
-  constexpr std::size_t kMaxDevices = 12;
   for (const auto& [name, value] :
        {std::pair{"step", scenario.rewards.step}, std::pair{"illegal", scenario.rewards.illegal}}) {
     if (value <= 0.0F) continue;
@@ -27,10 +26,10 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t max_devices)
                      ": got more than 0, expected at most 0, since a ship earns without end by "
                      "waiting; evaluate a learner instead");
   }
-  if (devices_ > kMaxDevices) {
+  if (devices_ > std::size_t{kMaxPlanDevices}) {
     throw InputError(
         "planner: got " + std::to_string(devices_) + " devices, expected at most " +
-        std::to_string(kMaxDevices) +
+        std::to_string(kMaxPlanDevices) +
         "; give another policy, such as policy:=fetch_by_value, or policy:=none to hold "
         "the ships");
   }
@@ -70,7 +69,7 @@ void PlannerSolver::ListOptions(const Farm& farm) {
       std::vector<Option>& options = options_[static_cast<std::size_t>(here)];
       options.clear();
       if ((layout.bits({x, y}) & kBlockedBits) != 0) continue;
-      std::optional<Option> edge;  // stays in the cell by a move off the map
+      std::optional<Option> edge;  // a move off the map, after which the ship stays in the cell
       for (std::uint8_t action = 0; action < kMoveCount; ++action) {
         const Cell to{x + kMoves[action].x, y + kMoves[action].y};
         const bool on_map =
@@ -89,8 +88,8 @@ void PlannerSolver::ListOptions(const Farm& farm) {
         }
       }
       if (edge) options.push_back(*edge);
-      // Staying in the cell by an illegal action, which replaces the step reward. The action chosen
-      // must not pick up or drop off a device here.
+      // The ship can also stay in the cell by an illegal action, whose reward replaces the step
+      // reward. The action must not pick up or drop off a device here.
       const bool at_port = (layout.bits({x, y}) & kPortBit) != 0;
       options.push_back({here, scenario_.rewards.illegal, 0.0F, 0.0,
                          static_cast<std::uint8_t>(at_port ? Action::kPickup : Action::kDropOff),
@@ -99,7 +98,7 @@ void PlannerSolver::ListOptions(const Farm& farm) {
   }
 }
 
-// Whether the options and moves of the last plan are valid for this one.
+// Returns whether the options, moves and rewards of the last plan are valid for this one.
 bool PlannerSolver::IsPrepared(const Farm& farm) const {
   const Layout& layout = farm.layout();
   const auto is_same = [](const auto& a, const auto& b) {
@@ -119,7 +118,8 @@ bool PlannerSolver::IsPrepared(const Farm& farm) const {
   return true;
 }
 
-// Positions of a task without a device count as gone from the start.
+// Returns whether a set can occur in the task. If the task has fewer than devices_ devices, the
+// unused positions of a set hold kGone.
 bool PlannerSolver::IsOfTask(std::size_t set) const {
   for (std::size_t d = task_->devices.size(); d < devices_; ++d) {
     if (PickupPlanOf(set, d) != kGone) return false;
@@ -127,7 +127,7 @@ bool PlannerSolver::IsOfTask(std::size_t set) const {
   return true;
 }
 
-// A self-propelled device carries itself, without a load.
+// Sets the costs of energy of the task's ship. A self-propelled device carries no load.
 void PlannerSolver::PriceEnergy(const Farm& farm) {
   load_.assign(sets_.size(), 1.0);
   idle_cost_ = km_cost_ = rough_sea_ = 0.0;
@@ -147,7 +147,8 @@ void PlannerSolver::PriceEnergy(const Farm& farm) {
   }
 }
 
-// Lists where a set of devices changes, with the moves that follow.
+// Lists in sources_ the cells where a pickup or a drop-off changes the set, with the min moves from
+// there until the task is complete, in ascending order of the moves.
 void PlannerSolver::SeedMoves(std::size_t set) {
   const auto add = [this](std::size_t next, std::size_t cell) {
     const std::int32_t further = next == all_gone_ ? 0 : moves_[next * cells_ + cell];
@@ -166,7 +167,8 @@ void PlannerSolver::SeedMoves(std::size_t set) {
   std::sort(sources_.begin(), sources_.end());
 }
 
-// A device's status only advances, so each set of devices is solved once, in this order.
+// Returns the sets of the task so that each set comes after all sets to which it can change. A
+// device's PickupPlan only increases, so this is the descending order of the bits.
 std::vector<std::size_t> PlannerSolver::LastSetsFirst() const {
   std::vector<std::size_t> order;
   for (std::size_t set = 0; set < sets_.size(); ++set) {
@@ -177,8 +179,8 @@ std::vector<std::size_t> PlannerSolver::LastSetsFirst() const {
   return order;
 }
 
-// Counts the moves that every state needs until the task is complete: for each set a breadth-first
-// search from all cells where the set changes.
+// Computes the min moves of every state until the task is complete, for each set with a
+// breadth-first search from all cells where the set changes.
 void PlannerSolver::CountMoves() {
   moves_.assign(state_count(), kUnreachable);
   std::fill_n(moves_.begin() + static_cast<std::ptrdiff_t>(all_gone_ * cells_), cells_, 0);
@@ -208,7 +210,8 @@ void PlannerSolver::CountMoves() {
   }
 }
 
-// Updates `best` [cells] with the rewards after a pickup or a drop-off in the cell.
+// Raises best[cell] to the max reward from a pickup or a drop-off in the cell until the task is
+// complete. @param best [cells]
 void PlannerSolver::SeedRewards(std::size_t set, std::vector<double>& best) const {
   const auto raise = [&](std::size_t next, std::size_t cell, float reward) {
     const double further = next == all_gone_ ? 0.0 : rewards_[next * cells_ + cell];
@@ -228,9 +231,9 @@ void PlannerSolver::SeedRewards(std::size_t set, std::vector<double>& best) cons
   }
 }
 
-// Sums the max rewards of every state until the task is complete, in calm water. With a capacity
-// above 1, one drop-off may unload several devices, and each drop-off has a reward. With energy, a
-// move costs what its length and its load cost.
+// Computes the max reward, without values, of every state until the task is complete in calm water.
+// It does not follow from the number of moves with a capacity above 1, where one drop-off may
+// unload several devices, or with energy, where the cost of a move depends on its length and load.
 void PlannerSolver::SumRewards() {
   rewards_.assign(state_count(), kNever);
   std::vector<double> best(cells_);
@@ -301,8 +304,9 @@ PlannerSolver::BestRewards PlannerSolver::BestOf(const RiskLayers& layers) const
   return {static_cast<double>(std::max(quiet, risk + triggered)), static_cast<double>(risk)};
 }
 
-// Sums the best rewards by step. The risks are looked up for twice the time that the task takes on
-// quiet water; later steps count as the best that the source allows.
+// Computes step_rewards_ and surcharges_. It reads the risks of twice as many steps as the task
+// takes in quiet water, plus kMargin. Later steps count with the best reward that any step may
+// have.
 void PlannerSolver::SumStepRewards(const Farm& farm) {
   constexpr std::int32_t kMargin = 32;
   first_step_ = farm.step();
@@ -311,7 +315,7 @@ void PlannerSolver::SumStepRewards(const Farm& farm) {
   surcharges_.assign(steps + 1, 0.0);
   const Ship& ship = farm.ships()[static_cast<std::size_t>(task_->ship)];
   const auto cell = static_cast<std::size_t>(LinearIndex(ship.cell, scenario_.width));
-  std::size_t set = 0;  // all waiting: needs most moves
+  std::size_t set = 0;  // all devices wait, which takes the most moves
   for (std::size_t d = task_->devices.size(); d < devices_; ++d) set = With(set, d, kGone);
   const auto known =
       static_cast<std::size_t>(2 * (moves_[set * cells_ + cell] + gains_[set].steps) + kMargin);
@@ -321,22 +325,22 @@ void PlannerSolver::SumStepRewards(const Farm& farm) {
     BestRewards best{later, 0.0};
     if (k <= known) best = BestOf(risks_->At(first_step_ + static_cast<std::int32_t>(k)));
     step_rewards_[k] = step_rewards_[k - 1] + best.any - idle_cost_;
-    // A step with a pickup or a drop-off earns at most the risk.
+    // In a step with a pickup or a drop-off, Gains has their reward. The step adds only the risk.
     surcharges_[k] =
         surcharges_[k - 1] + std::max(std::min(0.0, best.any - move_reward_), best.risk);
   }
 }
 
-// Returns an upper bound of the return after `step`. Either the plan completes its task, after at
-// least the moves and actions that the task needs, or it lasts until the end. Each step earns at
-// most its best reward.
+// Returns an upper bound of the return after `step`. Either the plan completes its task after at
+// least the min number of moves and actions, or it lasts until the end. Each step earns at most its
+// best reward.
 double PlannerSolver::Bound(std::uint32_t state, std::int32_t step) const {
   const Gains& gains = gains_[state / cells_];
   const auto at = static_cast<std::size_t>(step - first_step_);
   const double bound = gains.if_not + step_rewards_.back() - step_rewards_[at];
   const std::int32_t moves = moves_[state];
   const std::size_t end = at + static_cast<std::size_t>(moves + gains.steps);
-  if (end >= surcharges_.size()) return bound;  // also if unreachable
+  if (end >= surcharges_.size()) return bound;  // also if moves is kUnreachable
   const double rewards = rewards_.empty() ? gains.actions + moves * move_reward_ : rewards_[state];
   return std::max(bound, rewards + gains.value + surcharges_[end] - surcharges_[at]);
 }
@@ -353,7 +357,7 @@ void PlannerSolver::EnterStep(const Farm& farm, std::int32_t step) {
   crash_hurts_ = probability >= 1.0F || ToUnit(draws[0]) < probability;
 }
 
-// Damages the devices that still wait at their deployed positions, after this step.
+// Updates the health that waiting devices have after this step.
 void PlannerSolver::WearDown() {
   const float exposure = scenario_.damage.exposure_damage;
   bool is_worn = false;

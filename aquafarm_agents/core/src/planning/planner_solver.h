@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Implementation of Planner: the farm and the task as a graph (planner_solver.cpp) and the search
-/// in it (planner_search.cpp).
+/// Implementation of Planner. planner_solver.cpp prepares the farm and the task as a graph of
+/// states, planner_search.cpp searches it. A state is a cell of the ship and a set: a status
+/// (PickupPlan) of each device of the task. Its index is set · cells + cell.
 
 #include <cstdint>
 #include <limits>
@@ -18,21 +19,23 @@ enum PickupPlan : std::uint8_t { kWaiting, kPaid, kUnpaid, kGone };
 constexpr std::int32_t kFates = 4;
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
-// Sums of floats in double precision differ from the farm's own sums by less than this.
+// Plans whose returns differ by at most this much count as equal, because rounding may cause such a
+// difference.
 constexpr double kTolerance = 1e-6;
-// Margin by which the exact search starts below the result of the narrow search, to find it again.
+// The exact search starts with the return of the narrow search minus this margin, so that it finds
+// the same plan again if there is no better one.
 constexpr double kSlack = 1e-3;
-// States per step that the narrow search keeps.
+// Max number of states that the narrow search keeps in each step.
 constexpr std::size_t kBeam = 64;
 
-// One action in a cell without disasters: its destination and its reward.
+// One action in a cell, other than pickup and drop-off, without the effects of disasters.
 struct Option {
-  std::int32_t to{};
-  float reward{};  // of a crash or an illegal action; 0 for a quiet move
-  float damage{};  // health lost aboard in a crash
-  double km{};     // distance covered
-  std::uint8_t action{};
-  bool triggers{};  // a crash or an illegal action, which replaces the step reward, even if it is 0
+  std::int32_t to{};      // cell after the action
+  float reward{};         // of a crash or an illegal action; 0 for a move
+  float damage{};         // health that each device aboard loses in a crash, [0, 1]
+  double km{};            // distance covered
+  std::uint8_t action{};  // Action
+  bool triggers{};  // true for a crash or an illegal action: `reward` replaces the step reward
 };
 
 class PlannerSolver {
@@ -45,20 +48,22 @@ class PlannerSolver {
   // A state reached at some step, with its predecessor.
   struct Node {
     std::uint32_t state;
-    std::uint32_t parent;  // index into the previous layer
-    std::uint8_t action;
+    std::uint32_t parent;  // index of the predecessor in the previous layer
+    std::uint8_t action;   // action that led from the predecessor to this state
   };
+  // Whether and how a state was reached in the newest layer.
   struct Open {
-    double reached{kNever};
-    std::uint32_t layer_index{};
-    std::uint32_t mark{};  // mark_ of the layer in which it was reached
+    double reached{kNever};       // max return so far
+    std::uint32_t layer_index{};  // index of its node in the layer
+    std::uint32_t mark{};         // mark_ of the layer in which the state was last reached
   };
-  // Upper bounds of the further rewards of a set of devices, without those of other steps.
+  // Upper bounds of the rewards that a set can still earn with pickups and drop-offs. The rewards
+  // of moves and waiting are not included.
   struct Gains {
-    double value{};        // of the waiting devices at present
-    double actions{};      // pickups and drop-offs, if all devices are delivered one by one
-    double if_not{};       // if the plan lasts until the end of the episode
-    std::int32_t steps{};  // min pickups and drop-offs until all devices are delivered
+    double value{};        // present value of the waiting devices
+    double actions{};      // rewards of pickups and drop-offs if each device is delivered alone
+    double if_not{};       // all of these rewards if the plan lasts until the end of the episode
+    std::int32_t steps{};  // min number of pickups and drop-offs until all devices are delivered
   };
 
   PickupPlan PickupPlanOf(std::size_t set, std::size_t device) const {
@@ -69,7 +74,8 @@ class PlannerSolver {
 
   void Prepare(const Farm& farm);
   void PriceEnergy(const Farm& farm);
-  // Returns the cost of the energy of a step with an action of the list.
+  // Returns the cost of the energy of a step with one of options_.
+  // @param risk at option.to
   double EnergyCost(std::size_t set, const Option& option, float risk) const {
     const double sea = 1.0 + rough_sea_ * static_cast<double>(risk);
     return idle_cost_ + km_cost_ * load_[set] * option.km * sea;
@@ -85,10 +91,10 @@ class PlannerSolver {
   void SumGains();
   Gains GainsOf(std::size_t set) const;
   void SumStepRewards(const Farm& farm);
-  // Best rewards in one step of any cell.
+  // Max rewards over all cells in one step.
   struct BestRewards {
-    double any{};   // of a step without a pickup or a drop-off
-    double risk{};  // of the risk alone
+    double any{};   // max reward of a step without a pickup or a drop-off
+    double risk{};  // max risk: risks are negative, so it is the mildest one
   };
   BestRewards BestOf(const RiskLayers& layers) const;
   double Bound(std::uint32_t state, std::int32_t step) const;
@@ -111,9 +117,9 @@ class PlannerSolver {
   const Scenario& scenario_;
   std::size_t cells_;
   std::size_t devices_;                    // max devices of a task
-  std::vector<std::uint32_t> sets_;        // two bits per device: its Fate
+  std::vector<std::uint32_t> sets_;        // two bits per device: its PickupPlan
   std::vector<std::int32_t> set_of_bits_;  // inverse of sets_; kNone: more aboard than the capacity
-  std::size_t all_gone_{};
+  std::size_t all_gone_{};                 // index of the set in which all devices are kGone
 
   // Data of the current farm and task.
   const Task* task_{};
@@ -122,41 +128,45 @@ class PlannerSolver {
   std::int32_t last_step_{};
   std::vector<float> value_;
   std::vector<DeviceKind> kind_;
-  std::vector<const float*> damaging_;  // by device: its layer of damaging risks of this step
+  std::vector<const float*> damaging_;  // by device: [H, W] risk that damages it in this step
   std::vector<float> health_;           // present health of the waiting devices
   std::vector<Gains> gains_;            // by set, with the present health
   std::int32_t first_step_{};           // the farm's present step
-  std::vector<double> step_rewards_;    // by step from first_step_ on: sum of the best rewards
-  std::vector<double> surcharges_;      // by step: sum by which they fall short of move_reward_
-  bool crash_hurts_{};
+  // Cumulative sums by step from first_step_ on: of the best rewards, and of the amounts (at most
+  // 0) by which they differ from move_reward_.
+  std::vector<double> step_rewards_;
+  std::vector<double> surcharges_;
+  bool crash_hurts_{};  // whether a crash in this step damages devices
 
   // Costs of energy in the reward (farm/energy.h); 0 without energy.
-  double idle_cost_{};        // of a step
-  double km_cost_{};          // of a kilometre without load in calm water
-  double rough_sea_{};        // added to a factor of 1 per unit of (negative) risk
-  std::vector<double> load_;  // by set: factor for the devices aboard
+  double idle_cost_{};        // cost of a step without distance
+  double km_cost_{};          // cost of a kilometre without load in calm water
+  double rough_sea_{};        // times the risk (both negative), added to a factor of 1
+  std::vector<double> load_;  // by set: factor of km_cost_ for the devices aboard
 
-  // Data that stay valid for the next plan on the same chart with the same devices.
+  // Data that the next plan reuses if the chart, the devices and move_reward_ are the same.
   Layout chart_;                              // its cells, crash rewards and ports
   std::vector<std::vector<Option>> options_;  // by cell
   float best_crash_{};                        // best reward of a crash on the chart
-  std::vector<std::int32_t> site_;            // by device: its cell
-  std::size_t planned_devices_{};             // devices of the task
-  bool planned_self_propelled_{};             // the task's ship is a device
+  std::vector<std::int32_t> site_;            // by device: its linear cell
+  std::size_t planned_devices_{};             // number of devices of the task
+  bool planned_self_propelled_{};             // whether the task's ship is a device
   std::vector<std::int32_t> moves_;  // by state: min moves until the task's devices are delivered
   double move_reward_{};             // upper bound of the reward of a move
-  std::vector<double> rewards_;      // by state: max reward of moves, pickups and drop-offs until
-                                     // then; empty with a capacity of 1 and no energy, where it
-                                     // follows from moves_
+  // By state: max reward, without values, until the task's devices are delivered. Empty with a
+  // capacity of 1 and no cost of energy: the bound then uses moves_.
+  std::vector<double> rewards_;
   std::vector<std::pair<std::int32_t, std::size_t>> sources_;  // (moves, cell), for CountMoves
   std::vector<std::size_t> queue_;
 
   // State of the search.
-  std::vector<std::vector<Node>> layers_;
-  std::vector<double> values_;       // of the layer that is expanded
-  std::vector<double> next_values_;  // of the layer that is reached
-  std::vector<Open> open_;           // by state
-  std::uint32_t mark_{};             // number of layers so far, of all searches
+  std::vector<std::vector<Node>> layers_;  // by step: the reached states
+  std::vector<double> values_;             // return so far of each node of the expanded layer
+  std::vector<double> next_values_;        // return so far of each node of the newest layer
+  std::vector<Open> open_;                 // by state
+  std::uint32_t mark_{};                   // number of layers of all searches so far
+  // The best complete plan: its return, and its last action from best_parent_ in the layer before
+  // best_layer_. best_layer_ is 0 if the present search has found no plan.
   double best_{kNever};
   std::size_t best_layer_{};
   std::uint32_t best_parent_{};

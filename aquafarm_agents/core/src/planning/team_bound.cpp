@@ -47,7 +47,9 @@ class Trip {
 
   DeviceKind kind() const { return device_.kind; }
 
-  /// Advances by one step. @param risk, damaging [H, W] of this step, the latter for the device
+  /// Advances by one step.
+  /// @param risk [H, W] risk in this step
+  /// @param damaging [H, W] risk in this step that damages the device
   void Step(const Grid<float>& risk, const Grid<float>& damaging) {
     StartTrips();
     PickUpAndDropOff(risk, damaging);
@@ -65,9 +67,9 @@ class Trip {
 
   double best() const { return best_; }
 
-  /// Returns whether no trip can exceed the best one, even without any further disaster.
+  /// Returns whether no unfinished trip can exceed the best one, even if all disasters ended now.
   bool IsOver() const {
-    // A risk that is milder than a step replaces its cost.
+    // A risk replaces the step reward. A mild risk may therefore cost less than a step.
     const double move = shares_way_ ? 0.0 : std::max(move_, kMildestRisk);
     double best_case = kNever;
     for (std::size_t cell = 0; cell < laden_.size(); ++cell) {
@@ -88,8 +90,9 @@ class Trip {
   double value() const { return static_cast<double>(health_) * static_cast<double>(device_.value); }
   double drop_off() const { return static_cast<double>(scenario_.rewards.drop_off); }
 
-  // Lists, by cell, the max reward of one step of waiting in quiet water. A crash, a collision or
-  // an illegal action replaces the step reward (Farm::Reward). The damage of a crash is ignored.
+  // Computes for each cell the max reward of one step of waiting in quiet water. A crash, a
+  // collision or an illegal action replaces the step reward (Farm::Reward). The damage of a crash
+  // is ignored.
   void ListWaits(bool has_others) {
     const RewardSpec& rewards = scenario_.rewards;
     const float anywhere =
@@ -138,8 +141,10 @@ class Trip {
     best_ = std::max(best_, picked_up_bare_);  // without a delivery
   }
 
-  // One move, or one step of waiting, from every cell. Each cell keeps the max return of all routes
-  // to it. @param damaging nullptr if no device is aboard @param aboard devices aboard
+  // Takes one move or one step of waiting from every cell. Each cell keeps the max return of all
+  // routes to it.
+  // @param damaging nullptr if no damage counts
+  // @param aboard number of devices aboard
   void Spread(const Grid<float>& risk, const Grid<float>* damaging, double value_per_risk,
               std::int32_t aboard, std::vector<double>& values) {
     std::fill(next_.begin(), next_.end(), kNever);
@@ -164,16 +169,18 @@ class Trip {
     }
     values.swap(next_);
   }
-  // Returns the reward of a step that ends in `to`. @param quiet reward in quiet water
+  // Returns the reward of a step that ends in `to`, without energy.
+  // @param quiet reward of the step in quiet water
   double Price(const Grid<float>& risk, Cell to, double quiet) const {
     const auto here = static_cast<double>(risk(to.y, to.x));
     return here < 0.0 ? Risk(here) : quiet;
   }
-  // Returns the cost of the energy of a step; 0 for a ship with several devices.
+  // Returns the cost of the energy of a step; 0 if a ship can carry several devices.
   double EnergyCost(double km, std::int32_t aboard, float risk) const {
     return weight_ == 0.0 ? 0.0 : weight_ * EnergyOf(energy_, km, aboard, risk);
   }
-  // Returns the reward of a risk. A ship with several devices pays it once, so it is then ignored.
+  // Returns the reward of a risk. A ship that fetches several devices on one route pays the risk
+  // once, so the trips ignore it if ships can carry several devices.
   double Risk(double here) const { return shares_way_ ? 0.0 : here; }
   void Raise(Cell cell, double value) {
     double& known = next_[Index(cell)];
@@ -188,18 +195,18 @@ class Trip {
   float health_;
   bool shares_way_{};
   EnergyFigures energy_;
-  double weight_{0.0};  // of energy
+  double weight_{0.0};  // reward subtracted per kWh
   double cell_km_{scenario_.cell_size_m / 1000.0};
   double move_{};
-  double best_{0.0};           // 0: the device is not fetched
-  std::vector<double> empty_;  // max return so far, by cell: without the device
-  std::vector<double> laden_;  // max return so far with the device as paid: its value is credited,
-                               // damage is subtracted
-  std::vector<double> bare_;   // max return so far with the device as unpaid: no value, no damage
-  std::vector<double> next_;
-  std::vector<double> wait_;            // reward of waiting in quiet water, by cell
-  double picked_up_for_value_{kNever};  // of this step
-  double picked_up_bare_{kNever};
+  double best_{0.0};           // return of the best trip; 0: the device is not fetched
+  std::vector<double> empty_;  // by cell: max return so far without the device
+  // By cell: max return so far with the device aboard, paid and unpaid (planner.h).
+  std::vector<double> laden_;           // paid: the value is credited, damage is subtracted
+  std::vector<double> bare_;            // unpaid: neither value nor damage counts
+  std::vector<double> next_;            // scratch of Spread
+  std::vector<double> wait_;            // by cell: reward of a step of waiting in quiet water
+  double picked_up_for_value_{kNever};  // return of a pickup in this step as paid
+  double picked_up_bare_{kNever};       // return of a pickup in this step as unpaid
 };
 
 }  // namespace
@@ -213,6 +220,12 @@ double TeamBound(const Farm& farm) {
     if (value <= 0.0F) continue;
     throw InputError("bound: rewards." + std::string(name) +
                      ": got more than 0, expected at most 0");
+  }
+  if (rewards.drop_off < 0.0F && scenario.ships.capacity > 1) {
+    // Each device is charged one drop-off below, but ships can drop several off in one action.
+    throw InputError("bound: rewards.drop_off: got less than 0 with ships.capacity " +
+                     std::to_string(scenario.ships.capacity) +
+                     ", expected at least 0, or a capacity of 1");
   }
   AQUAFARM_CHECK_EQ(farm.step(), 0);
   const std::vector<std::int32_t> to_port = WaterDistance(farm.layout(), farm.layout().ports);

@@ -12,19 +12,20 @@
 namespace aquafarm::agents {
 namespace {
 
-// Length of a plan for a ship without work, which only avoids risks.
+// Steps of a plan for a ship without work, which only avoids risks.
 constexpr std::int32_t kIdleSteps = 30;
-// Weight of the total time relative to the time of the last ship.
+// Weight of the sum of all ships' times in the cost of an assignment. The time of the last ship has
+// weight 1.
 constexpr double kWorkWeight = 1e-3;
 
-// The average number of devices of a ship plus two.
+// Returns the max number of devices of one ship: the average per ship, rounded up, plus two.
 std::int32_t MaxDevices(const Scenario& scenario) {
   const std::int32_t devices = scenario.devices.Total();
   const std::int32_t ships = std::max(1, scenario.ships.count);
   return std::max(1, std::min(devices, (devices + ships - 1) / ships + 2));
 }
 
-/// Estimates how long ships need for their devices in quiet water.
+/// Estimates how many steps ships need for their devices in quiet water.
 class TravelCostModel {
  public:
   explicit TravelCostModel(const Farm& farm)
@@ -36,8 +37,9 @@ class TravelCostModel {
     for (const Device& device : farm.devices()) device_.push_back(from({device.cell}));
   }
 
-  /// Returns the time of a ship for waiting devices: round trips from their nearest ports. The
-  /// first trip begins at the ship's cell.
+  /// Returns the estimated steps in which a ship fetches the deployed devices of `share`. Each
+  /// device counts as a round trip from its nearest port, divided by the capacity. The first trip
+  /// starts at the ship's cell. A ship with devices aboard first sails to a port.
   double Time(std::int32_t ship, const std::vector<std::int32_t>& share) const {
     const Ship& one = farm_.ships()[static_cast<std::size_t>(ship)];
     const std::size_t here = Index(one.cell);
@@ -62,8 +64,8 @@ class TravelCostModel {
 
   const Farm& farm_;
   double capacity_;
-  std::vector<std::int32_t> port_;                 // distance to the nearest port
-  std::vector<std::vector<std::int32_t>> device_;  // distance to each device
+  std::vector<std::int32_t> port_;                 // [H, W] moves to the nearest port
+  std::vector<std::vector<std::int32_t>> device_;  // by device: [H, W] moves to it
 };
 
 using Shares = std::vector<std::vector<std::int32_t>>;
@@ -82,7 +84,7 @@ double Cost(const TravelCostModel& work, const Shares& shares) {
 /// Moves and swaps devices between ships while this reduces the cost.
 class LocalSearch {
  public:
-  /// @param room max further devices for each ship
+  /// @param room by ship: max number of devices in its share
   LocalSearch(const TravelCostModel& work, const std::vector<std::size_t>& room, Shares& shares)
       : work_(work), room_(room), shares_(shares), cost_(Cost(work, shares)) {}
   void Run() {
@@ -149,7 +151,7 @@ class TeamPlanner::Impl {
     const TravelCostModel work(farm);
     const auto max_devices = static_cast<std::size_t>(MaxDevices(scenario_));
     Shares shares(static_cast<std::size_t>(scenario_.ships.count));
-    // Ships may carry more devices than the planner assigns, loaded by another policy.
+    // Another policy may have loaded more devices than the planner assigns to a ship.
     std::vector<std::size_t> room(shares.size());
     for (std::size_t ship = 0; ship < shares.size(); ++ship) {
       const auto aboard = static_cast<std::size_t>(farm.ships()[ship].aboard);
@@ -161,7 +163,7 @@ class TeamPlanner::Impl {
       const bool is_fetched = device.status == DeviceStatus::kDeployed && !device.self_propelled;
       if (is_fetched) waiting.push_back(static_cast<std::int32_t>(id));
     }
-    // The longest trips first, each to the ship with the smallest increase in cost.
+    // Assigns the devices with the longest trips first, each to the ship where it costs least.
     std::stable_sort(waiting.begin(), waiting.end(), [&work](std::int32_t a, std::int32_t b) {
       return work.ToPort(a) > work.ToPort(b);
     });
@@ -171,7 +173,7 @@ class TeamPlanner::Impl {
       const Device& device = farm.devices()[id];
       if (device.carrier == kNone) continue;
       auto& share = shares[static_cast<std::size_t>(device.carrier)];
-      // Further devices of a larger load are delivered with it, or planned afterwards.
+      // If a ship carries more devices, a drop-off of the plan delivers them, too.
       if (share.size() < max_devices) share.push_back(static_cast<std::int32_t>(id));
     }
     for (std::size_t id = shares.size(); id < farm.ships().size(); ++id) {
@@ -213,7 +215,8 @@ class TeamPlanner::Impl {
     return AreAsForeseen(farm, plan);
   }
 
-  // Returns false after a bulletin, or after a turn that is not in the forecast.
+  // Returns whether all disasters are as the plan assumed. They are not if Farm::SetDisaster
+  // changed one, or if one moved differently from the forecast.
   bool AreAsForeseen(const Farm& farm, PlanState& plan) const {
     if (farm.disasters().size() != plan.disasters.size()) return false;
     for (; plan.foreseen < farm.step(); ++plan.foreseen) {
@@ -255,7 +258,7 @@ class TeamPlanner::Impl {
                     {LinearIndex(ship.cell, scenario_.width)});
     }
     DisasterRisk risks(farm, foresight_);
-    for (const bool idle : {false, true}) {  // ships without work plan last and avoid the others
+    for (const bool idle : {false, true}) {  // ships without work are planned last
       for (std::size_t id = 0; id < agents; ++id) {
         if (!farm.ships()[id].active || shares[id].empty() != idle) continue;
         PlanOne(farm, risks, static_cast<std::int32_t>(id), shares[id], plan);
@@ -273,7 +276,7 @@ class TeamPlanner::Impl {
     auto& actions = plan.actions[static_cast<std::size_t>(id)];
     auto& path = plan.path[static_cast<std::size_t>(id)];
     actions = planner_.Solve(farm, risks, task).actions;
-    // The ship is enclosed: take any move and plan again.
+    // There is no plan if other ships enclose this one. It takes any move, then all plan again.
     if (actions.empty()) actions = {static_cast<std::uint8_t>(farm.step() % kMoveCount)};
     Cell cell = farm.ships()[static_cast<std::size_t>(id)].cell;
     path.push_back(LinearIndex(cell, scenario_.width));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Distances by water: number of moves over free cells.
+/// Distances by water: numbers of moves over cells without rocks and islands.
 
 #include <cstdint>
 #include <vector>
@@ -10,11 +10,11 @@
 
 namespace aquafarm::agents {
 
-/// Mildest risk of any disaster or sea field: the risks of a scenario are in [-20, -5].
+/// Mildest risk of any disaster or sea. Every risk that is not 0 is in [-20, -5] (paper §2.1).
 inline constexpr double kMildestRisk = -5.0;
 
-/// Returns the moves from the nearest of `sources` to every cell, [H, W] row-major; kUnreachable on
-/// land.
+/// Returns the min moves from any of `sources` to each cell, [H, W] row-major; kUnreachable for a
+/// cell that no source reaches.
 std::vector<std::int32_t> WaterDistance(const Layout& layout, const std::vector<Cell>& sources);
 
 }  // namespace aquafarm::agents

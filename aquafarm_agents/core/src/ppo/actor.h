@@ -19,27 +19,30 @@ class Actor {
  public:
   Actor(const EnvironmentSpec& spec, const PpoOptions& options, std::size_t state_size);
 
-  /// Averages the outputs of the network over all rotations and reflections of the observed
-  /// tokens from now on: a turned ranch then has the turned probabilities and the same value.
+  /// From now on averages the outputs of the network over all rotations and reflections of the
+  /// observed tokens. A rotated or reflected ranch then has the same values, and its probabilities
+  /// are rotated or reflected accordingly. Only for networks without a recurrent state.
   void AverageSymmetries(const TokenLayout& layout) { symmetries_ = AllSymmetries(layout); }
-  /// Clears the recurrent states. @param farms N
+  /// Clears the recurrent states and sets the number of farms N.
   void Begin(std::size_t farms);
-  /// Computes masks (only action 0 for an agent that is done), probabilities and values for the
-  /// observations of `results` and advances the recurrent states of their agents.
+  /// Computes masks, probabilities and values for the observations of `results`, and advances the
+  /// recurrent states. The mask of an inactive agent contains only action 0.
   void Observe(ActorCritic& network, const StepResults& results);
 
-  /// Draws actions from the probabilities; agent i draws from stream i.
+  /// Draws actions from the probabilities. Slot i draws from stream i.
   void Sample(AgentRng& rng, std::vector<std::uint8_t>& actions) const;
-  /// Takes the most probable actions; the action with the lowest index among equals.
+  /// Takes the most probable actions; of equally probable ones that with the lowest index.
   void TakeBest(std::vector<std::uint8_t>& actions) const;
 
   std::size_t slots() const { return masks_.size(); }
   const std::vector<ActionMask>& masks() const { return masks_; }  ///< [N, S]
   const std::vector<float>& values() const { return values_; }     ///< [N, S]
   const ActionDistribution& distribution() const { return distribution_; }
-  const std::vector<float>& state() const { return state_; }  ///< [N, S, state_size]
+  /// Recurrent states after the last Observe, [N, S, state_size].
+  const std::vector<float>& state() const { return state_; }
   std::vector<float>& state() { return state_; }
-  /// The states before the last Observe, cleared where an episode started.
+  /// Recurrent states before the last Observe. Where an episode started, they are still those of
+  /// the previous episode: the network clears its copy (SequenceRows::is_first).
   const std::vector<float>& state_before() const { return state_before_; }
 
  private:
@@ -52,8 +55,8 @@ class Actor {
   const std::size_t state_size_;
   std::vector<ActionMask> masks_;
   std::vector<float> values_;
-  std::vector<float> joint_;               // [N, S, joint_agents, F]
-  std::vector<TokenSymmetry> symmetries_;  // to average over; empty: only the plain tokens
+  std::vector<float> joint_;  // [N, S, joint_agents, F]; empty without a central critic
+  std::vector<TokenSymmetry> symmetries_;  // averaged over; empty: only the observed tokens
   std::vector<float> turned_;              // [N, S, F]
   std::vector<float> mean_outputs_;        // [N, S, kActorCriticOutputs]
   std::vector<std::uint8_t> is_first_;

@@ -9,14 +9,14 @@
 
 namespace aquafarm::agents {
 
-/// Adam (Kingma and Ba 2015) on a flat parameter vector, with gradient clipping by norm.
+/// Adam (Kingma and Ba 2015) for a flat parameter vector, with gradient clipping by norm.
 class Adam {
  public:
   explicit Adam(std::size_t size) : mean_(size), square_(size) {}
 
-  /// Takes one step against `gradient`, scaled so that its norm is at most `max_norm`.
+  /// Takes one step against `gradient`. A longer gradient is first scaled to the norm `max_norm`.
   /// @param max_norm 0: not limited
-  /// @returns false if the gradient is not finite; the weights are then unchanged
+  /// @returns false if the norm of the gradient is not finite; nothing is then changed
   [[nodiscard]] bool Step(const std::vector<float>& gradient, double learning_rate, double max_norm,
                           std::vector<float>& weights);
   std::uint64_t steps() const { return steps_; }
@@ -27,8 +27,8 @@ class Adam {
   void Load(const Checkpoint& checkpoint);
 
  private:
-  std::vector<float> mean_;    // of the gradient
-  std::vector<float> square_;  // mean of the squared gradient
+  std::vector<float> mean_;    // moving average of the gradient
+  std::vector<float> square_;  // moving average of the squared gradient
   std::uint64_t steps_{};
 };
 

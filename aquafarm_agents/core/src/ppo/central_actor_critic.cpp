@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kValue = kActionCount;  // index of the value among the outputs
 
-/// Lends a vector to a network: both are exchanged, and exchanged back at the end.
+/// Swaps two vectors, and swaps them back in its destructor.
 class Loan {
  public:
   Loan(std::vector<float>& own, std::vector<float>& other) : own_(own), other_(other) {
@@ -41,7 +41,7 @@ CentralActorCritic::CentralActorCritic(std::size_t agents, std::unique_ptr<Actor
   gradient_.resize(weights_.size());
 }
 
-// The networks share weights_ and gradient_, each with its own part.
+// Both networks use weights_ and gradient_, each its own part of them.
 const float* CentralActorCritic::ForwardPart(Part& part, const SequenceRows& rows,
                                              bool needs_state) {
   const Loan weights(weights_, part.network->weights());

@@ -10,19 +10,20 @@
 
 namespace aquafarm::agents {
 
-/// The ActorCritic of agents that learn together (MAPPO, Yu et al. 2022, arXiv:2103.01955): an
-/// agent's logits depend on its own observation, its value on the observations of all agents of its
-/// farm. Two networks without common layers, both FeedForward or both LstmActorCritic:
+/// The ActorCritic of agents that learn together (MAPPO, Yu et al. 2022, arXiv:2103.01955). An
+/// agent's logits depend on its own observation. Its value depends on the observations of all
+/// agents of its farm. There are two networks without common layers, both FeedForward or both
+/// LstmActorCritic:
 ///
-///   policy   logits of `features`; its value is not used
-///   critic   value of `joint`; its logits are not used
+///   policy   computes the logits from SequenceRows::features; its value is not used
+///   critic   computes the value from SequenceRows::joint; its logits are not used
 ///
-/// The weights of the policy come first, so that a saved policy consists of them alone. The state
-/// of an agent is that of the policy, then that of the critic.
+/// The weights of the policy come first. A saved policy contains only these. The recurrent state of
+/// an agent is the state of the policy, then the state of the critic.
 class CentralActorCritic final : public ActorCritic {
  public:
-  /// @param agents of one farm
-  /// @param critic its weights begin where those of `policy` end
+  /// @param agents number of agents of one farm
+  /// @param critic its weights must begin at index policy->weights().size()
   CentralActorCritic(std::size_t agents, std::unique_ptr<ActorCritic> policy,
                      std::unique_ptr<ActorCritic> critic);
 
@@ -54,8 +55,10 @@ class CentralActorCritic final : public ActorCritic {
   std::vector<float> outputs_;  // [rows, kActorCriticOutputs]
 };
 
-/// Copies the observations of all agents of one farm: those of `agent`, then the others in the
-/// order of their ids. @param farm [agents, features] @param joint [agents, features]
+/// Copies the observations of all agents of one farm: first that of `agent`, then the others in id
+/// order.
+/// @param farm [agents, features] observations in id order
+/// @param joint [agents, features] receives the copy
 void JoinObservations(const float* farm, std::size_t agents, std::size_t features,
                       std::size_t agent, float* joint);
 

@@ -26,7 +26,7 @@ class FeedForward final : public ActorCritic {
   const Linear first_;
   const Linear second_;
   const Linear head_;
-  // [rows, …] activations of the last Forward
+  // [rows, …] activations of the last Forward, and slopes of the last Backward
   std::vector<float> first_out_;
   std::vector<float> second_out_;
   std::vector<float> outputs_;

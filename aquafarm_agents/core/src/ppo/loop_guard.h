@@ -2,15 +2,15 @@
 #pragma once
 
 /// Ends loops of a trained policy on entity tokens (token_layout.h). A greedy policy repeats itself
-/// for ever if it chooses the same actions in the same situations, for example in a bay whose way
-/// out is long and leads away from the port.
+/// forever if it returns to the same situation, for example in a bay whose exit is far away and
+/// leads away from the port.
 ///
 ///   situation   cell, load and remaining devices
-///   loop        a situation occurs for the max_visits-th time in an episode
-///   way out     the route to the nearest target (RouteRule) while it has no more risk per step
-///               than the safest cell near the ship, until a device is picked up or dropped off.
-///               Under a ring over the whole ranch a ship that waits pays as much as one that
-///               works.
+///   loop        a situation occurs for the max_visits-th time since the load or the remaining
+///               devices changed
+///   exit        until they change again, the ship follows the route to the nearest target
+///               (RouteRule). It does so only while the route has no more risk per step than the
+///               safest cell near the ship. (Under equal risks everywhere the route is taken.)
 
 #include <cstddef>
 #include <cstdint>
@@ -29,23 +29,26 @@ class LoopGuard {
   /// @throws InputError if the features are not entity tokens
   LoopGuard(const EnvironmentSpec& spec, std::size_t slots, std::int32_t max_visits);
 
-  /// Records an observation and returns the action that leads out of a loop, if the ship is in one.
-  /// @param tokens one row of features @param is_first an episode begins with this observation
+  /// Records an observation of a slot. Returns the action of the exit if the ship is in a loop and
+  /// the route is safe; else nullopt.
+  /// @param tokens one row of features
+  /// @param is_first whether an episode begins with this observation
+  /// @param allowed mask of the actions to choose from
   std::optional<std::uint8_t> ActionOf(std::size_t slot, const float* tokens, bool is_first,
                                        ActionMask allowed);
 
  private:
   struct Episode {
-    std::unordered_map<std::uint64_t, std::int32_t> visits;  // by situation
-    std::uint64_t task{};                                    // load and remaining devices
+    std::unordered_map<std::uint64_t, std::int32_t> visits;  // by hash of the situation
+    std::uint64_t task{};                                    // hash of load and remaining devices
     bool is_loop{};
   };
 
-  std::vector<std::size_t> task_features_;
-  std::vector<std::size_t> cell_features_;
+  std::vector<std::size_t> task_features_;  // features that identify load and remaining devices
+  std::vector<std::size_t> cell_features_;  // features that identify the ship's cell
   const std::int32_t max_visits_;
   RouteRule rule_;
-  std::vector<Episode> episodes_;  // of each slot
+  std::vector<Episode> episodes_;  // by slot
 };
 
 }  // namespace aquafarm::agents

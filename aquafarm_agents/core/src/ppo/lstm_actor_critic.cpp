@@ -11,7 +11,7 @@ namespace aquafarm::agents {
 namespace {
 
 constexpr std::size_t kGates = 4;    // in the order i, f, g, o
-constexpr float kForgetBias = 1.0F;  // of the initial weights: the cell state persists at first
+constexpr float kForgetBias = 1.0F;  // added to the initial bias of f, so that c persists at first
 
 Eigen::Map<Eigen::ArrayXf> At(std::vector<float>& values, std::size_t begin, std::size_t size) {
   return {values.data() + begin, static_cast<Eigen::Index>(size)};

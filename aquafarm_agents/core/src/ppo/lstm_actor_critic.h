@@ -13,12 +13,12 @@ namespace aquafarm::agents {
 /// The recurrent ActorCritic. The LSTM has forget gates (Gers et al. 2000):
 ///
 ///   x = ReLU(Linear(features))
-///   i, f, g, o = x · W_in + h · W_rec + b         sigmoid, but tanh for g
+///   i, f, o = sigmoid and g = tanh of the four parts of x · W_in + h · W_rec + b
 ///   c' = f c + i g,   h' = o tanh(c')
 ///   outputs = Linear([h', x])
 ///
-/// The state of an agent is h, then c. Gradients pass through the steps of a sequence, not through
-/// the start of an episode.
+/// The state of an agent is h, then c. Gradients flow back through the steps of a sequence, but not
+/// across the start of an episode.
 class LstmActorCritic final : public ActorCritic {
  public:
   LstmActorCritic(std::size_t features, std::size_t hidden, const WeightOrigin& origin);
@@ -36,19 +36,19 @@ class LstmActorCritic final : public ActorCritic {
 
   const std::size_t hidden_;
   const Linear first_;
-  const Linear gates_;      // of x; its bias is that of the gates
-  const Linear recurrent_;  // of h; without a bias
-  const Linear head_;       // of [h, x]
+  const Linear gates_;      // W_in and b
+  const Linear recurrent_;  // W_rec; without a bias
+  const Linear head_;       // from [h', x] to the outputs
 
   std::vector<float> recurrent_transposed_;  // weights of `recurrent_`, [4 hidden, hidden]
 
   // [steps, sequences, …]
   std::vector<float> seen_;           // [hidden] x
-  std::vector<float> gate_values_;    // [4 hidden] after the nonlinearity
-  std::vector<float> hidden_before_;  // [hidden] h, cleared where an episode started
-  std::vector<float> cell_before_;    // [hidden] cell state c, as above
-  std::vector<float> cell_tanh_;      // [hidden] of c'
-  std::vector<float> joined_;         // [2 hidden]
+  std::vector<float> gate_values_;    // [4 hidden] i, f, g, o
+  std::vector<float> hidden_before_;  // [hidden] h before the step; 0 where an episode starts
+  std::vector<float> cell_before_;    // [hidden] c before the step; 0 where an episode starts
+  std::vector<float> cell_tanh_;      // [hidden] tanh(c')
+  std::vector<float> joined_;         // [2 hidden] h', x
   std::vector<float> outputs_;
   std::vector<float> joined_slopes_;
   std::vector<float> gate_slopes_;

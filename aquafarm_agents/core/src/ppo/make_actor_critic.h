@@ -12,16 +12,19 @@
 
 namespace aquafarm::agents {
 
-/// Makes the network for the features of `spec`: TokenActorCritic for tokens, CentralActorCritic
-/// for PpoOptions::central, else LstmActorCritic or FeedForward.
-/// @param seed of the initial weights: uniform in ±1/√fan_in, and ±0.01/√fan_in for the logits
-/// @throws InputError for a recurrent or central network of tokens
+/// Makes the network for the features of `spec`: TokenActorCritic for entity tokens,
+/// CentralActorCritic for PpoOptions::central, else LstmActorCritic or FeedForward.
+/// @param seed of the initial weights (weight_drawer.h)
+/// @throws InputError if the features are entity tokens and the network is recurrent or central, or
+///   if they are not and an option needs them: the teacher's rule, augment, symmetric, max_visits
 std::unique_ptr<ActorCritic> MakeActorCritic(const EnvironmentSpec& spec, const PpoOptions& options,
                                              std::uint64_t seed);
 /// Makes LstmActorCritic or FeedForward.
 std::unique_ptr<ActorCritic> MakeActorCritic(std::size_t features, std::size_t hidden,
                                              bool recurrent, const WeightOrigin& origin);
-/// Makes CentralActorCritic. @param features of one agent @param agents of one farm
+/// Makes CentralActorCritic.
+/// @param features number of features of one agent
+/// @param agents number of agents of one farm
 std::unique_ptr<ActorCritic> MakeCentralActorCritic(std::size_t features, std::size_t agents,
                                                     std::size_t hidden, bool recurrent,
                                                     std::uint64_t seed);

@@ -19,17 +19,17 @@
 namespace aquafarm::agents {
 namespace {
 
-// Stream 0 of kLearner draws the weights, stream 1 + s the order of the samples of shard s.
+// Stream 0 of kLearner draws the weights. Stream 1 + s draws the order of the samples of shard s.
 constexpr std::uint32_t kFirstOrderStream = 1;
 
-/// Shards of this process among those of the training.
+/// Which shards of the training belong to this process.
 struct ShardRange {
   std::size_t first{};
   std::size_t count{};
-  std::int32_t farms{};  ///< of one shard
+  std::int32_t farms{};  ///< farms of one shard
 };
 
-/// @param farms of this process
+/// @param farms number of farms of this process
 ShardRange LocalShards(const PpoOptions& options, std::int32_t farms, const ProcessGroup* group) {
   const int ranks = group == nullptr ? 1 : group->size();
   const int rank = group == nullptr ? 0 : group->rank();
@@ -46,7 +46,8 @@ ShardRange LocalShards(const PpoOptions& options, std::int32_t farms, const Proc
   return {static_cast<std::size_t>(count * rank), static_cast<std::size_t>(count), farms / count};
 }
 
-/// @param total number of slots of the training
+/// @param shard spec of the farms of one shard
+/// @param total number of slots of all shards of the training
 Rollout::Shape RolloutShape(const EnvironmentSpec& shard, const PpoOptions& options,
                             std::size_t state_size, std::size_t total) {
   Rollout::Shape shape;
@@ -64,7 +65,7 @@ Rollout::Shape RolloutShape(const EnvironmentSpec& shard, const PpoOptions& opti
 }
 
 // Replaces the weights of `network` by those of a policy or of a training checkpoint. A policy of
-// MAPPO contains no weights for the value, which keeps its initial ones.
+// MAPPO contains no weights of the critic, which then keeps its initial weights.
 void ReplaceWeights(const Checkpoint& checkpoint, ActorCritic& network) {
   const std::size_t got = checkpoint.Section("weights").size() / sizeof(float);
   if (got != network.weights().size() && got != network.policy_size()) {
@@ -77,7 +78,7 @@ void ReplaceWeights(const Checkpoint& checkpoint, ActorCritic& network) {
   std::copy(weights.begin(), weights.end(), network.weights().begin());
 }
 
-// The weights of which a saved policy consists.
+// Returns the weights that a saved policy contains.
 std::vector<float> PolicyWeights(const ActorCritic& network) {
   const auto begin = network.weights().begin();
   return {begin, begin + static_cast<std::ptrdiff_t>(network.policy_size())};
@@ -98,9 +99,10 @@ void CopyFarms(const StepResults& all, std::size_t first, std::size_t count, Ste
   part.states.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
 }
 
-/// A group of farms with its own rollout and its own random numbers.
+/// A group of farms with its own rollout and its own random streams.
 struct Shard {
-  /// @param spec of the farms of the shard @param index among the shards of the training
+  /// @param spec spec of the farms of the shard
+  /// @param index index of the shard in the training
   Shard(const EnvironmentSpec& spec, std::uint64_t seed, const PpoOptions& options,
         const Rollout::Shape& shape, std::size_t index)
       : actor(spec, options, shape.state_size),
@@ -111,13 +113,14 @@ struct Shard {
     if (options.shards > 1) prefix = "shard" + std::to_string(index) + ".";
   }
 
-  /// Sets what the next calls of Act and Finish observe. @param results of the farms of this shard
+  /// Sets the results that the next calls of Act, Label and Finish read.
+  /// @param results of the farms of this shard; must stay valid until the next Observe
   void Observe(const StepResults& results);
   /// Chooses actions and records them.
   void Act(ActorCritic& network);
   /// Records the teacher's actions at the step that Act has just recorded.
   void Label(Teacher& teacher);
-  /// Completes a full rollout with the values of the observations that follow it.
+  /// Finishes a full rollout with the values of the observations after its last step.
   void Finish(ActorCritic& network, const PpoOptions& options);
   void Save(Checkpoint& checkpoint) const;
   void Load(const Checkpoint& checkpoint);
@@ -127,17 +130,17 @@ struct Shard {
   Actor actor;
   Rollout rollout;
   AgentRng exploration;
-  RandomStream order;  // of the samples
+  RandomStream order;  // draws the order of the samples
   std::uint64_t farm_steps{};
-  StepResults results;                    // a copy, if the process has several shards
-  const StepResults* seen{};              // since the last Observe
-  std::vector<TokenSymmetry> symmetries;  // that episodes are turned by; empty: none
-  std::vector<std::uint8_t> symmetry;     // of each slot's episode
+  StepResults results;        // copy of this shard's results if there are several shards
+  const StepResults* seen{};  // the results set by Observe
+  std::vector<TokenSymmetry> symmetries;  // all symmetries; empty without augmentation
+  std::vector<std::uint8_t> symmetry;     // by slot: symmetry of the present episode
   StepResults turned;                     // the results with turned tokens
   std::vector<std::uint8_t> actions;
   std::vector<std::uint8_t> labels;  // the teacher's actions
   std::vector<float> log_probs;
-  std::string prefix;  // of its sections in a checkpoint; empty for the only shard
+  std::string prefix;  // prefix of its sections in a checkpoint; empty if there is one shard
 };
 
 void Shard::Observe(const StepResults& observed) {
@@ -183,7 +186,8 @@ void Shard::Label(Teacher& teacher) {
 }
 
 void Shard::Finish(ActorCritic& network, const PpoOptions& options) {
-  // The step is taken again with the new weights, from the same recurrent states.
+  // After the update, Act observes the same results again with the new weights. It must start from
+  // the same recurrent states.
   const std::vector<float> state = actor.state();
   actor.Observe(network, *seen);
   actor.state() = state;
@@ -233,7 +237,7 @@ std::uint8_t ObservationTypesOf(const PpoOptions& options) {
 
 class PpoLearner final : public ShardedLearner, public WarmStart {
  public:
-  /// @param spec of the farms of this process
+  /// @param spec spec of the farms of this process
   PpoLearner(const EnvironmentSpec& spec, std::uint64_t seed, const PpoOptions& options,
              std::string resolved, ProcessGroup* group, PlannerMaker make_planner)
       : spec_(spec),
@@ -280,7 +284,7 @@ class PpoLearner final : public ShardedLearner, public WarmStart {
   void Save(Checkpoint& checkpoint) const override;
   void Load(const Checkpoint& checkpoint) override;
   void LoadWeights(const Checkpoint& checkpoint) override {
-    CheckFeaturesFit(checkpoint, spec_);  // agents share the network, so their number may differ
+    CheckFeaturesFit(checkpoint, spec_);  // the number of agents may differ: they share a network
     ReplaceWeights(checkpoint, *network_);
   }
 
@@ -295,12 +299,13 @@ class PpoLearner final : public ShardedLearner, public WarmStart {
   const ShardRange local_;
   const std::unique_ptr<ActorCritic> network_;
   PpoUpdater updater_;
-  std::unique_ptr<Teacher> teacher_;  // null: no option asks for one
+  std::unique_ptr<Teacher> teacher_;  // null without a teacher
   std::vector<Shard> shards_;         // of this process
-  float entropy_{};  // mean of the policy at the last step, of several shards in the last update
+  // Mean entropy of the policy: at the last step with one shard, else in the last update.
+  float entropy_{};
 };
 
-// The results of one shard. The only shard sees all of them, without a copy.
+// Returns the results of one shard of this process. Copies them only if there are several shards.
 const StepResults& PpoLearner::ResultsOf(std::size_t shard, const StepResults& results) {
   if (shards_.size() == 1) return results;
   const auto farms = static_cast<std::size_t>(local_.farms);
@@ -312,7 +317,7 @@ void PpoLearner::Step(const StepResults& results, double progress,
                       std::vector<std::uint8_t>& actions) {
   Rollout::Rewards rewards;
   rewards.scale = static_cast<float>(options_.reward_scale);
-  // With a team reward an agent's reward is the sum already.
+  // With a team reward, the reward of each agent is already the sum.
   if (!spec_.team_reward) rewards.team_share = static_cast<float>(options_.team_share.At(progress));
   for (std::size_t i = 0; i < shards_.size(); ++i) {
     const StepResults& own = ResultsOf(i, results);
@@ -331,7 +336,7 @@ void PpoLearner::Step(const StepResults& results, double progress,
                                   : updater_.entropy();
 }
 
-// Returns whether the teacher acts at the last recorded step.
+// Returns whether the teacher labels the last recorded step.
 bool PpoLearner::IsTaught(const Rollout& rollout, double progress) const {
   if (teacher_ == nullptr || options_.teacher.At(progress) <= 0.0) return false;
   const std::size_t step = rollout.recorded_steps() - 1;
@@ -370,7 +375,8 @@ std::uint8_t ObservationTypesOf(const std::string& options, bool central) {
   return ObservationTypesOf(PpoOptions::Parse(options, resolved, central));
 }
 
-/// @param central MAPPO @param group of the rank; nullptr: the learner has all shards
+/// @param central true for MAPPO, false for PPO
+/// @param group process group of the rank; nullptr: this process has all shards
 std::unique_ptr<PpoLearner> MakeLearner(const EnvironmentSpec& spec, std::uint64_t seed,
                                         const std::string& text, bool central, ProcessGroup* group,
                                         PlannerMaker make_planner) {

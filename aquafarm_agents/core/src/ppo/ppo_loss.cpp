@@ -26,7 +26,7 @@ Sloped Ratio(float log_ratio) {
   return {bound * (1.0F + log_ratio - kMaxLogRatio), bound};
 }
 
-/// −min(ρ A, clip(ρ) A) and its derivative with respect to log π(a | s).
+/// Returns −min(ρ A, clip(ρ) A) and its derivative with respect to log π(a | s).
 Sloped PolicyTerm(float log_ratio, float advantage, float clip) {
   const Sloped ratio = Ratio(log_ratio);
   const float clipped = std::min(std::max(ratio.value, 1.0F - clip), 1.0F + clip);
@@ -36,15 +36,16 @@ Sloped PolicyTerm(float log_ratio, float advantage, float clip) {
   return {-clipped * advantage, 0.0F};
 }
 
-/// Adds the slopes of −scale · log π(label).
+/// Adds the derivatives of −scale · log π(label) with respect to the logits.
 void AddImitation(const ActionDistribution& policy, Index row, std::uint8_t label, float scale,
                   float* slope) {
   for (int a = 0; a < kActionCount; ++a) slope[a] += scale * policy.probs(row, a);
   slope[label] -= scale;
 }
 
-/// ½ (V − target)² and its derivative with respect to V. With a clip range it is the larger of the
-/// losses of V and of V clipped to the range around V_old (as in the code of Schulman et al. 2017).
+/// Returns ½ (V − target)² and its derivative with respect to V. With a clip range, returns the
+/// larger one of this loss and the loss of V clipped to the range around V_old (as in the code of
+/// Schulman et al. 2017).
 Sloped ValueTerm(float value, float old_value, float target, float clip) {
   const float error = value - target;
   if (clip <= 0.0F) return {0.5F * error * error, error};
@@ -79,7 +80,7 @@ void ActionDistribution::Compute(const float* outputs, const ActionMask* masks,
   }
   log_probs.colwise() -= log_probs.rowwise().maxCoeff().eval();
   probs = log_probs.exp();
-  // The vectorised exp() is bounded from below and gives no exact 0.
+  // The vectorized exp() never returns exactly 0.
   for (int a = 0; a < kActionCount; ++a) {
     for (Index row = 0; row < rows; ++row) {
       probs(row, a) = ((masks[row] >> a) & 1U) != 0 ? probs(row, a) : 0.0F;

@@ -13,66 +13,67 @@ namespace aquafarm::agents {
 
 inline constexpr std::size_t kActorCriticOutputs = kActionCount + 1;
 
-/// Max log ratio that is exponentiated. Clipping does not bound the ratio from above if the
-/// advantage is negative, so exp() could overflow and cause NaN gradients. Beyond the bound b the
-/// ratio continues along its tangent: e^b (1 + x − b). Loss and gradient stay finite and
+/// Max log ratio b that is exponentiated. PPO's clipping does not bound the ratio from above if the
+/// advantage is negative, so exp() could overflow and cause NaN gradients. Above b, the ratio of a
+/// log ratio x is therefore the tangent e^b (1 + x − b). Loss and gradient stay finite and
 /// consistent.
 inline constexpr float kMaxLogRatio = 3.0F;
 
-/// π(a | s) of many rows; masked actions have probability 0.
+/// π(a | s) of many rows. Masked actions have probability 0.
 struct ActionDistribution {
   using Table = Eigen::Array<float, Eigen::Dynamic, kActionCount, Eigen::ColMajor>;
-  Table log_probs;           ///< [rows, kActionCount]; undefined where the probability is 0
+  Table log_probs;           ///< [rows, kActionCount]; meaningless where the probability is 0
   Table probs;               ///< [rows, kActionCount]
   Eigen::ArrayXf entropies;  ///< [rows], nats
 
+  /// Computes the distribution from the outputs of a network.
   /// @param outputs [rows, kActorCriticOutputs], row-major
-  /// @param masks [rows], at least one of kActionCount bits set in each
+  /// @param masks [rows] allowed actions, at least one in each row
   void Compute(const float* outputs, const ActionMask* masks, std::size_t rows);
 };
 
 struct PpoCoefficients {
-  float clip{};
-  float value_clip{};  ///< 0: not clipped
-  float value{};
-  float entropy{};
-  float imitation{};  ///< of the cross-entropy with the actions of a teacher
+  float clip{};        ///< ε: clip range of the probability ratio
+  float value_clip{};  ///< clip range of the value; 0: not clipped
+  float value{};       ///< weight of the value loss
+  float entropy{};     ///< weight of the entropy bonus
+  float imitation{};   ///< weight of the cross-entropy with the actions of a teacher
 };
 
-/// Label of a row without an action of a teacher.
+/// Label of a row for which no teacher chose an action.
 inline constexpr std::uint8_t kNoLabel = 255;
 
-/// Data recorded for each row when its action was chosen. Pointers to [rows].
+/// Recorded data of each row. Every pointer refers to [rows] values.
 struct PpoRows {
   const ActionMask* masks{};
   const std::uint8_t* actions{};
   const float* log_probs{};      ///< log π_old(a | s)
   const float* values{};         ///< V_old(s)
-  const float* advantages{};     ///< as used in the loss, optionally normalised
+  const float* advantages{};     ///< advantages, already normalized if required
   const float* targets{};        ///< value targets
-  const float* weights{};        ///< of the row in the loss; 0: the row is ignored
+  const float* weights{};        ///< weight of each row in the loss; 0: the row is ignored
   const std::uint8_t* labels{};  ///< actions of a teacher or kNoLabel; null without a teacher
 };
 
-/// Weighted sums over the rows.
+/// Terms of the loss, as weighted sums over the rows.
 struct PpoLoss {
   double policy{};        ///< −min(ρ A, clip(ρ) A)
   double value{};         ///< ½ (V − target)², optionally clipped; not multiplied by value_coef
   double entropy{};       ///< nats
   double square_error{};  ///< (V − target)²
-  double clipped{};       ///< fraction of rows whose policy gradient is 0 because of clipping
+  double clipped{};       ///< weight of the rows whose policy gradient is 0, usually by clipping
   double Total(const PpoCoefficients& c) const {
     return policy + static_cast<double>(c.value) * value - static_cast<double>(c.entropy) * entropy;
   }
   PpoLoss& operator+=(const PpoLoss& other);
 };
 
-/// Computes the loss of rows and its gradient with respect to the outputs. The gradient, but not
-/// the returned loss, contains the cross-entropy with a teacher (*kickstarting*, Schmitt et al.
-/// 2018, arXiv:1803.03835).
+/// Computes the loss of rows and its gradient with respect to the outputs. The cross-entropy with a
+/// teacher (*kickstarting*, Schmitt et al. 2018, arXiv:1803.03835) is part of the gradient, but not
+/// of the returned loss.
 /// @param outputs [rows, kActorCriticOutputs], row-major
-/// @param slopes [rows, kActorCriticOutputs]: d total / d outputs, overwritten
-/// @param distribution scratch
+/// @param distribution receives the distribution of the outputs
+/// @param slopes [rows, kActorCriticOutputs] receives d total / d outputs
 PpoLoss ComputeLoss(const float* outputs, std::size_t rows, const PpoRows& recorded,
                     const PpoCoefficients& coefficients, ActionDistribution& distribution,
                     float* slopes);

@@ -19,7 +19,7 @@ enum class Preset : std::uint8_t { kTuned, kLarge };
 constexpr std::array<std::string_view, 2> kPresets{"tuned", "large"};
 
 constexpr std::int32_t kMaxShards = 4096;
-constexpr std::int32_t kMinHorizon = 8;  // steps; advantages need some steps of each episode
+constexpr std::int32_t kMinHorizon = 8;  // steps; advantages need several consecutive steps
 
 PpoOptions Defaults(Preset preset) {
   PpoOptions options;
@@ -46,7 +46,7 @@ std::int32_t PpoOptions::Horizon(std::size_t slots) const {
   const auto steps = static_cast<std::int32_t>(static_cast<std::size_t>(rollout_size) / slots);
   const std::int32_t horizon = std::max(kMinHorizon, steps);
   if (!recurrent) return horizon;
-  // Only complete sequences, so that each begins with a stored state.
+  // The rollout holds complete sequences, so that each starts with a stored state.
   return (horizon + sequence_length - 1) / sequence_length * sequence_length;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kForbidden = -std::numeric_limits<float>::infinity();
 
-// A policy of MAPPO consists of the network for the logits.
+// A saved policy of MAPPO contains only the network for the logits.
 PpoOptions WithoutCritic(PpoOptions options) {
   options.central = false;
   return options;
@@ -106,7 +106,7 @@ std::unique_ptr<Policy> MakePpoPolicyWithoutTorch(const Checkpoint& checkpoint,
   CheckFits(checkpoint, spec, NetworkKind::kMlp);
   std::vector<float> weights;
   checkpoint.GetArray("weights", checkpoint.Section("weights").size() / sizeof(float), weights);
-  if (central) {  // a checkpoint of a training also has the weights of the value
+  if (central) {  // a checkpoint of a training also contains the weights of the critic
     const auto trained = MakeActorCritic(spec, options, 0);
     if (weights.size() == trained->weights().size()) weights.resize(trained->policy_size());
   }

@@ -15,12 +15,13 @@
 
 namespace aquafarm::agents {
 
-/// Acts with the weights of an ActorCritic, greedily or by sampling (PpoOptions::policy). Its
-/// values are V(s) in units of reward; a policy of MAPPO has none. Inactive agents get action 0 and
-/// value 0.
+/// Acts with the weights of an ActorCritic, greedily or by sampling (PpoOptions::policy). values()
+/// contains V(s) in units of the unscaled reward; for MAPPO it is empty. Inactive agents get action
+/// 0 and value 0.
 class PpoPolicy final : public Policy {
  public:
-  /// @throws InputError if the size of `weights` differs from that of the network
+  /// @throws InputError if `weights` has another size than the network, or if the options do not
+  ///   fit the features of `spec`
   PpoPolicy(const EnvironmentSpec& spec, const PpoOptions& options,
             const std::vector<float>& weights);
 
@@ -41,8 +42,9 @@ class PpoPolicy final : public Policy {
   AgentRng rng_;
 };
 
-/// Makes the policy of a checkpoint. Does not prepare libtorch, which acting does not use.
-/// @throws InputError if the policy does not fit farms of `spec`; the message names the difference
+/// Makes the policy of a checkpoint without initializing libtorch, which acting does not need.
+/// @throws InputError if the policy does not fit farms of `spec`, with the difference, or if the
+///   checkpoint is damaged
 std::unique_ptr<Policy> MakePpoPolicyWithoutTorch(const Checkpoint& checkpoint,
                                                   const EnvironmentSpec& spec);
 

@@ -15,11 +15,11 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr float kErrorShare = 0.05F;  // an update has many batches
+constexpr float kErrorShare = 0.05F;  // weight of an update in the moving average of the error
 constexpr float kMinDeviation = 1e-6F;
 constexpr std::size_t kLossTerms = 5;  // members of PpoLoss
 enum AdvantageSum : std::size_t { kSum, kSquares, kRows, kSums };
-constexpr std::size_t kPrefetched = 4;  // rows ahead; shuffled rows are not contiguous in memory
+constexpr std::size_t kPrefetched = 4;  // sequences ahead; shuffled ones are scattered in memory
 
 void Prefetch(const float* values, std::size_t count) {
   constexpr std::size_t kCacheLine = 64 / sizeof(float);
@@ -43,7 +43,7 @@ PpoUpdater::PpoUpdater(const PpoOptions& options, ActorCritic& network, std::siz
       advantage_sums_(shards),
       length_(options.recurrent ? static_cast<std::size_t>(options.sequence_length) : 1) {}
 
-// Returns the sequences with at least one transition.
+// Lists in sequences_[shard] the first samples of the sequences with at least one transition.
 void PpoUpdater::Collect(const Rollout& rollout, std::size_t shard) {
   const std::size_t slots = rollout.shape().slots;
   std::vector<std::uint32_t>& sequences = sequences_[shard];
@@ -57,7 +57,7 @@ void PpoUpdater::Collect(const Rollout& rollout, std::size_t shard) {
   }
 }
 
-// Fisher-Yates shuffle.
+// Shuffles sequences_[shard] (Fisher-Yates).
 void PpoUpdater::Shuffle(std::size_t shard, RandomStream& rng) {
   std::vector<std::uint32_t>& sequences = sequences_[shard];
   for (std::size_t left = sequences.size(); left > 1; --left) {
@@ -67,13 +67,13 @@ void PpoUpdater::Shuffle(std::size_t shard, RandomStream& rng) {
 
 // Returns the number of sequences in all shards of all ranks.
 std::size_t PpoUpdater::CountSequences() {
-  std::vector<double> count{0.0};  // exact: below 2^53
+  std::vector<double> count{0.0};  // exact for counts below 2^53
   for (const auto& one : sequences_) count[0] += static_cast<double>(one.size());
   if (group_ != nullptr) group_->Sum(nothing_, count);
   return static_cast<std::size_t>(count[0]);
 }
 
-// The sequences of a shard in a minibatch.
+// Returns which of a shard's sequences belong to a minibatch.
 PpoUpdater::Range PpoUpdater::Part(std::size_t shard, std::size_t batch) const {
   const std::size_t size = sequences_[shard].size();
   const std::size_t first = size * batch / batches_;
@@ -100,7 +100,8 @@ void PpoUpdater::Update(const std::vector<Input>& inputs, const Context& context
     for (std::size_t i = 0; i < inputs.size(); ++i) Shuffle(i, *inputs[i].rng);
     SumAdvantages(inputs);
     for (std::size_t batch = 0; batch < batches_; ++batch) {
-      if (advantage_sums_[0][batch * kSums + kRows] == 0.0) continue;  // shards may round alike
+      // With few sequences, rounding may leave a minibatch empty in every shard.
+      if (advantage_sums_[0][batch * kSums + kRows] == 0.0) continue;
       const PpoLoss loss = LearnMinibatch(inputs, batch);
       const double total = loss.Total(coefficients_);
       if (!std::isfinite(total)) Fail("loss: got " + std::to_string(total), context);
@@ -125,7 +126,7 @@ void PpoUpdater::Fail(const std::string& what, const Context& context) const {
                       "reward_scale");
 }
 
-// Sums the advantages of every minibatch of an epoch, in one exchange between the ranks.
+// Sums the advantages of each minibatch of an epoch, with one exchange between the ranks.
 void PpoUpdater::SumAdvantages(const std::vector<Input>& inputs) {
   for (std::size_t shard = 0; shard < inputs.size(); ++shard) {
     const Rollout& rollout = *inputs[shard].rollout;
@@ -160,7 +161,8 @@ void PpoUpdater::NormalizeAdvantages(std::size_t batch) {
   inverse_deviation_ = 1.0F / (static_cast<float>(std::sqrt(variance)) + kMinDeviation);
 }
 
-// Leaves the gradient of all shards of all ranks in gradients_[0].
+// Sums the gradients of a minibatch over all shards of all ranks in gradients_[0]. Returns the sum
+// of the losses.
 PpoLoss PpoUpdater::LearnMinibatch(const std::vector<Input>& inputs, std::size_t batch) {
   NormalizeAdvantages(batch);
   const std::size_t chunk = std::max<std::size_t>(1, network_.chunk_rows() / length_);

@@ -18,39 +18,43 @@
 
 namespace aquafarm::agents {
 
-/// Improves an ActorCritic with full rollouts in epochs of shuffled minibatches.
+/// Trains an ActorCritic on full rollouts, in epochs of shuffled minibatches.
 ///
-/// Each shard contributes an equal part of its own rollout to every minibatch. Sums over shards
-/// (gradients, losses, statistics of the advantages) are added as a binary tree over all shards of
-/// all ranks, so every number of ranks gives the same bits. Within a shard a minibatch is processed
-/// in chunks that fit the processor's cache; their gradients are summed.
+/// Each shard divides its own rollout into equal parts, one for each minibatch. Gradients, losses
+/// and statistics of the advantages are added as a binary tree over the shards of all ranks, so the
+/// sums have the same bits for every number of ranks. A shard processes its part of a minibatch in
+/// chunks that fit the processor's cache, and sums their gradients.
 class PpoUpdater {
  public:
+  /// @param network must outlive the updater
   /// @param shards number of shards in this process, a power of two
-  /// @param group processes that hold the other shards; null if there are none
+  /// @param group the processes with the other shards; null if this process has all shards
   PpoUpdater(const PpoOptions& options, ActorCritic& network, std::size_t shards,
              ProcessGroup* group);
 
-  /// A shard of this process. Both pointers are set.
+  /// Data of one shard of this process. Both pointers must be set.
   struct Input {
-    const Rollout* rollout{};  ///< complete
-    RandomStream* rng{};       ///< for the order of its samples
+    const Rollout* rollout{};  ///< after Rollout::Finish
+    RandomStream* rng{};       ///< draws the order of the samples
   };
 
-  /// Position of an update in the run; for schedules and messages.
+  /// Progress of the run, for schedules and messages.
   struct Context {
-    double progress{};  ///< of the run, [0, 1]
-    std::uint64_t farm_steps{};
+    double progress{};           ///< share of the run that is done, [0, 1]
+    std::uint64_t farm_steps{};  ///< farm steps of this process so far
   };
-  /// Runs all epochs on complete rollouts, one of each shard of this process.
-  /// @throws LearnerFailed if a loss or a gradient is not finite; the weights are then those of
-  /// the last good minibatch; RankLost
+  /// Runs all epochs.
+  /// @param inputs one for each shard of this process
+  /// @throws LearnerFailed if a loss or a gradient is not finite. The weights are then those after
+  ///   the last good minibatch.
+  /// @throws RankLost if another rank does not answer
   void Update(const std::vector<Input>& inputs, const Context& context);
 
   double learning_rate() const { return learning_rate_; }
   /// Moving average of the squared value error [reward²]; NaN before the first update.
   float value_error() const { return value_error_; }
-  /// Mean entropy of the policy in the minibatches of the last update [nats].
+  /// Mean entropy of the policy in the minibatches of the last update [nats]; ln 10, the entropy of
+  /// a uniform policy, before the first update.
   float entropy() const { return entropy_; }
   void set_entropy(float entropy) { entropy_ = entropy; }
 
@@ -86,16 +90,17 @@ class PpoUpdater {
   ProcessGroup* const group_;
 
   // Scratch. By shard of this process:
-  std::vector<std::vector<std::uint32_t>> sequences_;  // first samples of those with transitions
+  std::vector<std::vector<std::uint32_t>> sequences_;  // first samples of sequences to learn from
   std::vector<std::vector<float>> gradients_;          // of a minibatch
-  std::vector<std::vector<double>> losses_;            // of a minibatch, as PpoLoss
-  std::vector<std::vector<double>> advantage_sums_;  // of an epoch's minibatches: Σ A, Σ A², rows
-  std::vector<float> nothing_;
-  std::size_t batches_{};
-  std::size_t length_;  // steps of a sequence
-  float mean_{};        // mean of the advantages of a minibatch
-  float inverse_deviation_{1.0F};
-  float weight_{};  // weight of a row in a minibatch
+  std::vector<std::vector<double>> losses_;            // of a minibatch: the members of PpoLoss
+  std::vector<std::vector<double>> advantage_sums_;    // by minibatch: Σ A, Σ A², number of rows
+  std::vector<float> nothing_;                         // empty, for sums of numbers alone
+  std::size_t batches_{};                              // minibatches of an epoch
+  std::size_t length_;                                 // steps of a sequence
+  float mean_{};                                       // mean of the advantages of a minibatch
+  float inverse_deviation_{1.0F};                      // 1 / their standard deviation
+  float weight_{};                                     // weight of each row of a minibatch
+  // Rows of a chunk:
   std::vector<float> features_;
   std::vector<float> joint_;
   std::vector<float> state_;

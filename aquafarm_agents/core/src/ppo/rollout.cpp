@@ -18,7 +18,7 @@ float TeamReward(const StepResults& results, std::size_t first, std::size_t agen
   return std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(agents), 0.0F);
 }
 
-// Exact for a share of 0, so that trainings without a team's share keep their bits.
+// Returns exactly `own` for a share of 0.
 float Blend(float own, float team, float share) {
   return share == 0.0F ? own : own + share * (team - own);
 }
@@ -159,7 +159,7 @@ void Rollout::Load(const Checkpoint& checkpoint) {
   load("values", loaded.values_, 1);
   load("rewards", loaded.rewards_, 1);
   load("ends", loaded.ends_, 1);
-  // Older checkpoints have no labels: their rows have no part in the imitation.
+  // Older checkpoints contain no labels. Their samples are not imitated.
   if (!labels_.empty() && checkpoint.Has("rollout.labels")) load("labels", loaded.labels_, 1);
   for (const std::uint8_t label : loaded.labels_) {
     if (label < kActionCount || label == kNoLabel) continue;

@@ -12,23 +12,25 @@
 
 namespace aquafarm::agents {
 
-/// T steps of E slots (farms × agents), time-major: index t · E + e. Each contains an observation,
-/// the chosen action, and the reward and end that followed.
+/// T steps of E slots (farms × agents). The sample of step t and slot e has the index t · E + e. It
+/// contains an observation, the chosen action, and the reward and end that followed.
 class Rollout {
  public:
   struct Shape {
-    std::size_t steps{};
-    std::size_t slots{};   ///< E
-    std::size_t agents{};  ///< agents of one farm
-    std::size_t features{};
-    std::size_t state_size{};
-    std::size_t sequence_length{
-        1};  ///< the recurrent state is stored at every sequence_length-th step
-    /// An agent that is done earns until its farm's episode ends, because its return is the team's.
+    std::size_t steps{};       ///< T
+    std::size_t slots{};       ///< E
+    std::size_t agents{};      ///< agents of one farm
+    std::size_t features{};    ///< features of one agent
+    std::size_t state_size{};  ///< size of an agent's recurrent state
+    /// The recurrent states are stored at steps 0, n, 2n, … with n = sequence_length.
+    std::size_t sequence_length{1};
+    /// Agents learn from the team reward. An inactive agent then has transitions until the episode
+    /// of its farm ends, because it still receives the team reward.
     bool is_team{};
-    bool has_labels{};  ///< of a teacher
+    bool has_labels{};  ///< whether the actions of a teacher are recorded
   };
-  /// What an agent learns from: scale · ((1 − share) · its reward + share · the sum of its farm's).
+  /// Parameters of the reward r' from which an agent learns:
+  /// r' = scale · ((1 − team_share) · its reward + team_share · the sum of its farm's rewards)
   struct Rewards {
     float scale{1.0F};
     float team_share{};
@@ -40,16 +42,20 @@ class Rollout {
   std::size_t recorded_steps() const { return steps_; }
   bool IsFull() const { return steps_ == shape_.steps && !is_open_; }
 
-  /// Records the results of the last decisions; does nothing if there are none.
+  /// Records the rewards and ends that followed the actions of the last Add. Does nothing if they
+  /// are already recorded.
   void Complete(const StepResults& results, const Rewards& rewards);
-  /// Records decisions [E]. @param state [E, state_size] before them
+  /// Records a step of all slots: observations and chosen actions. The rollout must not be full.
+  /// @param masks, actions, log_probs, values [E]
+  /// @param state [E, state_size] recurrent states before the actions
   void Add(const StepResults& results, const std::vector<ActionMask>& masks,
            const std::vector<std::uint8_t>& actions, const std::vector<float>& log_probs,
            const std::vector<float>& values, const std::vector<float>& state);
-  /// Records the actions of a teacher for the last decisions. @param labels [E], or kNoLabel
+  /// Records the actions of a teacher at the step of the last Add.
+  /// @param labels [E] actions or kNoLabel
   void SetLabels(const std::vector<std::uint8_t>& labels);
   /// Computes advantages and value targets of a full rollout.
-  /// @param last_values [E] of the observations after the last step
+  /// @param last_values [E] values of the observations after the last step
   void Finish(const std::vector<float>& last_values, float gamma, float lambda);
   void Clear() { steps_ = 0; }
 
@@ -57,6 +63,7 @@ class Rollout {
   const float* features(std::size_t sample) const {
     return features_.data() + sample * shape_.features;
   }
+  /// Recurrent state before a sample, [state_size].
   /// @param sample at a step that is a multiple of sequence_length
   const float* state(std::size_t sample) const;
   bool is_first(std::size_t sample) const { return is_first_[sample] != 0; }
@@ -65,7 +72,7 @@ class Rollout {
   float log_prob(std::size_t sample) const { return log_probs_[sample]; }
   float value(std::size_t sample) const { return values_[sample]; }
   float advantage(std::size_t sample) const { return advantages_[sample]; }
-  /// The action of a teacher, or kNoLabel.
+  /// Action of a teacher, or kNoLabel.
   std::uint8_t label(std::size_t sample) const {
     return labels_.empty() ? kNoLabel : labels_[sample];
   }

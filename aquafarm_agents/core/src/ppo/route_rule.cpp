@@ -9,15 +9,15 @@
 namespace aquafarm::agents {
 namespace {
 
-// Units of the features, docs/generalist.md.
+// Units of the features (docs/generalist.md).
 constexpr float kUnitLength = 16.0F;     // of distances [cells]
 constexpr float kUnitRisk = 20.0F;       // of risks [reward]
-constexpr float kUnitRouteSteps = 8.0F;  // of the summed risk of a route
-constexpr float kRouteSteps = 32.0F;     // over which it is summed
-constexpr float kTolerance = 1.0001F;    // of sums of risks
+constexpr float kUnitRouteSteps = 8.0F;  // divisor of the risk that is summed along a route
+constexpr float kRouteSteps = 32.0F;     // max number of steps in that sum
+constexpr float kTolerance = 1.0001F;    // factor that allows for rounding of these sums
 
 constexpr int kOctants = 8;
-// Place of each move on the compass, from north clockwise.
+// Direction of each move in octants, clockwise from north.
 constexpr std::array<int, kMoveCount> kOctantOf{0, 4, 6, 2, 7, 1, 5, 3};
 
 }  // namespace
@@ -52,17 +52,18 @@ void RouteRule::Consider(const float* tokens, TokenKind kind, Target& best) cons
   }
 }
 
-// The least risk that the ship could have in the open cells around it.
+// Returns the least |risk| of the open cells near the ship, in units of kUnitRisk.
 float RouteRule::LeastRisk(const float* tokens) const {
   float least = std::numeric_limits<float>::infinity();
   const std::size_t cells = near_risk_ - near_blocked_;
   for (std::size_t cell = 0; cell < cells; ++cell) {
     if (tokens[near_blocked_ + cell] == 0.0F) least = std::min(least, tokens[near_risk_ + cell]);
   }
-  return least;  // at most the risk of the ship's own cell
+  return least;  // finite, because the ship's own cell is open
 }
 
-// Of the allowed moves the one with the least risk and deviation from the route, if there is one.
+// Returns the allowed move with the least sum of |risk| and deviation from the route. Without a
+// route only the risk counts.
 std::uint8_t RouteRule::MoveTo(const float* tokens, const Target& target,
                                ActionMask allowed) const {
   int wanted = kNone;

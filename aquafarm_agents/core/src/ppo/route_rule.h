@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A simple rule that plays by entity tokens (token_layout.h). It takes the route to the target
-/// that is nearest in steps and risk, and evades risk in the next step. PPO may imitate it at
-/// first:
+/// A simple rule that plays by entity tokens (token_layout.h). It follows the route to the target
+/// with the least cost, and evades the risk of the next step. PPO may imitate it (teacher.h).
 ///
-///   targets   devices that can be brought home in time, while there is space; ports, with cargo
-///   cost      steps of the route + |risk| along it
-///   move      of all open moves that with the least |risk| + deviation from the route in octants
+///   targets   if there is free capacity: deployed devices that can be brought home in time;
+///             if there is a device aboard: ports
+///   cost      steps of the route (at most 64) + sum of |risk| over its first 32 steps
+///   move      the allowed move with the least |risk| + deviation from the route [octants]
+///   action    at the target: pickup or drop-off
 
 #include <cstddef>
 #include <cstdint>
@@ -23,17 +24,20 @@ class RouteRule {
   /// @throws InputError if the features are not entity tokens
   explicit RouteRule(const TokenLayout& layout);
 
-  /// Returns the rule's action, one of `allowed`. @param tokens one row of features
+  /// Returns the action of the rule.
+  /// @param tokens one row of features
+  /// @param allowed actions to choose from, with at least one move
   std::uint8_t ActionOf(const float* tokens, ActionMask allowed) const;
 
-  /// As ActionOf, if the route to the target has no more risk per step than the safest cell near
-  /// the ship, for example none. Nothing if it has more, or if there is no target.
+  /// Returns the action of the rule if the route to the target has no more risk per step than the
+  /// safest open cell within 3 cells of the ship. Returns nullopt if it has more, or if there is no
+  /// target.
   std::optional<std::uint8_t> SafeActionOf(const float* tokens, ActionMask allowed) const;
 
  private:
-  // The nearest target in steps and risk.
+  // The target with the least cost.
   struct Target {
-    const float* token{};
+    const float* token{};  // first feature of its token; null: there is no target
     float cost{};
     bool is_port{};
   };
@@ -44,10 +48,12 @@ class RouteRule {
   std::uint8_t MoveTo(const float* tokens, const Target& target, ActionMask allowed) const;
 
   const TokenLayout layout_;
-  // Places of features: of the ship, and of a device or port.
+  // Offsets of features within the token of the ship,
   const std::size_t risk_, near_blocked_, near_risk_;
+  // of a device or port,
   const std::size_t here_, next_, distance_, route_risk_, has_space_, has_cargo_;
-  const std::size_t deployed_, slack_;  // of a device
+  // and of a device alone.
+  const std::size_t deployed_, slack_;
 };
 
 }  // namespace aquafarm::agents

@@ -37,7 +37,7 @@ class PlannerTeacher final : public Teacher {
   bool sees_farms() const override { return true; }
   void Act(const StepResults& results, const std::vector<ActionMask>&,
            std::vector<std::uint8_t>& actions) override {
-    planner_->Begin(0, farms_);  // forgets its earlier plans
+    planner_->Begin(0, farms_);  // discards its earlier plans
     planner_->Act(results, actions);
   }
 

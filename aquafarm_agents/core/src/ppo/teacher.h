@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A policy that PPO imitates at the start of a training (*kickstarting*, Schmitt et al. 2018,
-/// arXiv:1803.03835; its loss: ppo_loss.h). The learner plays; the teacher chooses at each recorded
-/// step what it would do there (as in DAgger, Ross et al. 2011).
+/// A policy that PPO imitates (*kickstarting*, Schmitt et al. 2018, arXiv:1803.03835). The learner
+/// chooses all actions that are executed. At labelled steps the teacher also chooses the actions
+/// that it would take (as in DAgger, Ross et al. 2011). ppo_loss.h has the loss.
 
 #include <cstdint>
 #include <memory>
@@ -19,16 +19,20 @@ class Teacher {
  public:
   virtual ~Teacher() = default;
 
-  /// Chooses actions by the results alone, so that a resumed training has the same ones.
-  /// @param allowed [N, S] @param actions is resized to [N, S]
+  /// Chooses actions. They depend only on the arguments, so a resumed training gets the same ones.
+  /// @param allowed [N, S] masks of the allowed actions
+  /// @param actions is resized to [N, S]; an action may be outside `allowed`
   virtual void Act(const StepResults& results, const std::vector<ActionMask>& allowed,
                    std::vector<std::uint8_t>& actions) = 0;
-  /// Returns whether it reads the farms, which are not turned, instead of the features.
+  /// Returns whether the teacher reads StepResults::states instead of the features. Data
+  /// augmentation transforms only the features.
   virtual bool sees_farms() const = 0;
 };
 
-/// @param make_planner not null for a planner
-/// @throws InputError if the farms do not have what the teacher reads
+/// Makes the teacher of PpoOptions::teacher_policy.
+/// @param make_planner must not be null for TeacherPolicy::kPlanner
+/// @throws InputError if the rule is selected and the features are not entity tokens, or if the
+///   planner does not support the farms
 std::unique_ptr<Teacher> MakeTeacher(const EnvironmentSpec& spec, TeacherPolicy which,
                                      PlannerMaker make_planner);
 

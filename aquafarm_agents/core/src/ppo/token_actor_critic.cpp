@@ -25,7 +25,7 @@ ConstEmbedding At(const std::vector<float>& values, std::size_t begin) {
   return ConstEmbedding(values.data() + begin);
 }
 
-// Without branches and aliases, so that compilers vectorize it.
+// Updates the maximum of each unit. It has no branches and no aliases, so compilers vectorize it.
 void KeepMax(const float* __restrict values, std::int32_t token, float* __restrict max,
              std::int32_t* __restrict best) {
   for (std::size_t i = 0; i < kE; ++i) best[i] = values[i] > max[i] ? token : best[i];
@@ -92,7 +92,7 @@ void TokenActorCritic::Reserve(std::size_t rows) {
   }
 }
 
-// Copies the valid tokens of a kind, row after row.
+// Copies the valid tokens of one kind, row after row.
 void TokenActorCritic::Collect(const SequenceRows& rows, Tokens& tokens) {
   const std::size_t size = tokens.group.size;
   std::size_t count = 0;
@@ -182,7 +182,7 @@ const float* TokenActorCritic::Forward(const SequenceRows& rows, float*) {
   return outputs_.data();
 }
 
-// With w = softmax(s), s = q · e / √E and a = Σ w e:
+// With w = softmax(s), s_i = q · e_i / √E, a = Σ w_i e_i and g = d loss / da:
 //   d/de_i = w_i g + ds_i q / √E,   d/dq = Σ ds_i e_i / √E,   ds_i = w_i (g · e_i − g · a)
 void TokenActorCritic::AttendBackward(std::size_t rows) {
   std::fill(query_slopes_.begin(), query_slopes_.end(), 0.0F);

@@ -11,17 +11,18 @@
 
 namespace aquafarm::agents {
 
-/// The ActorCritic of entity tokens (token_layout.h). All tokens of one kind share an
-/// encoder, so the network does not depend on their number and order:
+/// The ActorCritic of entity tokens (token_layout.h). All tokens of one kind share an encoder, so
+/// the outputs do not depend on the order of the tokens, and the weights do not depend on the
+/// number of slots:
 ///
 ///   ship      x = ReLU(Linear(ship))
 ///   token     e = ReLU(Linear(ReLU(Linear(token))))      one encoder for each kind
 ///   maximum   m = max over the valid tokens of a kind; 0 without a valid token
 ///   attention a = Σ softmax(q · e / √E) e over devices and ports, for each of kHeads queries
-///             q = Linear(x)
+///             q = Linear(x); 0 without a valid token
 ///   outputs   Linear(ReLU(Linear(ReLU(Linear([x, m…, a…])))))
 ///
-/// Invalid slots are skipped: they cost nothing.
+/// Slots without an entity are skipped and take no time.
 class TokenActorCritic final : public ActorCritic {
  public:
   TokenActorCritic(const TokenLayout& layout, std::size_t hidden, std::uint64_t seed);
@@ -31,8 +32,8 @@ class TokenActorCritic final : public ActorCritic {
   const float* Forward(const SequenceRows& rows, float* state_after) override;
   void Backward(const SequenceRows& rows, const float* slopes) override;
 
-  inline static constexpr std::size_t kEmbedding = 48;  ///< E, units of each token encoder layer
-  inline static constexpr std::size_t kHeads = 2;
+  inline static constexpr std::size_t kEmbedding = 48;  ///< E: units of each layer of an encoder
+  inline static constexpr std::size_t kHeads = 2;       ///< number of attention queries
 
  private:
   inline static constexpr std::size_t kKinds = kTokenKindCount - 1;  // without the ship
@@ -43,14 +44,14 @@ class TokenActorCritic final : public ActorCritic {
     TokenGroup group;
     Linear first;
     Linear second;
-    std::vector<std::size_t> begin;  // [rows + 1] first token of each row
+    std::vector<std::size_t> begin;  // [rows + 1] index of the first token of each row
     std::vector<float> features;     // [tokens, size]
     std::vector<float> middle;       // [tokens, E]
     std::vector<float> embedding;    // [tokens, E]
     std::vector<float> middle_slopes;
     std::vector<float> slopes;
-    std::vector<float> scores;       // [tokens, kHeads] softmax weights
-    std::vector<std::int32_t> best;  // [rows, E] token with the maximum; kNone: 0
+    std::vector<float> scores;       // [tokens, kHeads] softmax weights, of devices and ports
+    std::vector<std::int32_t> best;  // [rows, E] token with the maximum; kNone: the maximum is 0
   };
 
   void Reserve(std::size_t rows);
@@ -68,14 +69,14 @@ class TokenActorCritic final : public ActorCritic {
 
   const std::size_t hidden_;
   const std::size_t joined_size_;
-  const std::size_t features_;  // of a row
+  const std::size_t features_;  // number of features of a row
   Linear ship_;
   std::array<Tokens, kKinds> kinds_;
   Linear query_;
   Linear first_;
   Linear second_;
   Linear head_;
-  // [rows, …] activations of the last Forward
+  // [rows, …] activations of the last Forward, and slopes of the last Backward
   std::vector<float> ship_in_;
   std::vector<float> ship_out_;
   std::vector<float> queries_;

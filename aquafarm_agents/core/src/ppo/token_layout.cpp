@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::string_view, kTokenKindCount> kKinds{"ship", "device", "port", "disaster",
                                                                "other"};
 
-// Returns "device3" of "device3.valid".
+// Returns the part before the first dot: "device3" for "device3.valid".
 std::string_view SlotOf(const std::string& name) {
   return std::string_view(name).substr(0, name.find('.'));
 }

@@ -12,7 +12,7 @@
 namespace aquafarm::agents {
 namespace {
 
-/// A symmetry of vectors on the grid.
+/// A symmetry, applied to vectors on the grid.
 struct Turning {
   explicit Turning(std::size_t symmetry)
       : swaps((symmetry & 4U) != 0),
@@ -33,15 +33,15 @@ std::size_t MoveOf(Cell by) {
   return static_cast<std::size_t>(std::find(kMoves.begin(), kMoves.end(), by) - kMoves.begin());
 }
 
-/// A feature of the turned ranch as one of the plain ranch.
+/// The feature of the plain ranch from which a feature of the turned ranch is copied.
 struct Source {
-  std::string name;
+  std::string name;  // in the plain ranch
   float sign{1.0F};
 };
 
 using Sources = std::unordered_map<std::string, Source>;  // by name in the turned ranch
 
-// Adds STEM.MOVE for all moves.
+// Adds the features stem + MOVE for all moves.
 void AddMoves(const std::string& stem, const Turning& turning, Sources& sources) {
   for (std::size_t move = 0; move < kMoves.size(); ++move) {
     const auto name = [&stem](std::size_t of) {
@@ -51,7 +51,7 @@ void AddMoves(const std::string& stem, const Turning& turning, Sources& sources)
   }
 }
 
-// Adds STEMeast and STEMnorth.
+// Adds the features stem + "east" and stem + "north".
 void AddVector(const std::string& stem, const Turning& turning, Sources& sources) {
   const std::string east = stem + "east";
   const std::string north = stem + "north";
@@ -59,7 +59,7 @@ void AddVector(const std::string& stem, const Turning& turning, Sources& sources
   sources[north] = {turning.swaps ? east : north, static_cast<float>(turning.north_sign)};
 }
 
-// Adds STEM.X.Y. @param name of the plain ranch, such as "ship.near_risk.-1.3"
+// Adds the feature of a cell. @param name in the plain ranch, such as "ship.near_risk.-1.3"
 void AddCell(const std::string& name, const Turning& turning, Sources& sources) {
   const std::size_t y = name.rfind('.') + 1;
   const std::size_t x = name.rfind('.', y - 2) + 1;
@@ -67,7 +67,7 @@ void AddCell(const std::string& name, const Turning& turning, Sources& sources) 
   sources[name.substr(0, x) + std::to_string(to.x) + '.' + std::to_string(to.y)] = {name};
 }
 
-// The features that differ from those of the same name in the plain ranch.
+// Returns the features that are not copied unchanged from the feature of the same name.
 Sources SourcesOf(const std::vector<std::string>& names, const Turning& turning) {
   Sources sources;
   for (const std::string& name : names) {

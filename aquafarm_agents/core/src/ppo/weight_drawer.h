@@ -12,14 +12,15 @@
 
 namespace aquafarm::agents {
 
-/// Where the weights of a network are in a flat vector, and which random numbers draw them.
+/// Position of a network's weights in a flat vector, and the random stream that draws them.
 struct WeightOrigin {
   std::uint64_t seed{};
-  std::uint32_t network{};  ///< index of the network in its learner; each draws its own numbers
-  std::size_t begin{};      ///< index of its first weight
+  std::uint32_t network{};  ///< index of the network in its learner; selects the random stream
+  std::size_t begin{};      ///< index of the network's first weight
 };
 
-/// Draws initial weights from (seed, network, learner), uniform in ±1/√fan_in as in PyTorch.
+/// Draws initial weights uniformly in ±1/√fan_in, as PyTorch does. The random stream is (seed,
+/// network, RngStream::kLearner, 0).
 class WeightDrawer {
  public:
   explicit WeightDrawer(const WeightOrigin& origin)
@@ -32,7 +33,8 @@ class WeightDrawer {
     }
   }
 
-  /// Draws the last layer: its logits are near 0, so that the initial policy is almost uniform.
+  /// Draws the last layer. The weights of the logits are 100 times smaller, so that the initial
+  /// policy is almost uniform.
   void DrawHead(const Linear& layer, std::vector<float>& weights) {
     constexpr float kLogitScale = 0.01F;
     Draw(layer, weights);

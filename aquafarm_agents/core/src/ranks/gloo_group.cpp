@@ -32,14 +32,14 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Store = c10d::TCPStore;
 
-// Rank 0 holds the store. It keeps it open for this time after a failure, so that the other ranks
-// can read which rank was lost.
+// The store is in the process of rank 0. After a failure rank 0 keeps it open for this time, so
+// that the other ranks can read which rank was lost.
 constexpr std::chrono::seconds kStoreKept{2};
-constexpr std::chrono::seconds kReportLimit{3};  // if the host of rank 0 does not answer
-constexpr int kNameTries = 5;                    // if the name server has a temporary failure
-constexpr std::chrono::seconds kNamePause{1};
-constexpr const char* kLost = "lost";  // key of the store: the first rank that was found lost
-constexpr int kSlot = 0;               // of messages in a pair, which arrive in order
+constexpr std::chrono::seconds kReportLimit{3};  // max wait for the store after a failure
+constexpr int kNameTries = 5;                    // while the name server fails temporarily
+constexpr std::chrono::seconds kNamePause{1};    // between two tries
+constexpr const char* kLost = "lost";  // key in the store: the first rank that was found lost
+constexpr int kSlot = 0;               // one slot is enough: messages of a pair arrive in order
 
 std::chrono::milliseconds Milliseconds(double seconds) {
   return std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * seconds));
@@ -55,8 +55,8 @@ std::string PlaceOf(const RankVariables& variables) {
   return variables.master_addr + " port " + std::to_string(variables.master_port);
 }
 
-// c10d logs each attempt to connect through glog. Our own messages name the address once. The
-// user's GLOG_minloglevel shows them again.
+// Silences glog, by which c10d logs each attempt to connect. The messages of this file contain the
+// address anyway. If the user sets GLOG_minloglevel, that level applies.
 void SilenceLog() {
   if (std::getenv("GLOG_minloglevel") != nullptr) return;
   constexpr int kFatal = 3;
@@ -64,14 +64,15 @@ void SilenceLog() {
   if (level != nullptr) *level = kFatal;
 }
 
-// First line of the message of an exception of c10d, without its stack trace.
+// Returns the first line of an error of c10d. Further lines contain its stack trace.
 std::string FirstLine(const std::exception& error) {
   const std::string text = error.what();
   return text.substr(0, text.find('\n'));
 }
 
-// Address of the interface by which this host reaches `host`. A host's own name is often an alias
-// of the loopback interface, which other hosts cannot reach.
+// Returns the address of the interface by which this host reaches `host`; `host` itself if it
+// cannot be determined. The host's own name cannot be used, because it is often an alias of the
+// loopback interface, which other hosts cannot reach.
 std::string LocalAddress(const std::string& host) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_DGRAM;
@@ -94,8 +95,9 @@ std::string LocalAddress(const std::string& host) {
   return address[0] == '\0' ? host : address;
 }
 
-// c10d tries again for the whole time limit if a name is unknown, and does not report the reason.
-// The thread may outlive the limit: a name server that does not answer cannot be interrupted.
+// Throws InputError if a name cannot be resolved. c10d would retry an unknown name until its time
+// limit and not report the reason. The look-up runs in a thread, which may outlive the limit: a
+// look-up cannot be interrupted if the name server does not answer.
 void RequireKnownName(const std::string& host, double limit_s) {
   std::packaged_task<int()> task([host] {
     addrinfo hints{};
@@ -121,7 +123,7 @@ void RequireKnownName(const std::string& host, double limit_s) {
                    "); expected the address or name of the host of rank 0, as all ranks know it");
 }
 
-// Names of the processors on which this process may run, each unique among all hosts.
+// Returns names of the processors on which this process may run, unique among all hosts.
 std::vector<std::string> AllowedProcessors() {
   std::string boot;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), boot);
@@ -164,7 +166,7 @@ class GlooGroup final : public ProcessGroup {
   c10::intrusive_ptr<Store> store_;
   std::shared_ptr<gloo::rendezvous::Context> gloo_;
   const std::chrono::milliseconds work_limit_;
-  std::uint64_t works_{};  // calls of RunOnRank0
+  std::uint64_t works_{};  // number of calls of RunOnRank0
   std::vector<char> own_;  // scratch of Sum
   std::vector<char> other_;
 };
@@ -176,7 +178,7 @@ GlooGroup::GlooGroup(const RankVariables& variables, const GroupTimes& times)
                      " ranks, expected a power of two: 1, 2, 4, 8, …");
   }
   SilenceLog();
-  std::signal(SIGPIPE, SIG_IGN);  // Gloo writes to ranks that may have ended
+  std::signal(SIGPIPE, SIG_IGN);  // Gloo may write to a rank that has ended
   const auto start = Clock::now();
   RequireKnownName(variables.master_addr, times.start_s);
   OpenStore(variables, times);
@@ -211,13 +213,14 @@ void GlooGroup::OpenStore(const RankVariables& variables, const GroupTimes& time
   }
 }
 
-// Counts in the store, for each processor of this host, the ranks that may run on it.
+// Adds this rank, in the store, to the number of ranks that may run on each of its processors.
 void GlooGroup::ClaimProcessors() {
   for (const std::string& processor : AllowedProcessors()) store_->add(processor, 1);
 }
 
-// Whether no other rank may run on the processors of this one. Then it polls while it waits, which
-// saves waking up. Ranks that share processors would keep each other from working by that.
+// Returns whether no other rank may run on the processors of this rank. Such a rank polls while it
+// waits, which avoids the delay of a wake-up. Ranks that share a processor must not poll, since a
+// polling rank takes it from the ranks that work.
 bool GlooGroup::OwnsProcessors() {
   const std::vector<std::string> processors = AllowedProcessors();
   return !processors.empty() && std::all_of(processors.begin(), processors.end(),
@@ -243,7 +246,7 @@ void GlooGroup::WaitForAll(const std::string& place, std::chrono::milliseconds l
                    " (MASTER_ADDR, MASTER_PORT) ended at the start, or another program answers "
                    "there; see its output");
   }
-  if (missing.empty()) return;  // the last one came at this moment
+  if (missing.empty()) return;  // the last rank started after the time limit of wait
   if (rank_ == 0) std::this_thread::sleep_for(kStoreKept);
   throw RankLost("ranks: of " + std::to_string(size_) +
                  " ranks these have not started in time:" + missing +
@@ -263,8 +266,8 @@ void GlooGroup::Connect(const RankVariables& variables, const GroupTimes& times)
     gloo_->setTimeout(Milliseconds(times.answer_s));
     c10d::ProcessGroupGloo::GlooStore store(store_);
     gloo_->connectFullMesh(store, device);
-    // The calling thread reads and writes by itself. Otherwise the thread of the device does, and
-    // each message waits until it wakes up (docs/decisions/ranks.md).
+    // In sync mode the calling thread reads and writes. Without it the thread of the device does,
+    // and each message waits for the wake-up of that thread (docs/decisions/ranks.md).
     const bool polls = OwnsProcessors();
     for (int peer = 0; peer < size_; ++peer) {
       if (peer != rank_) gloo_->getPair(peer)->setSync(true, polls);
@@ -291,8 +294,10 @@ void GlooGroup::WithPeer(int peer, const Exchange& exchange) {
   if (!failure.empty()) Lose(peer, failure);
 }
 
-// A rank that ends because of a lost one is itself lost to others. The first report counts. The
-// thread may outlive the limit: a call of the store has none if the host of rank 0 does not answer.
+// Reports a lost rank in the store and throws RankLost. A rank that ends because another one was
+// lost appears lost, too. Therefore all ranks name the rank that was reported first. The report
+// runs in a thread, which may outlive kReportLimit: calls of the store have no time limit if the
+// host of rank 0 does not answer.
 void GlooGroup::Lose(int peer, const std::string& reason) {
   std::packaged_task<int()> report([store = store_, text = std::to_string(peer)] {
     const std::vector<std::uint8_t> first =
@@ -301,12 +306,12 @@ void GlooGroup::Lose(int peer, const std::string& reason) {
   });
   std::future<int> answer = report.get_future();
   std::thread(std::move(report)).detach();
-  int lost = 0;  // unless its store answers
+  int lost = 0;  // rank 0 is lost if its store does not answer
   try {
     if (answer.wait_for(kReportLimit) == std::future_status::ready) lost = answer.get();
   } catch (const std::exception&) {  // the store ended with rank 0
   }
-  gloo_.reset();  // the peers of this rank notice it at once, and find its report
+  gloo_.reset();  // the peers notice the closed connection at once, and then read the report
   if (rank_ == 0) std::this_thread::sleep_for(kStoreKept);
   throw RankLost("ranks: " + RankOf(lost, size_) +
                  " has ended or does not answer; see its output, then resume the run with any "
@@ -315,7 +320,7 @@ void GlooGroup::Lose(int peer, const std::string& reason) {
 }
 
 // Recursive doubling: after round k each rank has the sum of its block of 2^k ranks. Both ranks of
-// a pair compute the same bits, since an addition of two floats does not depend on their order.
+// a pair compute the same bits, since the sum of two floats does not depend on their order.
 void GlooGroup::Sum(std::vector<float>& values, std::vector<double>& numbers) {
   const std::size_t value_bytes = values.size() * sizeof(float);
   const std::size_t bytes = value_bytes + numbers.size() * sizeof(double);
@@ -326,7 +331,8 @@ void GlooGroup::Sum(std::vector<float>& values, std::vector<double>& numbers) {
     const int peer = rank_ ^ step;
     std::memcpy(own_.data(), values.data(), value_bytes);
     std::memcpy(own_.data() + value_bytes, numbers.data(), bytes - value_bytes);
-    // One after the other: two that both send more than the sockets hold would wait forever.
+    // One rank sends first. If both sent at once more than the sockets hold, both would wait
+    // forever.
     WithPeer(peer, [&] {
       if (rank_ < peer) Send(peer, own_.data(), bytes);
       Receive(peer, other_.data(), bytes);
@@ -348,8 +354,9 @@ void GlooGroup::Sum(std::vector<float>& values, std::vector<double>& numbers) {
   }
 }
 
-// Up the binary tree of ranks, so that rank 0 receives log2 R messages: at 4 ranks 1 → 0 and 3 → 2,
-// then 2 → 0. After round k a receiver has the bytes of 2^k ranks from its own on.
+// Sends the bytes up the binary tree of ranks, so that rank 0 receives from log2(size) ranks. With
+// 4 ranks: 1 → 0 and 3 → 2, then 2 → 0. After round k a receiver has the bytes of its own rank and
+// of the 2^k − 1 next ranks.
 std::vector<std::string> GlooGroup::Gather(const std::string& bytes) {
   std::vector<std::string> block{bytes};
   for (int step = 1; step < size_; step *= 2) {
@@ -383,7 +390,7 @@ std::vector<std::string> GlooGroup::Gather(const std::string& bytes) {
   return block;
 }
 
-// Down the binary tree of ranks, from the farthest: at 8 ranks 0 → 4, then 0 → 2 and 4 → 6, ….
+// Sends the bytes down the binary tree of ranks. With 8 ranks: 0 → 4, then 0 → 2 and 4 → 6, ….
 std::string GlooGroup::Broadcast(const std::string& bytes) {
   std::string all = rank_ == 0 ? bytes : std::string();
   for (int step = size_ / 2; step > 0; step /= 2) {
@@ -407,8 +414,8 @@ std::string GlooGroup::Broadcast(const std::string& bytes) {
   return all;
 }
 
-// The others wait in the store, where a wait has a limit of its own. A thread of rank 0 answers
-// them, so they notice at once if that process ends.
+// The other ranks wait for a key of the store, because such a wait has its own time limit. A thread
+// of rank 0 serves the store, so the other ranks notice at once if that process ends.
 void GlooGroup::RunOnRank0(const std::function<void()>& work) {
   const std::string done = "work/" + std::to_string(works_++);
   if (rank_ == 0) {
@@ -420,7 +427,7 @@ void GlooGroup::RunOnRank0(const std::function<void()>& work) {
     try {
       store_->wait({done}, work_limit_);
     } catch (const std::exception& error) {
-      throw std::runtime_error("it was to read or write the run folder within " +
+      throw std::runtime_error("it did not read or write the run folder within " +
                                std::to_string(work_limit_.count() / 1000) +
                                " s: " + FirstLine(error));
     }

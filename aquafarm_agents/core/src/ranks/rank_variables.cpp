@@ -14,11 +14,12 @@ namespace {
 struct Launcher {
   const char* rank;
   const char* size;
-  const char* local_size;          ///< processes on this host; nullptr if the launcher sets none
-  std::array<const char*, 2> job;  ///< differ between the jobs of a host; nullptr: none
+  const char* local_size;          ///< number of processes on this host; nullptr: no such variable
+  std::array<const char*, 2> job;  ///< identify the job; nullptr: no such variable
 };
 
-// SLURM_NTASKS is also set in a batch script, outside any srun. SLURM_STEP_NUM_TASKS is not.
+// The names of the variables that each launcher sets. SLURM_NTASKS is also set in a batch script
+// outside of srun, SLURM_STEP_NUM_TASKS is not.
 constexpr std::array<Launcher, 4> kLaunchers{{
     {"RANK", "WORLD_SIZE", "LOCAL_WORLD_SIZE", {}},
     {"OMPI_COMM_WORLD_RANK",
@@ -31,7 +32,7 @@ constexpr std::array<Launcher, 4> kLaunchers{{
 
 constexpr int kMaxRanks = 65536;
 constexpr int kMaxPort = 65535;
-constexpr std::uint32_t kFirstJobPort = 20000;  // below Linux' range of ephemeral ports
+constexpr std::uint32_t kFirstJobPort = 20000;  // all ports are below Linux' ephemeral ports
 constexpr std::uint32_t kJobPorts = 10000;
 
 int ReadNumber(const char* name, std::string_view text, int min, int max) {
@@ -45,7 +46,7 @@ int ReadNumber(const char* name, std::string_view text, int min, int max) {
   return value;
 }
 
-// "node[03-05,07]" and "node03,node04" give node03.
+// Returns the first host of a Slurm list: node03 for "node[03-05,07]" and for "node03,node04".
 std::string FirstHost(std::string_view hosts) {
   const std::size_t bracket = hosts.find_first_of("[,");
   std::string first(hosts.substr(0, bracket));
@@ -54,14 +55,14 @@ std::string FirstHost(std::string_view hosts) {
   return first.append(numbers.substr(0, numbers.find_first_of(",-]")));
 }
 
-// FNV-1a (Fowler, Noll, Vo), 32 bits.
+// Returns the 32-bit FNV-1a hash (Fowler, Noll, Vo).
 std::uint32_t Hash(std::string_view text) {
   std::uint32_t hash = 2166136261U;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
   return hash;
 }
 
-// Empty if the launcher does not say which job this is.
+// Returns the name of the job; empty if the launcher sets no variable that identifies it.
 std::string JobOf(const Launcher& launcher, const GetVariable& get) {
   std::string job;
   for (const char* const name : launcher.job) {

@@ -37,7 +37,7 @@ Cell NearestWater(const Grid<std::uint8_t>& water, Cell from) {
   return nearest;
 }
 
-// Returns the water cell of a place in a row.
+// Returns the cell of the latitude and longitude in a row. Throws InputError if it is not water.
 Cell WaterCell(const CsvRow& row, const std::string& name, const RescueCase& rescue) {
   const GeoPoint place{row.Number("latitude", -90.0, 90.0), row.Number("longitude", -180.0, 360.0)};
   const Grid<std::uint8_t>& water = rescue.problem.water;
@@ -86,13 +86,14 @@ double FactorOf(const Scenario& scenario, const std::string& kind) {
   return 1.0;
 }
 
-// Reads name and cell of a device or ship from its row, and notes the name.
+// Reads name and cell of a device or ship from its row, and adds the name to `names`.
 template <typename Item>
 void ReadPlace(const CsvRow& row, const RescueCase& rescue, std::vector<std::string>& names,
                Item& item) {
   item.name = row.Text("name");
   if (item.name.empty() || std::find(names.begin(), names.end(), item.name) != names.end()) {
-    throw InputError(row.where() + ": name: got '" + item.name + "', expected a name of its own");
+    throw InputError(row.where() + ": name: got '" + item.name +
+                     "', expected a name that no other row has");
   }
   names.push_back(item.name);
   item.cell = WaterCell(row, item.name, rescue);
@@ -126,13 +127,13 @@ void ReadDevices(const RescueRequest& request, RescueCase& rescue) {
   }
 }
 
-// Returns when a ship is ready [s after the start]: the time of its row, else the fallback.
+// Returns when a ship is ready [s after the start]: the time in its row, but at least `fallback_s`.
 double ReadyOf(const CsvRow& row, std::int64_t start, double fallback_s) {
   const std::string text = row.Text("ready");
   if (text.empty()) return fallback_s;
   const std::string what = row.where() + ": ready";
   const double ready_s = static_cast<double>(ParseUtc(what, text) - start);
-  return std::max(ready_s, fallback_s);  // ready before the plan begins
+  return std::max(ready_s, fallback_s);
 }
 
 void ReadShips(const RescueRequest& request, RescueCase& rescue) {
@@ -171,8 +172,8 @@ void ReadShips(const RescueRequest& request, RescueCase& rescue) {
   }
 }
 
-// Returns the energy of the ranch's ships, with prices if the values of the devices are given in
-// the currency of the prices. The values of a layout are in units of the reward.
+// Returns the energy of the ranch's ships. It contains prices only if the devices' values come from
+// a file and are in the currency of the prices. (Values of a layout are in units of the reward.)
 std::optional<RescueEnergy> EnergyOf(const Scenario& scenario, const RescueRequest& request) {
   if (!scenario.energy) return std::nullopt;
   const EnergyFigures& ships = scenario.energy->ships;

@@ -1,27 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Steps of MakeRescueCase.
+/// Parts of MakeRescueCase, and helpers that several files of this folder use.
 
 #include "aquafarm/agents/rescue/rescue_case.h"
 
 namespace aquafarm::agents {
 
-/// Age from which a bulletin is old [h].
+/// Min age of an old bulletin [h].
 inline constexpr double kOldBulletin_h = 12.0;
 
-/// Reads the storm. Sets storm, start, known time and central forecast.
+/// Reads the storm file. Sets `start`, `storm`, `forecast` and `ensemble` of the case, and adds
+/// warnings.
+/// @throws InputError if the file is wrong or the storm is not known at the start of the plan
 void ReadStorm(const RescueRequest& request, RescueCase& rescue);
-/// Sets name, rings, passage, central forecast and the steps of the ensemble from the whole track.
-/// Requires storm.file, storm.issued, storm.known_until and start.
+/// Sets the storm's name, rings and passage, the central forecast and the options of the ensemble.
+/// storm.file, storm.issued, storm.known_until and `start` must be set.
+/// @param track the reports and the forecast as one track
+/// @throws InputError if the storm is not known after the start of the plan
 void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase& rescue);
-/// Converts the damage per step of the ranch to damage per step of the ensemble.
+/// Returns RescueProblem::exposure_damage: the ranch's damage per step, converted to steps of the
+/// ensemble.
 double ExposureDamage(const RescueCase& rescue);
-/// Reads ports, devices and ships.
+/// Sets the problem of the case, except abort_ring: water, ports, devices, ships and parameters.
+/// @throws InputError if a file is wrong or a position is not on water
 void ReadFleet(const RescueRequest& request, RescueCase& rescue);
-/// Whether the plan has costs of energy or ship-hours.
+/// Returns whether energy or ship-hours have a price.
 bool IsPriced(const RescueProblem& problem);
-/// Formats a number with few digits.
+/// Formats a number with `digits` digits after the point.
 std::string Short(double value, int digits);
 
 }  // namespace aquafarm::agents

@@ -43,7 +43,8 @@ StormTrack TrackOf(const RescueRequest& request, const std::string& path, Rescue
   }
 }
 
-// Returns the agency of the forecasts if the file does not state one for the positions.
+// Returns the agency of the positions. If the file does not state it, returns that of the
+// forecasts.
 std::string AgencyOf(const StormTrack& track) {
   if (track.agency != "bulletin" && track.agency != "weather service") return track.agency;
   for (const StormForecast& forecast : track.forecasts) {
@@ -52,13 +53,13 @@ std::string AgencyOf(const StormTrack& track) {
   return track.agency;
 }
 
-// Removes what is reported after the start of the plan.
+// Removes fixes and forecasts of later times than the start of the plan.
 StormTrack KnownAt(StormTrack track, std::int64_t start, const std::string& path) {
   auto& fixes = track.fixes;
   if (fixes.empty() || fixes.front().time > start) {
     throw InputError(path + ": got " + NameOf(track) + " from " +
                      (fixes.empty() ? "no time" : FormatUtc(fixes.front().time)) +
-                     " on, expected a storm that is reported by " + FormatUtc(start) +
+                     " on, expected a storm whose first report is not after " + FormatUtc(start) +
                      "; give a later --at");
   }
   fixes.erase(std::remove_if(fixes.begin(), fixes.end(),
@@ -102,7 +103,7 @@ StormTrack FromRecord(const RescueRequest& request, RescueCase& rescue) {
   if (track.fixes.front().time > rescue.start || track.fixes.back().time <= rescue.start) {
     throw InputError(request.storm + ": got " + NameOf(track) + " from " +
                      FormatUtc(track.fixes.front().time) + " to " +
-                     FormatUtc(track.fixes.back().time) + ", expected a storm at and after " +
+                     FormatUtc(track.fixes.back().time) + ", expected a track that includes " +
                      FormatUtc(rescue.start) + "; give another --at");
   }
   StormRecord& storm = rescue.storm;
@@ -155,11 +156,11 @@ void WarnOfStorm(RescueCase& rescue) {
                         ""});
   }
   if (storm.held > 0) {
-    warnings.push_back({"wind_unknown_between", "warning",
-                        "Stretches of the storm's track without a known wind at both ends: " +
-                            std::to_string(storm.held) +
-                            ". There the plan takes the larger radii of both ends.",
-                        "Give a bulletin with a wind at each point."});
+    warnings.push_back(
+        {"wind_unknown_between", "warning",
+         "Stretches of the storm's track in which the wind cannot be interpolated: " +
+             std::to_string(storm.held) + ". There the plan takes the larger radii of both ends.",
+         "Give a bulletin with a wind at each point."});
   }
   if (storm.passage.over_at_end) {
     warnings.push_back({"known_until", "warning",

@@ -23,7 +23,7 @@ std::string Trimmed(const std::string& text) {
   return text.substr(from, text.find_last_not_of(kSpace) - from + 1);
 }
 
-// A doubled quote within quotes is a quote.
+// Splits a line into fields. Within quotes, a doubled quote stands for one quote.
 std::vector<std::string> Split(const std::string& line) {
   std::vector<std::string> fields(1);
   bool quoted = false;
@@ -63,7 +63,7 @@ double CsvRow::Number(const std::string& column, double low, double high) const 
 
 CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& needed,
                    const std::vector<std::string>& known, std::size_t max_rows) {
-  std::error_code unknown;  // ReadFile names a file that cannot be read
+  std::error_code unknown;  // ignored: ReadFile throws if the file cannot be read
   const auto bytes = std::filesystem::file_size(path, unknown);
   if (!unknown && bytes > kMaxBytes) {
     throw InputError(path + ": got " + std::to_string(bytes) + " bytes, expected at most " +

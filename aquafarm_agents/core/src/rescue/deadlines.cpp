@@ -10,7 +10,7 @@
 namespace aquafarm::agents {
 namespace {
 
-// Returns, by member, the time before which a ship must depart, in decreasing order.
+// Returns the time before which a ship must depart in each member, in decreasing order.
 std::vector<double> LatestDepartures(const TripModel& model, const std::vector<TimedCell>& trip) {
   const Ensemble& ensemble = model.ensemble();
   const double step_s = ensemble.options().step_s;
@@ -47,7 +47,7 @@ std::vector<std::vector<Deadline>> Deadlines(const RescueProblem& problem, const
         const double wanted = deadline.probability * static_cast<double>(latest.size());
         const auto rank = static_cast<std::size_t>(std::max(1.0, std::ceil(wanted - 1e-9)));
         const double before_s = latest[rank - 1];
-        // The ship must leave before this time; whole seconds.
+        // The last whole second before before_s.
         const double leave_s = std::ceil(before_s) - 1.0;
         if (leave_s < problem.ships[ship].ready_s) continue;
         if (deadline.leave_s && *deadline.leave_s >= leave_s) continue;

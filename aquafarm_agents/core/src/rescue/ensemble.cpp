@@ -71,8 +71,8 @@ class EnsembleBuilder {
     const Leg& leg = legs_[static_cast<std::size_t>(step)];
     const StormState storm = Between(states_[leg.from], states_[leg.to], leg.part,
                                      static_cast<std::size_t>(out_.rings_));
-    for (std::int32_t ring = out_.rings_; ring-- > 0;) {  // the widest first
-      if (!AddRing(member, step, ring, storm)) break;     // those within it do not reach the ranch
+    for (std::int32_t ring = out_.rings_; ring-- > 0;) {  // the widest ring first
+      if (!AddRing(member, step, ring, storm)) break;  // inner rings do not reach the ranch either
     }
     for (std::size_t site = 0; site < sites_.size(); ++site) AddExposure(member, step, site, storm);
   }
@@ -96,7 +96,7 @@ class EnsembleBuilder {
     }
   }
 
-  // Counts the cells of a ring. @returns whether it touches the ranch
+  // Adds the cells that a ring covers. Returns false if the ring is too far from the ranch.
   bool AddRing(std::size_t member, std::int32_t step, std::int32_t ring, const StormState& storm) {
     const auto& radius = storm.radius[static_cast<std::size_t>(ring)];
     const float widest = *std::max_element(radius.begin(), radius.end());
@@ -112,7 +112,8 @@ class EnsembleBuilder {
     std::int16_t* first =
         first_.data() + (static_cast<std::size_t>(ring) * members_ + member) * cells_;
     const auto now = static_cast<std::int16_t>(step);
-    // Rings lie in one another, so that each adds the difference to the next weaker one.
+    // Rings are nested, so each ring adds the difference between its risk and that of the next
+    // wider ring.
     const auto k = static_cast<std::size_t>(ring);
     const float weaker = ring + 1 < out_.rings_ ? storm.risk[k + 1] : 0.0F;
     const float more = storm.risk[k] - weaker;
@@ -150,7 +151,7 @@ class EnsembleBuilder {
       const float rest = radius * radius - south * south;
       return radius > 0.0F && rest >= 0.0F ? std::sqrt(rest) : -1.0F;
     };
-    // QuadrantOf: points due east of the centre are in the south-east.
+    // Columns east of the centre are in an eastern quadrant, columns west of it in a western one.
     const float east = half(storm.radius[ring][QuadrantOf(-1.0F, south)]);
     const float west = half(storm.radius[ring][QuadrantOf(1.0F, south)]);
     if (east < 0.0F && west < 0.0F) return {0, -1};
@@ -187,7 +188,8 @@ class EnsembleBuilder {
     }
   }
 
-  // From [ring, member, cell], in which members are drawn, to [ring, cell, member].
+  // Copies the arrivals from [rings, members, cells], the order of drawing, to [rings, cells,
+  // members].
   void Transpose() {
     out_.arrival_.resize(first_.size());
     for (std::size_t ring = 0; ring < static_cast<std::size_t>(out_.rings_); ++ring) {
@@ -241,10 +243,10 @@ class EnsembleBuilder {
   std::size_t cells_;
   std::size_t members_;
   std::vector<std::int16_t> first_;       // [rings, members, cells]
-  std::vector<std::int32_t> everywhere_;  // [rings, steps]: members whose ring covers all cells
-  std::vector<float> risk_everywhere_;    // [steps]: sum of the risks of these
+  std::vector<std::int32_t> everywhere_;  // [rings, steps] members whose ring covers all cells
+  std::vector<float> risk_everywhere_;    // [steps] sum of the risks that these rings add
   std::vector<Leg> legs_;                 // by step
-  std::vector<StormState> states_;        // of the current member, by point
+  std::vector<StormState> states_;        // by point: states of the current member
 };
 
 Ensemble::Ensemble(const CentralForecast& forecast, const EnsembleOptions& options,
@@ -272,7 +274,7 @@ RiskField Ensemble::MeanRisk(std::int32_t first_step, float step_reward) const {
     RiskLayers one;
     one.risk.resize(options_.height, options_.width);
     one.quiet.resize(options_.height, options_.width);
-    const std::uint16_t* covered = Covered(rings_ - 1, step);  // the widest ring contains the rest
+    const std::uint16_t* covered = Covered(rings_ - 1, step);  // of the widest ring
     const float* sum = risk_sum_.data() + static_cast<Eigen::Index>(step) * one.risk.size();
     for (Eigen::Index cell = 0; cell < one.risk.size(); ++cell) {
       one.risk.data()[cell] = sum[cell] / count;

@@ -27,7 +27,7 @@ void RequireFits(const RescueRequest& request, const FleetState& fleet, const Re
                    std::to_string(expected) + ", as in " + rescue.scenario->name);
 }
 
-// Warns if a ship with devices aboard cannot deliver them.
+// Adds a warning if a ship with devices aboard reaches no open port, else a note.
 void RequireWayHome(std::size_t index, const std::string& names, RescueCase& rescue) {
   const RescueProblem& problem = rescue.problem;
   const RescueShip& ship = problem.ships[index];
@@ -67,7 +67,7 @@ void PlaceShips(const FleetState& fleet, RescueCase& rescue) {
   }
 }
 
-// Returns by device the ship that has it aboard; kNone if no ship has it.
+// Returns, by device, the ship that carries it; kNone if no ship carries it.
 std::vector<std::int32_t> CarriersOf(const FleetState& fleet) {
   std::vector<std::int32_t> carriers(fleet.devices.size(), kNone);
   for (std::size_t ship = 0; ship < fleet.ships.size(); ++ship) {
@@ -84,7 +84,7 @@ std::vector<std::int32_t> CarriersOf(const FleetState& fleet) {
   return carriers;
 }
 
-// Keeps the devices that lie at their places or are aboard ships.
+// Keeps the devices that are at their sites or aboard ships, and adds notes about the others.
 void KeepDevices(const FleetState& fleet, RescueCase& rescue) {
   RescueProblem& problem = rescue.problem;
   const std::vector<std::int32_t> carriers = CarriersOf(fleet);

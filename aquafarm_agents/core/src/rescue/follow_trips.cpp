@@ -8,7 +8,7 @@
 namespace aquafarm::agents {
 namespace {
 
-// Follows the trips of a plan and computes what they mean for ships and devices.
+// Follows trips and computes the routes and outcomes of a plan.
 class Follower {
  public:
   Follower(const TripModel& model, RescuePlan& plan) : model_(model), plan_(plan) {
@@ -76,7 +76,7 @@ class Follower {
     Add(std::move(order), route);
   }
 
-  // Sets distance and energy of an order.
+  // Moves the ship to an end point of routes. Sets the distance and energy of the order.
   void Sail(std::size_t to, ShipRoute& route, RescueOrder& order) {
     const SeaRoute& way = model_.routes().Between(place_, to);
     for (std::size_t i = 0; i < way.cells.size(); ++i) {
@@ -153,7 +153,7 @@ class Follower {
   std::vector<std::int32_t> aboard_;
 };
 
-// Gives the devices to the ships, one by one.
+// Assigns the devices to the ships by a rule, one after the other.
 class SimpleRule {
  public:
   SimpleRule(const TripModel& model, FetchRule rule) : model_(model), rule_(rule) {
@@ -213,7 +213,7 @@ class SimpleRule {
     ship.aboard = 0;
   }
 
-  // Returns the position in `waiting_` of the next device; their number if none is in reach.
+  // Returns the index in `waiting_` of the next device; waiting_.size() if no device is reachable.
   std::size_t Choose(const Ship& ship) const {
     std::size_t best = waiting_.size();
     double best_score = -std::numeric_limits<double>::infinity();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What given trips of the ships mean for orders, devices and losses.
+/// Computes orders, outcomes of devices, and losses of given trips.
 
 #include <vector>
 
@@ -11,17 +11,17 @@
 
 namespace aquafarm::agents {
 
-/// The stops of a ship that leaves.
+/// The stops of one ship.
 struct ShipTrips {
   std::size_t ship{};
   std::vector<TripStop> stops;
 };
 
-/// Follows the trips in every member. `saved` is the mean; bound and is_exhaustive are not set.
+/// Follows the trips in every member. Does not set bound, averse_gap and is_exhaustive of the plan.
+/// @param trips at most one element for each ship; other ships stay
 RescuePlan FollowTrips(const TripModel& model, const std::vector<ShipTrips>& trips);
 
-/// Returns the trips that fetch device after device by a rule: the ship that is free first takes
-/// the next device. No storm matters.
+/// Returns the trips of FetchInOrder (rescue_plan.h), which ignore storms.
 std::vector<ShipTrips> SimpleTrips(const TripModel& model, FetchRule rule);
 
 }  // namespace aquafarm::agents

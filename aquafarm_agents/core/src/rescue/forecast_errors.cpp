@@ -10,7 +10,7 @@
 namespace aquafarm::agents {
 namespace {
 
-// Linear between the points, and after the last one as between the last two.
+// Interpolates linearly between the points, and extrapolates from the last two.
 double Interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
   AQUAFARM_CHECK_EQ(x.size(), y.size());
   AQUAFARM_CHECK_LE(std::size_t{2}, x.size());

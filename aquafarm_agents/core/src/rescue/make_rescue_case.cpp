@@ -11,8 +11,8 @@
 namespace aquafarm::agents {
 namespace {
 
-// Returns the ring whose winds stop ships: the strongest one with at most the limit, else the
-// weakest, to be on the safe side.
+// Returns the ring whose winds stop ships: the strongest ring whose wind is at most the limit. If
+// all are stronger, returns the weakest ring.
 std::int32_t AbortRing(const StormPath& path, double limit_kt) {
   for (std::size_t ring = 0; ring < path.rings; ++ring) {
     if (path.wind_kt[ring] <= limit_kt) return static_cast<std::int32_t>(ring);
@@ -20,7 +20,7 @@ std::int32_t AbortRing(const StormPath& path, double limit_kt) {
   return static_cast<std::int32_t>(path.rings) - 1;
 }
 
-// Returns the lowest and the highest speed of the ships, and whether they are given.
+// Returns the range of the ships' speeds as text, and whether the operator gave the speeds.
 std::pair<std::string, bool> SpeedsOf(const RescueRequest& request, const RescueCase& rescue) {
   const auto& ships = rescue.problem.ships;
   if (ships.empty()) return {"no ship", false};
@@ -55,13 +55,13 @@ void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
                   : "log-normal, one factor per storm, the same at all lead times",
       "estimated",
       is_reported
-          ? "Size returns to the estimate by wind and latitude within 165 h: JMA best tracks of "
-            "2015 "
-            "to 2021 (docs/plan.md); 10 % is assumed"
+          ? "The deviation from the estimate by wind and latitude decays by a factor e in "
+            "165 h: JMA best tracks of 2015 to 2021 (docs/plan.md); 10 % is assumed"
           : "Spread of recorded radii about the estimate by wind and latitude (docs/data.md)");
   if (rescue.storm.held > 0) {
-    add("Radii between points of the track without a known wind", "the larger ones of both points",
-        "assumed", "On the safe side: radii can be estimated from a wind alone");
+    add("Radii between two points of the track if the wind cannot be interpolated",
+        "the larger radii of the two points", "assumed",
+        "On the safe side: radii can be estimated from a wind alone");
   }
   add("Position errors along and across the track", "normal, equal, correlated by exp(-dt / 48 h)",
       "assumed", "The published statistics give mean distances alone");
@@ -97,7 +97,7 @@ std::string Short(double value, int digits) {
   const int count = std::snprintf(text, sizeof(text), "%.*f", digits, value);
   std::string result(text, static_cast<std::size_t>(std::max(0, count)));
   const bool is_zero = result.find_first_of("123456789") == std::string::npos;
-  if (is_zero && !result.empty() && result[0] == '-') result.erase(0, 1);  // no -0.0
+  if (is_zero && !result.empty() && result[0] == '-') result.erase(0, 1);  // -0.0 becomes 0.0
   return result;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// plan.json: see aquafarm_bringup/python/aquafarm_plan/plan.schema.json.
+// Writes plan.json, which aquafarm_bringup/python/aquafarm_plan/plan.schema.json specifies.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -52,10 +52,11 @@ class JsonReport {
   }
   Json PlaceOf(Cell cell) const { return OfPlace(case_.frame.ToGeo(cell.x, cell.y)); }
   double StepTime(std::int32_t step) const { return step * ensemble_.options().step_s; }
-  // With unknown winds no member has winds, which does not mean that it is safe: null.
   Json Kwh(double kwh) const {
     return case_.problem.energy ? Json(Rounded(kwh, 0.001)) : Json(nullptr);
   }
+  // Returns null with unknown winds. The members then contain no winds, and their numbers would
+  // look safe.
   Json Known(Json value) const { return AreWindsUnknown() ? Json(nullptr) : std::move(value); }
   Json Chance(double share) const { return Known(Share(share)); }
   Json MemberShare(std::int32_t count) const {
@@ -103,7 +104,9 @@ class JsonReport {
     const std::int32_t minutes = std::abs(case_.utc_offset_min);
     const std::string zone = std::string(case_.utc_offset_min < 0 ? "UTC-" : "UTC+") +
                              std::to_string(minutes / 60) +
-                             (minutes % 60 == 0 ? "" : ":" + std::to_string(minutes % 60));
+                             (minutes % 60 == 0   ? ""
+                              : minutes % 60 < 10 ? ":0" + std::to_string(minutes % 60)
+                                                  : ":" + std::to_string(minutes % 60));
     return {{"start", Time(0.0)},
             {"end", Time(StepTime(ensemble_.steps() - 1))},
             {"step_s", ensemble_.options().step_s},
@@ -214,7 +217,8 @@ class JsonReport {
             {"closest_approach", closest}};
   }
 
-  // The ensemble also has points between those of the forecast (aquafarm/tracks/fine_rings.h).
+  // Returns whether a point of the ensemble is also one of the forecast. (fine_rings.h adds points
+  // between them.)
   bool IsPointOfForecast(const EnsembleSpread& at) const {
     const std::int64_t time = case_.start + std::llround(at.time_s);
     const auto& points = case_.storm.rings.waypoints;
@@ -239,7 +243,7 @@ class JsonReport {
         {"members", ensemble_.members()}, {"seed", ensemble_.options().seed}, {"errors", errors}};
   }
 
-  // Steps about `hours` apart.
+  // Returns steps about `hours` apart, from step 0 on.
   std::vector<std::int32_t> StepsEvery(double hours) const {
     std::vector<std::int32_t> steps;
     const auto by =
@@ -259,7 +263,7 @@ class JsonReport {
     }
     Json frames = Json::array();
     for (const std::int32_t step : StepsEvery(2.0)) {
-      if (AreWindsUnknown()) break;  // an empty grid stands for zeros
+      if (AreWindsUnknown()) break;  // no frames, since an empty grid would stand for zeros
       Json percents = Json::array();
       for (std::int32_t ring = 0; ring < ensemble_.rings(); ++ring) {
         percents.push_back(Percents(ring, step));
@@ -442,8 +446,8 @@ class JsonReport {
             {"no_departure_after", TimeOrNull(last.none_after_s)},
             {"not_known_beyond", TimeOrNull(last.not_known_beyond_s)},
             {"rule",
-             "the latest departure with which any device at its place has a chance of at least "
-             "50 %"}};
+             "the latest departure that still brings a device from its place to port with a "
+             "chance of at least 50 %"}};
   }
 
   Json Changes() const {

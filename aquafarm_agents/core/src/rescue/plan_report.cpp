@@ -9,7 +9,8 @@
 namespace aquafarm::agents {
 namespace {
 
-// A share of a sample is never called certain.
+// Returns a share of the members in percent. It is never 0 % or 100 %, since a sample gives no
+// certainty.
 std::string Percent(double share) {
   if (share >= 0.995) return "> 99 %";
   return share < 0.005 ? "< 1 %" : Short(100.0 * share, 0) + " %";
@@ -20,7 +21,7 @@ std::string Money(const RescueCase& rescue, double value) {
          (rescue.currency.empty() ? "" : " " + rescue.currency);
 }
 
-// Returns "07-24 20:30 (12:30Z)", local time first.
+// Returns a time as "07-24 20:30 (12:30Z)": local time, then UTC.
 std::string Clock(const RescueCase& rescue, double time_s) {
   const std::int64_t utc = rescue.start + std::llround(time_s);
   const std::string local = FormatUtc(utc + 60 * rescue.utc_offset_min);
@@ -28,7 +29,7 @@ std::string Clock(const RescueCase& rescue, double time_s) {
          "Z)";
 }
 
-// Returns whether winds reach a device, or the way of a ship, in any member.
+// Returns whether winds reach a device or the route of a ship in any member.
 bool IsReached(const RescueCase& rescue, const Ensemble& ensemble, const RescuePlan& plan) {
   std::vector<Cell> cells = rescue.Sites();
   for (const ShipRoute& route : plan.routes) {
@@ -41,15 +42,16 @@ bool IsReached(const RescueCase& rescue, const Ensemble& ensemble, const RescueP
   });
 }
 
-// Returns whether winds are unknown near the ranch during the plan. Members then interpolate from
-// no winds at all, and also those that reach a device reach it too late.
+// Returns whether the winds of the storm are unknown while it is near the ranch during the plan.
+// The members then interpolate from a state without winds. Their winds reach devices too late or
+// not at all, so no number of the plan is valid.
 bool AreWindsUnknown(const RescueCase& rescue, const Ensemble& ensemble) {
   const double end_s = (ensemble.steps() - 1) * ensemble.options().step_s;
   const std::int64_t from = rescue.storm.passage.unknown[0];
   return from != 0 && from <= rescue.start + static_cast<std::int64_t>(end_s);
 }
 
-// Returns the problem in which only devices aboard are worth a trip.
+// Returns the problem with a value of 0 for all devices that are not aboard.
 RescueProblem OnlyAboard(RescueProblem problem) {
   for (std::size_t d = 0; d < problem.devices.size(); ++d) {
     if (problem.CarrierOf(d) == kNone) problem.devices[d].value = 0.0;
@@ -70,7 +72,7 @@ void Warn(const char* code, const char* severity, const std::string& advice, Pla
   rescue.warnings.push_back({code, severity, report.text, advice});
 }
 
-// Returns whether all that the bulletin states ended before the present time.
+// Returns whether the bulletin is old and its forecast ended before the present time.
 bool HasEnded(const RescueCase& rescue) {
   const StormRecord& storm = rescue.storm;
   const double present_s = static_cast<double>(storm.recorded_until) + storm.age_h * 3600.0;
@@ -102,8 +104,8 @@ void SetNothingSavedResult(RescueCase& rescue, const Ensemble& ensemble, PlanRep
   const RescueProblem& problem = rescue.problem;
   const std::string advice = report.plan.routes.empty()
                                  ? "Keep the ships in port."
-                                 : "Ships with devices aboard: heed the warnings of their own; "
-                                   "keep the others in port.";
+                                 : "For ships with devices aboard follow their own warnings; "
+                                   "keep the other ships in port.";
   if (IsPriced(problem) && SavesWithoutCosts(problem, ensemble)) {
     report.text = problem.risk_averse > 0.0
                       ? "No trip saves more in the worst " + Short(100.0 * problem.risk_averse, 1) +
@@ -141,7 +143,8 @@ void SetResult(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report)
                 Money(rescue, Summarize(report.plan.loss_idle).mean) + " on average.";
 }
 
-// With unknown winds no member stops a ship, which does not mean that it is safe.
+// Returns a chance as text: "unknown" with unknown winds, where the members contain no winds that
+// could stop a ship.
 std::string Chance(const PlanReport& report, double share) {
   return report.result == PlanResult::kStormUnknown ? "unknown" : Percent(share);
 }
@@ -189,7 +192,7 @@ void AddDevices(const RescueCase& rescue, const PlanReport& report, std::string&
   }
 }
 
-// Warns of each ship whose devices aboard are more likely lost than brought to a port.
+// Adds a warning for each ship that delivers a device aboard with a chance below 50 %.
 void WarnOfWaysHome(RescueCase& rescue, const PlanReport& report) {
   constexpr double kSafe = 0.5;
   const RescueProblem& problem = rescue.problem;
@@ -201,7 +204,7 @@ void WarnOfWaysHome(RescueCase& rescue, const PlanReport& report) {
         rescue.warnings.begin(), rescue.warnings.end(),
         [id](const RescueWarning& one) { return one.code == "no_way_home" && one.ship == id; });
     std::string names;
-    double home = 1.0;  // the worst of them
+    double home = 1.0;  // chance of the device with the lowest one
     bool is_under_way = false;
     for (const std::int32_t device : ship.aboard) {
       const auto d = static_cast<std::size_t>(device);
@@ -252,7 +255,7 @@ LastDeparture LastDepartureOf(const RescueProblem& problem, const PlanReport& re
 
 PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble) {
   PlanReport report;
-  // With unknown winds no trip can be judged: only ships with devices aboard get orders.
+  // With unknown winds the value of a trip is unknown. Only ships with devices aboard get orders.
   const RescueProblem problem =
       AreWindsUnknown(rescue, ensemble) ? OnlyAboard(rescue.problem) : rescue.problem;
   report.plan = PlanRescue(problem, ensemble);
@@ -291,8 +294,8 @@ std::string ToText(const RescueCase& rescue, const PlanReport& report) {
     text += "no ship should leave after " + Clock(rescue, *last.none_after_s) + "\n";
   }
   if (last.not_known_beyond_s) {
-    text += "until when ships may leave is not known beyond " +
-            Clock(rescue, *last.not_known_beyond_s) + ": plan again with the next bulletin\n";
+    text += "ships may leave at least until " + Clock(rescue, *last.not_known_beyond_s) +
+            "; what follows is not known: plan again with the next bulletin\n";
   }
   text += "\nwhat if: mean loss, change\n";
   for (const WhatIf& row : report.what_if) {

@@ -15,7 +15,7 @@
 namespace aquafarm::agents {
 namespace {
 
-// The storm without errors, as an ensemble of one member.
+// Returns an ensemble whose only member is the central forecast without errors.
 Ensemble Certain(const RescueCase& rescue, const CentralForecast& forecast) {
   EnsembleOptions options = rescue.ensemble;
   options.members = 1;
@@ -157,7 +157,7 @@ Estimate RatioOf(const std::vector<double>& above, const std::vector<double>& be
   const double base = std::accumulate(below.begin(), below.end(), 0.0);
   if (base == 0.0) return {};
   const double ratio = std::accumulate(above.begin(), above.end(), 0.0) / base;
-  std::map<std::size_t, double> rest;  // by group
+  std::map<std::size_t, double> rest;  // by group: sum of the residuals
   for (std::size_t i = 0; i < above.size(); ++i) {
     rest[groups.empty() ? i : groups[i]] += above[i] - ratio * below[i];
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Plays plans against simulated storms: were the promised chances kept, and what did the plan
-/// save?
+/// Plays plans in simulated storms, to measure whether the chances that plans promise are correct,
+/// and what plans save.
 
 #include <array>
 #include <cstdint>
@@ -15,59 +15,65 @@
 
 namespace aquafarm::agents {
 
-/// Who gives the orders.
+/// How the orders of the ships are chosen.
 enum class TrialPolicy : std::uint8_t {
-  kPlan,
-  kCentral,    ///< the same search for the forecast alone, without its errors
-  kPlanAgain,  ///< the plan, made again at each bulletin; one ship
-  kPlanner,    ///< the policy `planner`, which plans again at each bulletin; one ship of the ranch
-  kValue,      ///< FetchRule::kValue
-  kNearest,    ///< FetchRule::kNearest
-  kClairvoyant,  ///< the same search for the true storm
+  kPlan,         ///< the plan of the first bulletin
+  kCentral,      ///< as kPlan, with the central forecast as the only member
+  kPlanAgain,    ///< a new plan at each bulletin; needs a ranch with one ship
+  kPlanner,      ///< the policy `planner` (PlannerSkipper); needs one ship and the ranch's devices
+  kValue,        ///< FetchRule::kValue
+  kNearest,      ///< FetchRule::kNearest
+  kClairvoyant,  ///< as kPlan, with the true storm as the only member
 };
 inline constexpr std::size_t kTrialPolicyCount = 7;
-/// "plan", "central", "plan_again", "planner", "fetch_by_value", "fetch_nearest", "clairvoyant".
+/// Returns "plan", "central", "plan_again", "planner", "fetch_by_value", "fetch_nearest" or
+/// "clairvoyant".
 std::string_view ToString(TrialPolicy value);
 
-/// A promised probability and what happened.
+/// A probability of an event, and whether the event happened.
 struct Promise {
   double promised{};
   bool kept{};
 };
 
-/// One trial.
+/// Result of one trial.
 struct TrialResult {
-  std::size_t track{};  ///< TrialStorm::track
-  double lead_h{};
-  double nearest_km{};
-  double bulletin_mps{};       ///< greatest wind of the bulletin after the start
-  std::vector<Promise> home;   ///< of each device that the plan fetches: it came home
-  std::vector<Promise> gales;  ///< of each device: the weakest ring reached its site
+  std::size_t track{};         ///< TrialStorm::track
+  double lead_h{};             ///< TrialStorm::lead_h
+  double nearest_km{};         ///< TrialStorm::nearest_km
+  double bulletin_mps{};       ///< greatest wind in the forecast of the first bulletin
+  std::vector<Promise> home;   ///< for each device that the plan fetches: it comes home
+  std::vector<Promise> gales;  ///< for each device: the widest ring reaches its site
   double promised{};           ///< value that the plan saves on average over its members
-  double at_risk{};            ///< value that is lost if no ship leaves
-  /// By TrialPolicy, in the true storm; NaN if the policy is not for these ships and devices.
+  double at_risk{};            ///< value that is lost in the true storm if no ship leaves
+  /// By TrialPolicy: value saved in the true storm; NaN if the policy was not played.
   std::array<double, kTrialPolicyCount> saved{};
 };
 
-/// Mean of the worst 5 % of the losses of two plans, over other members than those of the plans.
+/// Mean of the worst 5 % of the losses of two plans. The losses are those in an ensemble with other
+/// members than the one for which the plans were made.
 struct AverseResult {
   std::size_t track{};  ///< TrialStorm::track
-  double mean{};        ///< of the plan with the least mean loss
-  double averse{};      ///< of the plan with the least mean of the worst 5 %
+  double mean{};        ///< of the plan with the smallest mean loss
+  double averse{};      ///< of the plan with the smallest mean of the worst 5 %
 };
 
-/// Plans a ranch for many storms.
+/// Plans one ranch for many storms.
 class PlanTrials {
  public:
-  /// @param request with its storm: any one of the archive
-  /// @param bulletin_s time between the bulletins of a trial
+  /// @param request must name a storm, which the trials replace
+  /// @param bulletin_s time between two bulletins of a trial
+  /// @throws InputError as MakeRescueCase
   PlanTrials(std::shared_ptr<const Scenario> scenario, RescueRequest request,
              std::int64_t bulletin_s = BulletinPeriod({}));
 
+  /// Middle of the ranch.
   GeoPoint place() const { return place_; }
-  /// @param reacts also play the policies that react to later bulletins
+  /// Plays a trial.
+  /// @param reacts whether to play kPlanAgain and kPlanner, too
   TrialResult Run(const TrialStorm& storm, bool reacts = true) const;
-  /// @param members of the ensemble that compares the plans
+  /// Compares a plan with a risk-averse plan.
+  /// @param members number of members of the ensemble that compares the plans
   AverseResult CompareAverse(const TrialStorm& storm, std::int32_t members) const;
 
  private:
@@ -80,31 +86,34 @@ class PlanTrials {
   GeoPoint place_;
 };
 
-/// Group of each value. Values of one group may depend on each other, groups are independent.
-/// Empty: each value is a group of its own.
+/// Number of the group of each value. Groups are independent of each other, but the values of one
+/// group may depend on each other. Empty: each value forms its own group.
 using Groups = std::vector<std::size_t>;
 
-/// Mean with the half width of its 95 % interval, from the variance between groups
-/// (cluster-robust; Liang and Zeger 1986, Biometrika 73(1), 13-22).
+/// A mean or a ratio with its 95 % interval, from the variance between groups (cluster-robust;
+/// Liang and Zeger 1986, Biometrika 73(1), 13-22).
 struct Estimate {
   double mean{};
-  double half{};  ///< infinite for a single group
+  double half{};  ///< half of the width of the interval; infinite for a single group
 };
+/// Returns the mean of the values.
 Estimate MeanOf(const std::vector<double>& values, const Groups& groups = {});
-/// Ratio of the means of paired values, with the interval of the delta method.
+/// Returns the ratio of the means of paired values, with the interval of the delta method; 0 ± 0 if
+/// the mean of `below` is 0.
 Estimate RatioOf(const std::vector<double>& above, const std::vector<double>& below,
                  const Groups& groups = {});
 
-/// Promises of about one probability. Groups of trials are independent, the devices of one trial
-/// are not.
+/// Promises with a probability in [low, high).
 struct PromiseBin {
   double low{};
   double high{};
-  std::int64_t count{};
-  double promised{};  ///< mean
-  Estimate kept;      ///< share
+  std::int64_t count{};  ///< number of promises
+  double promised{};     ///< mean promised probability
+  Estimate kept;         ///< share of the promises that were kept
 };
-/// @param by_trial promises of each trial @param groups of the trials
+/// Returns the bin of [low, high). The promises of one trial may depend on each other.
+/// @param by_trial promises of each trial
+/// @param groups groups of the trials
 PromiseBin BinOf(const std::vector<std::vector<Promise>>& by_trial, double low, double high,
                  const Groups& groups = {});
 

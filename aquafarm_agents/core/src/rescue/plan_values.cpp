@@ -80,7 +80,7 @@ std::string MethodOf(const RescueProblem& problem, const RescuePlan& plan) {
   std::string text = plan.is_exhaustive ? "exhaustive over sequences of direct trips"
                                         : "bounded search over sequences of direct trips";
   if (problem.risk_averse > 0.0 && std::isfinite(plan.averse_gap)) {
-    text += "; none of them has an objective that is lower by more than " +
+    text += "; no sequence has an objective that is lower by more than " +
             Short(plan.averse_gap, plan.averse_gap < 100.0 ? 2 : 0);
   }
   return text;
@@ -105,7 +105,7 @@ Json LeftBehindOf(const RescueCase& rescue, const PlanReport& report) {
     const DeviceOutcome& outcome = report.plan.devices[d];
     if (outcome.ship != kNone) continue;
     const char* reason = "too_late";
-    std::string text = "no ship can have it in port before the winds with a chance of 50 %.";
+    std::string text = "no ship can bring it to port before the winds with a chance of 50 %.";
     if (report.result == PlanResult::kStormUnknown) {
       reason = "winds_unknown";
       text = "the storm's winds are unknown, so that no trip can be judged.";

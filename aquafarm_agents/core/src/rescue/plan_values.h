@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Values of plan.json.
+/// Helpers that convert values to JSON for plan.json.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -15,27 +15,33 @@ namespace aquafarm::agents {
 
 using Json = nlohmann::ordered_json;
 
+/// Rounds to a multiple of `unit`.
 double Rounded(double value, double unit);
-/// A probability, to four digits.
+/// Rounds a probability to 0.0001 and clamps it to [0, 1].
 double Share(double value);
+/// Rounds to 0.01.
 double Money(double value);
+/// Rounds to 0.001.
 double Km(double value);
+/// Returns [x, y].
 Json OfCell(Cell cell);
-/// null for kNone.
+/// Returns the id; null for kNone.
 Json OfId(std::int32_t id);
+/// Returns latitude and longitude, rounded to 0.000001 degrees.
 Json OfPlace(GeoPoint place);
+/// Returns 16 hexadecimal digits.
 std::string Hex(std::uint64_t value);
-/// Summary and exceedance curve. @param losses one per member, at least one
+/// Returns a summary and the exceedance curve of losses. @param losses by member, at least one
 Json LossOf(std::vector<float> losses);
-/// A loss that is not known: null.
+/// Returns a summary of unknown losses: all numbers are null.
 Json UnknownLoss();
-/// Why a plan with PlanResult::kStormUnknown has no numbers.
+/// Returns why a plan with PlanResult::kStormUnknown contains no numbers.
 std::string WhyUnknown(const RescueCase& rescue);
-/// What the plan maximises or minimises, in words.
+/// Returns in words what the plan maximizes or minimizes.
 std::string ObjectiveOf(const RescueProblem& problem);
-/// How the plan was found, in words.
+/// Returns in words how the plan was found.
 std::string MethodOf(const RescueProblem& problem, const RescuePlan& plan);
-/// Devices without an order, each with the reason.
+/// Returns the devices that no ship delivers, each with the reason.
 Json LeftBehindOf(const RescueCase& rescue, const PlanReport& report);
 Json WarningsOf(const RescueCase& rescue);
 Json AssumptionsOf(const RescueCase& rescue);

@@ -18,7 +18,7 @@ std::shared_ptr<const Scenario> WithoutDisasters(const Scenario& scenario) {
   return std::make_shared<const Scenario>(std::move(calm));
 }
 
-// Returns the central forecast in steps of another length.
+// Returns the central forecast in steps of `step_s`.
 CentralForecast InStepsOf(double step_s, const RescueCase& rescue) {
   CentralForecast forecast = rescue.forecast;
   for (StormPoint& point : forecast.path.points) point.step *= rescue.ensemble.step_s / step_s;
@@ -26,7 +26,7 @@ CentralForecast InStepsOf(double step_s, const RescueCase& rescue) {
   return forecast;
 }
 
-// Returns the risks of the central forecast in the steps of a farm, from its present step on.
+// Returns the risks of the central forecast in steps of a farm, from the farm's present step on.
 RiskField RisksOf(const RescueCase& rescue, const Farm& farm) {
   const Scenario& scenario = farm.scenario();
   EnsembleOptions options = rescue.ensemble;
@@ -172,7 +172,7 @@ double PlayReacting(const TripModel& model, const std::vector<TrialBulletin>& bu
     }
     const std::optional<TrialAct> act = skipper.Next();
     if (!act && next == bulletins.size()) break;
-    // A ship is in the cell that it leaves until it enters the next one.
+    // During a move a ship counts as being in the cell that it leaves.
     fleet.time_s = act ? fleet.time_s + act->seconds : bulletins[next].time_s;
     model.Stay(fleet.cell, fleet.time_s, alive);
     if (!act || alive[0] == 0) continue;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Plays a trial in which new bulletins arrive, and one ship gets new orders at each of them. The
-/// rules of ships and losses are those of rescue_problem.h, so that what these skippers save can be
-/// compared with what a plan saves.
+/// Plays a trial in which new bulletins arrive and one ship gets new orders at each of them. The
+/// rules are those of rescue_problem.h, so the value that is saved can be compared with the value
+/// that a plan saves.
 
 #include <cstddef>
 #include <deque>
@@ -18,24 +18,25 @@
 
 namespace aquafarm::agents {
 
-/// The ship of a trial and the devices, at a time.
+/// State of the ship and the devices of a trial.
 struct TrialFleet {
-  Cell cell{};
-  double time_s{};                  ///< after the start of the trial
-  std::vector<std::size_t> aboard;  ///< devices
+  Cell cell{};                      ///< cell of the ship
+  double time_s{};                  ///< after the start of the trial; in Skipper::Plan after the
+                                    ///< bulletin
+  std::vector<std::size_t> aboard;  ///< indices of the devices aboard
   std::vector<bool> is_delivered;   ///< by device
   std::vector<double> lost;         ///< by device: share of its value since the start of the trial
 };
 
-/// What a ship does next.
+/// One action of the ship.
 struct TrialAct {
-  Cell cell{};                    ///< where the ship is after it
+  Cell cell{};                    ///< cell of the ship after the action
   double seconds{};               ///< duration
-  std::optional<OrderKind> kind;  ///< fetch: `device`; deliver: all that is aboard; else a move
-  std::size_t device{};
+  std::optional<OrderKind> kind;  ///< fetch, or deliver all devices aboard; nullopt: a move
+  std::size_t device{};           ///< fetch: index of the device
 };
 
-/// Gives orders to the ship of a trial.
+/// Chooses the actions of the ship of a trial.
 class Skipper {
  public:
   Skipper() = default;
@@ -43,13 +44,15 @@ class Skipper {
   Skipper& operator=(const Skipper&) = delete;
   virtual ~Skipper() = default;
 
-  /// Makes new orders for a bulletin. @param known the case as the bulletin describes it
+  /// Plans for a new bulletin.
+  /// @param known case with the storm of the bulletin; its start is the time of the bulletin
+  /// @param fleet present state
   virtual void Plan(RescueCase known, const TrialFleet& fleet) = 0;
-  /// Returns the next act; nullopt if the ship waits for the next bulletin.
+  /// Returns the next action; nullopt if the ship waits for the next bulletin.
   virtual std::optional<TrialAct> Next() = 0;
 };
 
-/// Makes the rescue plan again at each bulletin.
+/// Makes a new rescue plan at each bulletin.
 class PlanAgain final : public Skipper {
  public:
   void Plan(RescueCase known, const TrialFleet& fleet) override;
@@ -59,12 +62,12 @@ class PlanAgain final : public Skipper {
   std::deque<TrialAct> acts_;
 };
 
-/// The policy `planner` (planning/planner.h): it plans for the newest forecast as if it were exact,
-/// in the rules and with the rewards of the farm. Between two bulletins its forecast does not
-/// change, so that it keeps its plan. Its moves take the time that they take in a rescue plan.
+/// The policy `planner` (planning/planner.h). It plans as if the newest forecast were exact, with
+/// the rules and rewards of the farm. It keeps its plan until the next bulletin. Its actions take
+/// the time that they take in a rescue plan.
 class PlannerSkipper final : public Skipper {
  public:
-  /// @param rescue with one ship and the devices of the ranch
+  /// @param rescue case with one ship and the devices of the ranch
   explicit PlannerSkipper(const RescueCase& rescue);
   void Plan(RescueCase known, const TrialFleet& fleet) override;
   std::optional<TrialAct> Next() override;
@@ -80,12 +83,14 @@ class PlannerSkipper final : public Skipper {
 
 /// A bulletin of a trial.
 struct TrialBulletin {
-  double time_s{};  ///< after the start of the trial
-  std::function<RescueCase()> known;
+  double time_s{};                    ///< after the start of the trial
+  std::function<RescueCase()> known;  ///< makes the case that starts with this bulletin
 };
 
-/// Plays the orders of a skipper in a storm. @param model of the true storm, with one ship
-/// @returns the value saved, compared with no departure
+/// Plays the actions of a skipper in the true storm.
+/// @param model of the true storm, with one ship and an ensemble of one member
+/// @param bulletins in order of time
+/// @returns the value saved: loss if no ship leaves minus loss
 double PlayReacting(const TripModel& model, const std::vector<TrialBulletin>& bulletins,
                     Skipper& skipper);
 

@@ -17,16 +17,16 @@
 namespace aquafarm::agents {
 namespace {
 
-// Sets of trips of several ships that the combination keeps.
+// Max number of teams that the combination of ships keeps.
 constexpr std::size_t kMaxTeams = 3000;
-// Plans per set of devices among which a risk-averse plan is chosen.
+// Max number of plans per set of devices in a risk-averse search.
 constexpr std::size_t kAlternatives = 8;
 
-// Trips of the ships so far.
+// A combination of the trips of the ships considered so far.
 struct Team {
-  DeviceSet devices{};
-  double net{};
-  std::vector<const TripPlan*> trips;  // by ship; nullptr: it stays
+  DeviceSet devices{};                 // delivered by any of the ships
+  double net{};                        // value saved minus cost
+  std::vector<const TripPlan*> trips;  // by ship; nullptr: the ship stays
 };
 
 void RequireValid(const RescueProblem& problem) {
@@ -67,7 +67,8 @@ RescuePlan PlanOf(const TripModel& model, const Team& team) {
   return FollowTrips(model, trips);
 }
 
-// Keeps the best teams of each set of devices, and of all sets.
+// Sorts the teams, the best one first. Keeps at most `alternatives` teams of each set of devices,
+// and at most kMaxTeams in total. Returns whether the latter limit was exceeded.
 bool Narrow(std::vector<Team>& teams, std::size_t alternatives) {
   std::stable_sort(teams.begin(), teams.end(),
                    [](const Team& a, const Team& b) { return a.net > b.net; });
@@ -79,7 +80,7 @@ bool Narrow(std::vector<Team>& teams, std::size_t alternatives) {
   return true;
 }
 
-// The best teams by the mean over weighted members.
+// Searches the best teams by the weighted mean over the members.
 class TeamSearch {
  public:
   /// @param cache must outlive the search
@@ -93,7 +94,7 @@ class TeamSearch {
     }
   }
 
-  const std::vector<Team>& teams() const { return teams_; }  // the best one first
+  const std::vector<Team>& teams() const { return teams_; }  // the best team first
   bool is_exhaustive() const { return is_exhaustive_; }
 
  private:
@@ -101,7 +102,7 @@ class TeamSearch {
     is_exhaustive_ = is_exhaustive_ && table.is_exhaustive;
     std::vector<Team> next;
     for (const Team& team : teams_) {
-      if (ship.aboard.empty() || table.plans.empty()) {  // it stays
+      if (ship.aboard.empty() || table.plans.empty()) {  // the ship stays
         next.push_back(team);
         next.back().trips.push_back(nullptr);
       }
@@ -120,14 +121,15 @@ class TeamSearch {
   bool is_exhaustive_{true};
 };
 
-// Searches the plan with the least mean of the worst members plus cost. That mean is the largest
-// one over all weights of the members of at most 1 / (share · members) each. Fictitious play (Brown
-// 1951, Iterative solution of games by fictitious play): in each round the weights are those of the
-// worst members of the plans of all rounds so far, and the search answers with its best plans for
-// them. The least weighted loss of a round is a lower bound for all plans. All other members have a
-// small weight, so that a trip that helps in these alone is made too: the mixed weights are also at
-// most 1 / (share · members) each, so the bound holds. Among plans with the same mean of the worst
-// the one with the best mean is taken.
+// Searches the plan with the smallest objective: the mean loss of the worst members plus cost. This
+// mean equals the max of the weighted mean loss over all weights that sum to 1 and are at most
+// 1 / (share · members) each. The search is fictitious play (Brown 1951, Iterative solution of
+// games by fictitious play). In each round the weights are the average of those of the worst
+// members of the plans of all previous rounds, and the trip search finds the best plans for these
+// weights. Its smallest weighted loss plus cost is a lower bound of the objective of every plan.
+// All members get a small additional weight, so that a trip that helps only in other members is
+// also made. The mixed weights are still at most 1 / (share · members) each, so the bound remains
+// valid. Of plans with equal objectives the one with the best mean is taken.
 class AverseSearch {
  public:
   AverseSearch(const TripModel& model, const TeamSearch& by_mean, RescuePlan best, int rounds)
@@ -162,10 +164,10 @@ class AverseSearch {
   }
 
  private:
-  static constexpr std::size_t kConsideredByMean = 300;  // plans whose worst members are looked at
-  static constexpr std::size_t kConsidered = 40;
-  static constexpr double kEnough = 1e-4;
-  static constexpr double kOthers = 1e-4;  // sum of the weights that all members share alike
+  static constexpr std::size_t kConsideredByMean = 300;  // max plans considered of the first search
+  static constexpr std::size_t kConsidered = 40;         // max plans considered of each round
+  static constexpr double kEnough = 1e-4;  // the search stops at this distance from the bound
+  static constexpr double kOthers = 1e-4;  // total weight that is spread equally over all members
 
   double Share() const { return model_.problem().risk_averse; }
   double Value(const RescuePlan& plan) const { return MeanOfWorst(plan.loss, Share()) + plan.cost; }
@@ -173,7 +175,7 @@ class AverseSearch {
   bool IsEnough() const { return Value(best_) <= bound_ + kEnough + kOthers * Value(best_); }
   bool IsBetter(const RescuePlan& a, const RescuePlan& b) const {
     const double difference = Value(a) - Value(b);
-    const double same = 1e-6 * std::max(1.0, std::abs(Value(b)));  // losses are floats
+    const double same = 1e-6 * std::max(1.0, std::abs(Value(b)));  // rounding of float losses
     if (std::abs(difference) > same) return difference < 0.0;
     return a.saved - a.cost > b.saved - b.cost + same;
   }
@@ -185,7 +187,7 @@ class AverseSearch {
     }
   }
 
-  // Adds the weights of the worst members: their weighted loss is the mean of the worst share.
+  // Adds to `sum` the weights with which the weighted loss is the mean loss of the worst members.
   void AddTail(const std::vector<float>& losses, std::vector<double>& sum) const {
     std::vector<std::size_t> order(losses.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

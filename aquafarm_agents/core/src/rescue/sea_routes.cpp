@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-// Distances from one cell to all, with the previous cell of each (Dijkstra 1959).
+// Distances from one cell to all cells, with the previous cell on each route (Dijkstra 1959).
 class Distances {
  public:
   Distances(const Grid<std::uint8_t>& water, Cell from)

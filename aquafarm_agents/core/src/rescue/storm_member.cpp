@@ -13,7 +13,7 @@
 namespace aquafarm::agents {
 namespace {
 
-/// Standard normal numbers of one member (Box and Muller 1958).
+/// Draws the standard normal numbers of one member (Box and Muller 1958).
 class Normals {
  public:
   Normals(std::uint64_t seed, std::int32_t member)
@@ -34,7 +34,7 @@ MemberSampler::MemberSampler(const CentralForecast& forecast, const EnsembleOpti
   AQUAFARM_CHECK_EQ(forecast.lead_h.size(), errors_.size());
   for (const double lead : forecast.lead_h) spread_.push_back(SpreadAt(options.errors, lead));
   const std::int32_t widest_kt = forecast.path.wind_kt[forecast.path.rings - 1];
-  double reported = 0.0;  // the spread at the last report
+  double reported = 0.0;  // SizeSigma at the last report, or at the first point
   for (std::size_t i = 0; i < forecast.lead_h.size(); ++i) {
     const StormPoint& point = forecast.path.points[i];
     size_sigma_.push_back(
@@ -47,8 +47,8 @@ MemberSampler::MemberSampler(const CentralForecast& forecast, const EnsembleOpti
   }
 }
 
-// Errors of one member are correlated along its track: each is part of the previous one, in units
-// of the standard deviation, and part new.
+// Draws the errors of a member. They are correlated along its track: in units of the standard
+// deviation, each error is a fraction of the previous one plus a new random part.
 void MemberSampler::DrawErrors(std::int32_t member) {
   Normals normals(options_.seed, member);
   double size = size_spread_[0] * normals.Next();

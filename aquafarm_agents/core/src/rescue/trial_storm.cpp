@@ -19,13 +19,13 @@ namespace {
 constexpr double kKmPerDegree = 111.195;
 constexpr std::array<std::int32_t, 8> kLeads_h{12, 24, 36, 48, 60, 72, 96, 120};
 constexpr std::array<std::int32_t, 3> kWinds_kt{34, 50, 64};
-constexpr double kWeakest_mps = 8.0;  // stands for "below 10 m/s"
+constexpr double kWeakest_mps = 8.0;  // wind of a fix without a known wind (below 10 m/s)
 
 double HoursBetween(std::int64_t from, std::int64_t to) {
   return static_cast<double>(to - from) / static_cast<double>(kHour_s);
 }
 
-// Great-circle distance [km].
+// Returns the great-circle distance [km].
 double Distance(GeoPoint a, GeoPoint b) {
   const double lat_a = a.latitude * kRadiansPerDegree;
   const double lat_b = b.latitude * kRadiansPerDegree;
@@ -40,7 +40,7 @@ void Move(GeoPoint& place, double east_km, double north_km) {
   place.longitude += east_km / (kKmPerDegree * std::cos(place.latitude * kRadiansPerDegree));
 }
 
-// Normal number by the polar method (Marsaglia and Bray 1964).
+// Returns a standard normal number by the polar method (Marsaglia and Bray 1964).
 double Normal(RandomStream& rng) {
   for (;;) {
     const double u = 2.0 * static_cast<double>(rng.Unit()) - 1.0;
@@ -52,7 +52,7 @@ double Normal(RandomStream& rng) {
 
 double WindOf(const StormFix& fix) { return fix.wind_mps.value_or(kWeakest_mps); }
 
-// Position and wind of a track at a time, linear between fixes.
+// Returns position and wind of a track at a time, linear between fixes.
 StormFix At(const StormTrack& track, std::int64_t time) {
   std::size_t next = 0;
   while (next < track.fixes.size() && track.fixes[next].time <= time) ++next;
@@ -70,8 +70,8 @@ StormFix At(const StormTrack& track, std::int64_t time) {
   return fix;
 }
 
-// Draws the logarithm of a storm's size at each fix, in units of the spread of recorded radii: a
-// stationary process.
+// Draws the logarithm of a storm's size at each fix, in units of the spread of recorded radii. It
+// is a stationary random process.
 std::vector<double> DrawSizes(const TrialOptions& options, RandomStream& rng,
                               const StormTrack& track) {
   std::vector<double> sizes;
@@ -87,7 +87,7 @@ std::vector<double> DrawSizes(const TrialOptions& options, RandomStream& rng,
   return sizes;
 }
 
-// Gives every fix of a true storm the grade and the radii of its wind and size.
+// Sets the grade and the radii of each fix of a true storm by its wind and size.
 void SetRadii(const TrialOptions& options, const std::vector<double>& sizes, StormTrack& track) {
   for (std::size_t i = 0; i < track.fixes.size(); ++i) {
     StormFix& fix = track.fixes[i];
@@ -122,8 +122,8 @@ class BulletinErrors {
     }
     lead_h_ = lead_h;
   }
-  // Makes a fix of the bulletin of a true one. Errors north and east have the same size, so that
-  // those along and across the track have it, too.
+  // Adds the errors of the bulletin to a true fix. Errors to the north and to the east are
+  // independent and equally large, and so are those along and across the track.
   void Apply(StormFix& fix) const {
     const ForecastSpread spread = SpreadAt(errors_, lead_h_);
     Move(fix.position, unit_[0] * spread.position_km, unit_[1] * spread.position_km);
@@ -177,7 +177,7 @@ StormTrack KnownOf(const StormTrack& truth, std::int64_t start, const TrialOptio
   return known;
 }
 
-// Draws the true winds after the start about those of the bulletin, until the bulletin ends.
+// Draws the true winds from the start until the end of the bulletin: its winds plus errors.
 void DrawWinds(const StormTrack& known, const TrialOptions& options, RandomStream rng,
                StormTrack& truth) {
   StormTrack bulletin;
@@ -198,7 +198,8 @@ void DrawWinds(const StormTrack& known, const TrialOptions& options, RandomStrea
 TrialStorm MakeTrial(StormTrack truth, std::int64_t at, const TrialOptions& options, GeoPoint place,
                      RandomStream& rng) {
   TrialStorm trial;
-  trial.start = truth.fixes.front().time;  // of the last fix until `at`, not among the last ones
+  // The time of the last fix until `at`, except the last two fixes.
+  trial.start = truth.fixes.front().time;
   for (std::size_t i = 0; i + 2 < truth.fixes.size(); ++i) {
     if (truth.fixes[i].time <= at) trial.start = truth.fixes[i].time;
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Simulated storms with the bulletins that announce them, to compare a plan with what happens.
+/// Simulated storms with bulletins that forecast them, to compare a plan with a true outcome.
 ///
 ///   recorded track ── moved, with radii ──> the true storm
 ///   true storm ── + published errors by lead time ──> the bulletin, with points 12 to 24 h apart
 ///
-/// The draws and the code of the errors are others than those of the ensemble (storm_member.h).
+/// The errors use neither the code nor the random numbers of the ensemble (storm_member.h).
 
 #include <cstdint>
 #include <vector>
@@ -17,54 +17,61 @@
 
 namespace aquafarm::agents {
 
-/// What a trial draws; the defaults are those of docs/plan.md.
+/// Options of the trials.
 struct TrialOptions {
   std::uint64_t seed{1};
-  ForecastErrors errors;   ///< of the bulletins
-  double moved_km{600.0};  ///< a track is moved by up to this far north or south, east or west
-  double min_lead_h{4.0};  ///< of the closest approach of the track before it is moved
+  ForecastErrors errors;  ///< errors of the bulletins
+  /// A track is moved by up to this distance to the north or south, and to the east or west.
+  double moved_km{600.0};
+  /// Range of the time from the start of the trial to the closest approach of the unmoved track.
+  double min_lead_h{4.0};
   double max_lead_h{24.0};
-  double report_share{0.5};  ///< share of the bulletins that report radii
-  /// Radii are drawn about EstimateRadius with its spread times errors.scale; else they are exact.
+  double report_share{0.5};  ///< probability that the bulletins of a trial report radii
+  /// true: the true radii differ from EstimateRadius by its spread times errors.scale and
+  /// errors.size_factor; false: they equal EstimateRadius.
   bool draws_size{true};
   double bulletin_h{6.0};  ///< time between two bulletins
-  /// True winds after the start are those of the bulletin with an error that does not depend on
-  /// them. Else they are the track's, and the bulletin's are these with an error: then a bulletin
-  /// of weak winds is more often too low than too high, because the tracks of the archive have
-  /// gales near the ranch.
+  /// false: the true winds are those of the recorded track, and the winds of the bulletin differ
+  /// from them by errors. A bulletin of weak winds is then more often too low than too high,
+  /// because the tracks of the archive have gales near the ranch. true: the true winds after the
+  /// start of the trial are those of the bulletin plus independent errors.
   bool winds_about_bulletin{};
 };
 
 /// Returns the time between two bulletins [s].
 std::int64_t BulletinPeriod(const TrialOptions& options);
 
-/// A true storm, and what is known of it at a time.
+/// A true storm and its bulletins.
 struct TrialStorm {
   StormTrack truth;
-  StormTrack known;  ///< recorded until `start`, with one forecast that is issued then
-  std::int64_t start{};
-  std::size_t track{};  ///< index of the recorded track; storms of one track resemble each other
-  /// Bulletins that follow, TrialOptions::bulletin_h apart, until the storm ends. Their errors are
-  /// drawn again; they report radii if `known` does.
+  StormTrack known;  ///< first bulletin: reports until `start`, and a forecast issued at `start`
+  std::int64_t start{};  ///< start of the trial, UTC [s since 1970]
+  std::size_t track{};   ///< index of the recorded track; storms of the same track are similar
+  /// Later bulletins, TrialOptions::bulletin_h apart, until the storm ends. Each has its own
+  /// errors. They report radii if `known` does.
   std::vector<StormTrack> later;
-  double lead_h{};      ///< from start to the closest approach of `truth`
-  double nearest_km{};  ///< of `truth`
-  /// Of the plan's ensemble. With one seed for all trials, all of them would share the sampling
-  /// error of the same members, which would look like a bias of the chances.
+  double lead_h{};      ///< time from `start` to the closest approach of `truth`
+  double nearest_km{};  ///< distance of the closest approach of `truth`
+  /// Seed of the plan's ensemble. If all trials had the same seed, the sampling error of the same
+  /// members would occur in all of them and look like a bias of the chances.
   std::uint64_t seed{};
 };
 
-/// Draws trial `index`: a pure function of tracks, place, options and index.
-/// @param tracks with at least three fixes each @param place middle of the ranch
+/// Draws trial `index`. The result depends only on the arguments.
+/// @param tracks at least one, each with at least three fixes
+/// @param place middle of the ranch
 TrialStorm DrawTrial(const std::vector<StormTrack>& tracks, GeoPoint place,
                      const TrialOptions& options, std::uint64_t index);
 
-/// Returns the trial of a recorded storm that is not moved, about `lead_h` before its closest
-/// approach; at its first fix if that is later. @param index of the drawn bulletin
+/// Returns a trial of a recorded storm that is not moved. It starts with the last fix that is at
+/// least `lead_h` before the closest approach, or with the first fix if there is no such fix. The
+/// last two fixes are never the start.
+/// @param index selects the random errors of the bulletins
 TrialStorm RecordedTrial(const StormTrack& track, GeoPoint place, const TrialOptions& options,
                          double lead_h, std::uint64_t index);
 
-/// Returns the time and the distance [km] of a track's closest approach, in steps of 10 minutes.
+/// Returns time (UTC [s since 1970]) and distance [km] of a track's closest approach to a place.
+/// The time has a resolution of 10 minutes.
 std::pair<std::int64_t, double> NearestTime(const StormTrack& track, GeoPoint place);
 
 }  // namespace aquafarm::agents

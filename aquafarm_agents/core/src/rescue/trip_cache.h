@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Trips that several searches have in common.
+/// Trips of ships, stored for several searches.
 
 #include <map>
 #include <tuple>
@@ -13,12 +13,13 @@
 
 namespace aquafarm::agents {
 
-/// Keeps the trips of ships, for searches that differ in their ships without devices aboard alone.
-/// Ships of one kind in one place have the same trips.
+/// Stores the trips of ships. Ships with equal cell, speed, ready time, capacity and devices aboard
+/// have the same trips. All problems of a cache must be equal, except that ships without devices
+/// aboard may be added or removed.
 class TripCache {
  public:
-  /// Returns the trips of a ship; the reference is valid as long as the cache.
-  /// @param weights the same in all calls
+  /// Returns the trips of a ship. The reference stays valid as long as the cache exists.
+  /// @param weights must be the same in all calls
   const TripTable& Of(const TripModel& model, std::size_t ship, std::size_t alternatives,
                       const MemberWeights& weights) {
     const RescueProblem& problem = model.problem();
@@ -36,7 +37,8 @@ class TripCache {
   std::map<Kind, TripTable> tables_;
 };
 
-/// As PlanRescue without a cache. @param cache of problems with the same devices, ports and members
+/// As PlanRescue of rescue_plan.h, with a cache for several calls.
+/// @param ensemble must be the same for all problems of the cache
 RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble, int averse_rounds,
                       TripCache& cache);
 

@@ -33,7 +33,7 @@ std::vector<Cell> PlacesOf(const RescueProblem& problem) {
   return places;
 }
 
-// Clears the members in which the gales have arrived by step `now`.
+// Clears the members in which the winds have arrived by step `now`.
 AQUAFARM_WIDEST
 void ClearFrom(const std::int16_t* arrival, std::int16_t now, std::size_t count,
                std::int16_t* works) {
@@ -43,7 +43,7 @@ void ClearFrom(const std::int16_t* arrival, std::int16_t now, std::size_t count,
   }
 }
 
-// Sums of every kLanes-th term: independent additions are computed together.
+// Number of partial sums in SumOf. They are independent, so that the processor adds in parallel.
 constexpr std::size_t kLanes = 16;
 
 template <typename Term>
@@ -87,7 +87,7 @@ double TripModel::Pace(std::size_t ship) const {
   return problem_.cell_size_km * 1000.0 / (problem_.ships[ship].speed_kn * kMpsPerKnot);
 }
 
-// Returns the last step that has begun at a time; beyond the known time the number of steps.
+// Returns the last step that has started at a time; after the known time, the number of steps.
 std::int32_t TripModel::StepOf(double time_s) const {
   const double step = std::floor(std::max(0.0, time_s) / ensemble_.options().step_s);
   return static_cast<std::int32_t>(std::min(step, static_cast<double>(ensemble_.steps())));

@@ -12,11 +12,11 @@
 
 namespace aquafarm::agents {
 
-/// By member: 1 while the ship still works. As wide as the arrival steps, so that loops over both
-/// vectorize.
+/// By member: 1 while the ship works, 0 after winds have stopped it. The element type has the size
+/// of an arrival step, so that loops over both are vectorized.
 using Alive = std::vector<std::int16_t>;
 
-/// Weights of the members, which sum to 1; empty: all members have equal weights.
+/// Weights of the members. They sum to 1. Empty: all members have equal weights.
 using MemberWeights = std::vector<float>;
 
 /// Energy and duration of a part of a trip.
@@ -37,6 +37,8 @@ std::int32_t CountAlive(const Alive& alive);
 /// Computes times, survival and saved value of trips between ships, devices and ports.
 class TripModel {
  public:
+  /// @param problem must outlive the model
+  /// @param ensemble must outlive the model; made for the cells of the problem's devices
   /// @throws InputError if a device, a port or a ship is off the map or on land
   TripModel(const RescueProblem& problem, const Ensemble& ensemble);
 
@@ -51,38 +53,41 @@ class TripModel {
   }
   const SeaRoutes& routes() const { return routes_; }
 
-  /// Seconds that a ship needs for one cell.
+  /// Time in which a ship moves by the length of one cell [s].
   double Pace(std::size_t ship) const;
   /// Moves a ship along a route and adds the handling time at its end.
-  /// @param time_s departure; set to the time when handling is done
-  /// @param alive cleared for members in which winds stop the ship on the way or during handling
+  /// @param from, to end points of the route, which must exist
+  /// @param time_s departure; is set to the end of the handling
+  /// @param alive is cleared for members in which winds stop the ship during the move or handling
   void Move(std::size_t ship, std::size_t from, std::size_t to, double& time_s, Alive& alive) const;
-  /// Clears the members in which winds of `abort_ring` have reached a cell by a time; clears all
-  /// members if the time is after the last step of the ensemble.
+  /// Clears the members in which winds of `abort_ring` have reached a cell by the time `until_s`.
+  /// Clears all members if this time is after the last step of the ensemble.
   void Stay(Cell cell, double until_s, Alive& alive) const;
 
-  /// Loss of a device that is at its site until a time, [members].
+  /// Loss of a device that stays at its site until a time, [members].
   const float* LossUntil(std::size_t device, double time_s) const;
   /// Loss of a device that is never delivered, [members].
   const float* LossIdle(std::size_t device) const;
-  /// Weighted mean over all members of the value that delivering a device at a time saves. A member
-  /// in which the ship has stopped counts as 0.
+  /// Returns the weighted mean over all members of the value that is saved if a device is delivered
+  /// at a time. A member in which the ship has stopped counts with 0.
   double Saved(std::size_t device, double time_s, const Alive& alive,
                const MemberWeights& weights = {}) const;
-  /// Effort of a route and of the handling at its end; 0 kWh and 0 h if the problem has no energy.
-  /// @param aboard number of devices aboard
+  /// Returns the effort of a route and of the handling at its end; 0 kWh and 0 h if the problem has
+  /// no energy.
+  /// @param aboard number of devices aboard on the route
   TripEffort Effort(std::size_t ship, std::size_t from, std::size_t to, std::size_t aboard) const;
-  /// Cost of an effort.
+  /// Returns the cost of an effort.
   double Cost(const TripEffort& effort) const;
 
   /// Returns the open port nearest to an end point; kNone if no open port is reachable.
   std::int32_t NearestPort(std::size_t place) const;
-  /// Upper bound on the value that delivering a device can save, whichever ship delivers it.
+  /// Returns an upper bound of the value that the delivery of a device by any ship can save.
   double BoundOf(std::size_t device, const MemberWeights& weights = {}) const;
-  /// Returns the cells of the trip on which a ship first delivers a device, each with the time at
-  /// which the ship leaves it, relative to the departure; the last time is that of delivery. A ship
-  /// with devices aboard delivers them first. Empty if no route exists or another ship has the
-  /// device aboard.
+  /// Returns the cells of a trip that starts at the ship's cell and delivers a device at the
+  /// nearest open port. A ship with devices aboard delivers these first. TimedCell::time_s is here
+  /// the time at which the ship leaves the cell, relative to the departure. The last one is the end
+  /// of the delivery. Returns an empty vector if there is no route, or if another ship carries the
+  /// device.
   std::vector<TimedCell> FirstTrip(std::size_t ship, std::size_t device) const;
 
  private:
@@ -91,7 +96,7 @@ class TripModel {
   const RescueProblem& problem_;
   const Ensemble& ensemble_;
   SeaRoutes routes_;
-  std::vector<float> loss_;  // [devices, steps, members]
+  std::vector<float> loss_;  // [devices, steps, members] loss until each step
 };
 
 }  // namespace aquafarm::agents

@@ -8,7 +8,7 @@
 namespace aquafarm::agents {
 namespace {
 
-// Partial sequences of one length that the search keeps.
+// Max number of partial sequences with the same number of stops that the search keeps.
 constexpr std::size_t kWidth = 6000;
 
 constexpr DeviceSet Bit(std::size_t device) { return DeviceSet{1} << device; }
@@ -28,7 +28,7 @@ class TripSearch {
     for (std::size_t d = 0; d < Devices(); ++d) {
       const bool is_fetchable =
           model.problem().CarrierOf(d) == kNone || (start.taken & Bit(d)) != 0;
-      if (!is_fetchable) bound_[d] = 0.0;  // another ship has it aboard
+      if (!is_fetchable) bound_[d] = 0.0;  // another ship carries it
     }
     start.place = model.PlaceOfShip(ship);
     start.time_s = Ship().ready_s;
@@ -47,9 +47,9 @@ class TripSearch {
   struct Node {
     std::size_t place{};
     double time_s{};
-    double net{};       // value saved, less the cost until now
-    double settled{};   // net value at the last delivery
-    DeviceSet taken{};  // fetched or delivered
+    double net{};       // value saved minus cost so far
+    double settled{};   // net value after the last delivery
+    DeviceSet taken{};  // devices aboard or delivered
     DeviceSet aboard{};
     std::vector<TripStop> stops;
     Alive alive;
@@ -93,7 +93,8 @@ class TripSearch {
     return ports;
   }
 
-  // Returns the nearest open port, and those on the way to the devices that still wait.
+  // Returns the nearest open port and, for each remaining device, the open port with the shortest
+  // way through it to the device.
   std::vector<std::size_t> PortsAfter(const Node& node) const {
     const std::int32_t nearest = model_.NearestPort(node.place);
     if (nearest == kNone) return {};
@@ -141,8 +142,8 @@ class TripSearch {
       if ((child.aboard & Bit(d)) == 0) continue;
       child.net += model_.Saved(d, child.time_s, child.alive, weights_);
     }
-    // A ship that starts with devices aboard must bring them to a port, whatever that saves. In
-    // a port it stays if winds stop it in all members.
+    // A delivery that does not increase the net value is left out. A ship that starts with devices
+    // aboard must deliver them anyway, except in a port if winds stop it in all members.
     if (child.net <= node.settled && !node.stops.empty()) return;
     if (node.stops.empty() && IsInPort() && CountAlive(child.alive) == 0) return;
     child.aboard = 0;
@@ -165,7 +166,7 @@ class TripSearch {
     for (std::size_t d = 0; d < Devices(); ++d) {
       if ((node.taken & Bit(d)) == 0 || (node.aboard & Bit(d)) != 0) promise += bound_[d];
     }
-    return promise - 1e-9 * node.time_s;  // with equal promises the earlier one
+    return promise - 1e-9 * node.time_s;  // prefers the earlier one of two equal promises
   }
 
   void Narrow(std::vector<Node>& layer) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Searches the sequences of trips of one ship.
+/// Searches the best sequences of trips of one ship.
 
 #include <cstdint>
 #include <map>
@@ -11,30 +11,34 @@
 
 namespace aquafarm::agents {
 
-/// A set of devices, one bit each.
+/// A set of devices: bit i is set if it contains device i.
 using DeviceSet = std::uint64_t;
+/// Max number of devices of a plan.
 inline constexpr std::size_t kMaxRescueDevices = 64;
 
-/// A stop of a ship: fetch a device, or deliver in a port.
+/// A stop of a ship: it fetches a device, or delivers all devices aboard at a port.
 struct TripStop {
   OrderKind kind{};
   std::size_t target{};  ///< index of the device or port
 };
 
-/// The stops of one ship with their value.
+/// All stops of one ship, and their value.
 struct TripPlan {
-  DeviceSet devices{};  ///< those delivered
-  double net{};         ///< mean value saved, less the cost
+  DeviceSet devices{};  ///< delivered devices
+  double net{};         ///< weighted mean of the value saved, minus the cost
   std::vector<TripStop> stops;
 };
 
-/// Best trip plans of one ship, by set of devices.
+/// The best plans of one ship.
 struct TripTable {
-  std::map<DeviceSet, std::vector<TripPlan>> plans;  ///< by decreasing net value
-  bool is_exhaustive{true};
+  /// By set of delivered devices: plans by decreasing net value.
+  std::map<DeviceSet, std::vector<TripPlan>> plans;
+  bool is_exhaustive{true};  ///< whether the search considered all sequences
 };
 
-/// @param alternatives max number of plans per set of devices @param weights of the mean
+/// Returns the best plans of a ship.
+/// @param alternatives max number of plans for each set of devices
+/// @param weights weights of the members in the mean
 TripTable SearchTrips(const TripModel& model, std::size_t ship, std::size_t alternatives,
                       const MemberWeights& weights = {});
 

@@ -60,12 +60,12 @@ class Changes {
   RescuePlan Plan(const RescueProblem& changed) const {
     return PlanRescue(changed, ensemble_, kAverseRoundsToCompare);
   }
-  // As Plan, for changes of the number of ships alone.
+  // As Plan, for changes that only add or remove ships.
   RescuePlan PlanShips(const RescueProblem& changed) {
     return PlanRescue(changed, ensemble_, kAverseRoundsToCompare, cache_);
   }
-  // Plans a change that keeps the trips of the plan possible. The short risk-averse search may miss
-  // them; the plan is then kept.
+  // Returns the better one of `found` and the original plan, which the change still permits. The
+  // short risk-averse search may find a worse plan.
   RescuePlan PlanMore(const RescueProblem& changed, RescuePlan found) const {
     const double share = changed.risk_averse;
     if (share <= 0.0) return found;
@@ -86,7 +86,8 @@ class Changes {
     rows_.push_back(row);
   }
 
-  // A ship to add: as the first one without devices aboard, which is ready as the request says.
+  // Returns the ship to add: a copy of the first ship without devices aboard, or of the first ship,
+  // without its devices and not ready before depart_s.
   RescueShip OneMore() const {
     const auto is_empty = [](const RescueShip& ship) { return ship.aboard.empty(); };
     const auto& ships = problem_.ships;
@@ -97,7 +98,7 @@ class Changes {
     return more;
   }
 
-  // Another ship at the port where it helps most.
+  // Adds a ship at the port where it reduces the mean loss most.
   void AddShip() {
     std::optional<WhatIf> best;
     for (const RescuePort& port : problem_.ports) {
@@ -112,14 +113,14 @@ class Changes {
     if (best) rows_.push_back(std::move(*best));
   }
 
-  // Without the ship that is missed least.
+  // Removes the ship whose absence increases the mean loss least.
   void RemoveShip() {
     if (problem_.ships.size() < 2) {
       return AddImpossible("ships-1", "one ship fewer: no ship is left");
     }
     std::optional<WhatIf> best;
     for (std::size_t ship = 0; ship < problem_.ships.size(); ++ship) {
-      if (!problem_.ships[ship].aboard.empty()) continue;  // its devices need it
+      if (!problem_.ships[ship].aboard.empty()) continue;  // it must deliver its devices
       RescueProblem changed = problem_;
       changed.ships.erase(changed.ships.begin() + static_cast<std::ptrdiff_t>(ship));
       WhatIf row = Compare("ships-1", "one ship fewer, without " + problem_.ships[ship].name, plan_,
@@ -156,7 +157,7 @@ class Changes {
   const RescueProblem& problem_;
   const Ensemble& ensemble_;
   const RescuePlan& plan_;
-  TripCache cache_;  // of all ships, with and without one of them
+  TripCache cache_;  // for PlanShips
   std::vector<WhatIf> rows_;
 };
 

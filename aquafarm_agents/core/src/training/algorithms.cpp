@@ -41,7 +41,7 @@ std::unique_ptr<Policy> MakePlanner(const EnvironmentSpec& spec) {
   return MakePlannerPolicy<Foresight::kPersistence>({}, spec);
 }
 
-// A learner that may imitate the planner.
+// Makes a learner that may imitate the planner.
 template <auto make>
 std::unique_ptr<Learner> WithPlanner(const EnvironmentSpec& spec, std::uint64_t seed,
                                      const std::string& options) {
@@ -54,7 +54,7 @@ std::unique_ptr<ShardedLearner> WithPlannerOfRanks(const EnvironmentSpec& spec, 
   return make(spec, seed, options, group, MakePlanner);
 }
 
-// A policy that needs nothing but the farms' specification.
+// Makes a policy that needs only the spec of the farms.
 template <typename T>
 std::unique_ptr<Policy> MakeBuiltIn(const Checkpoint&, const EnvironmentSpec& spec) {
   return std::make_unique<T>(spec);
@@ -81,7 +81,7 @@ using ObservationTypes = std::uint8_t (*)(const std::string&);
 using MakeLearner = std::unique_ptr<Learner> (*)(const EnvironmentSpec&, std::uint64_t,
                                                  const std::string&);
 
-// Returns the exploration in a learner's options and ignores the other options.
+// Returns the exploration in the options of a learner, and ignores all other options.
 ExplorationOptions ExplorationIn(const std::string& options) {
   return ParseExploration(OptionReader(options).Text("exploration", "epsilon_greedy"),
                           ExplorationOf::kAny);
@@ -118,7 +118,7 @@ std::unique_ptr<Policy> MakeEachPolicy(const Checkpoint& checkpoint, const Envir
   return MakeIndependentPolicy(checkpoint, spec, make);
 }
 
-// Returns "one rescue squad decides", "4 networked self-propelled devices decide".
+// Returns a text such as "one rescue squad decides" or "4 networked self-propelled devices decide".
 std::string DescribeDeciders(std::int32_t ships, std::int32_t devices, bool networked) {
   const auto count = [](std::int32_t n, const std::string& one) {
     return n == 1 ? "one " + one : std::to_string(n) + " " + one + "s";
@@ -131,7 +131,7 @@ std::string DescribeDeciders(std::int32_t ships, std::int32_t devices, bool netw
 
 std::vector<Algorithm> OwnAlgorithms() {
   return {
-      {"random", "draws among all or reachable actions; the baseline (§4.2)", false, 100000,
+      {"random", "draws from all or from reachable actions; the baseline (§4.2)", false, 100000,
        RandomObservationTypes, Make<RandomLearner>, MakeRandomPolicy},
       {"q_learning", "tabular Q-learning (Eq. 12)", true, 4000000, WithCuriosityToo<Tabular>,
        MakeExplorer<Make<TabularLearner<QLearningRule>>>, MakeTabularPolicy},
@@ -148,24 +148,25 @@ std::vector<Algorithm> OwnAlgorithms() {
       {"independent_lstm_dqn", "an LSTM-DQN for each agent", true, 400000,
        WithCuriosityToo<RecurrentDqnObservationTypes>, MakeEach<MakeExplorer<MakeRecurrentDqn>>,
        MakeEachPolicy<MakeRecurrentDqnPolicy>},
-      {"vdn", "value decomposition: one DQN plays all agents, their values add up", true, 400000,
-       WithCuriosityToo<DqnObservationTypes>, MakeExplorer<MakeVdn>, MakeDqnPolicy},
+      {"vdn", "value decomposition: one DQN plays all agents, and their values are summed", true,
+       400000, WithCuriosityToo<DqnObservationTypes>, MakeExplorer<MakeVdn>, MakeDqnPolicy},
       {"maddpg", "an actor for each agent, a critic that sees all of them (§3.3)", true, 800000,
        WithCuriosityToo<MaddpgObservationTypes>, MakeExplorer<MakeMaddpg>, MakeMaddpgPolicy},
       {"ppo", "proximal policy optimization: an actor-critic that learns from its own steps", true,
        2500000, WithCuriosityToo<PpoObservationTypes>, MakeExplorer<WithPlanner<MakePpo>>,
        MakePpoPolicy,
        /*default_farms=*/256, WithPlannerOfRanks<MakePpoOfRanks>,
-       /*only_for_training=*/kStatesBit},  // of a planner that teaches
-      {"mappo", "PPO for several agents: one policy, a value that sees all of them", true, 10000000,
-       WithCuriosityToo<MappoObservationTypes>, MakeExplorer<WithPlanner<MakeMappo>>, MakePpoPolicy,
+       /*only_for_training=*/kStatesBit},  // for teacher_policy=planner
+      {"mappo", "PPO for several agents: one policy, and a critic that sees all of them", true,
+       10000000, WithCuriosityToo<MappoObservationTypes>, MakeExplorer<WithPlanner<MakeMappo>>,
+       MakePpoPolicy,
        /*default_farms=*/256, WithPlannerOfRanks<MakeMappoOfRanks>,
        /*only_for_training=*/kStatesBit},
       {"planner",
        "plans on the issued forecast, or else on the present headings; several agents cooperate",
        false, 0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kPersistence>},
-      {"clairvoyant", "plans with the disasters' true future: for one ship the best there can be",
-       false, 0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kOracle>},
+      {"clairvoyant", "plans with the disasters' true future: for one ship the optimum", false, 0,
+       WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kOracle>},
       {"do_nothing", "every ship holds its cell; the reference for what a rescue saves", false, 0,
        WithoutOptions<0>, nullptr, MakeBuiltIn<DoNothingPolicy>},
       {"fetch_by_value", "each ship fetches the most valuable device that it can still bring home",
@@ -173,7 +174,7 @@ std::vector<Algorithm> OwnAlgorithms() {
   };
 }
 
-// Returns those of this package, then the registered ones.
+// Returns the algorithms of this package, then the registered ones.
 std::vector<Algorithm> AllAlgorithms() {
   std::vector<Algorithm> all = OwnAlgorithms();
   const char* const libraries = std::getenv(kLearnersVariable);
@@ -183,7 +184,7 @@ std::vector<Algorithm> AllAlgorithms() {
     };
     if (std::any_of(all.begin(), all.end(), has_its_name)) {
       throw InputError(std::string("learner ") + one.name +
-                       ": registered twice or like one of aquafarm, expected another name");
+                       ": got a name that another learner has, expected a name of its own");
     }
     all.push_back(one);
   }
@@ -210,7 +211,8 @@ const Algorithm& FindAlgorithm(const std::string& name) {
 std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options) {
   if ((algorithm.observation_types(options) & kIndexBit) == 0) return algorithm.default_steps;
-  // Measured on a ranch with 17.9 million states (docs/data.md): half as many steps are not enough.
+  // Measured on a ranch with 17.9 million states: half as many steps are not enough
+  // (docs/real_ranches.md).
   constexpr std::uint64_t kStepsPerState = 8;
   constexpr std::uint64_t kMillion = 1'000'000;
   const std::uint64_t enough = (kStepsPerState * spec.state_count / kMillion + 1) * kMillion;

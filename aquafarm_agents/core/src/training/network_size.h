@@ -7,9 +7,9 @@
 
 namespace aquafarm::agents {
 
-/// Returns options with the network size of another learner, unless they name one: a network that
-/// begins with the weights of another one has its size.
-/// @param initial options of the other one
+/// Returns `options` with the hidden_size of `initial`, unless `options` set hidden_size. A network
+/// that starts with the weights of another network needs the same size.
+/// @param initial options of the learner that trained the weights
 inline std::string WithSizeOf(const std::string& initial, const std::string& options) {
   const std::string key = "hidden_size=";
   const std::size_t begin = initial.find(key);

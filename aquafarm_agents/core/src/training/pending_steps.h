@@ -9,15 +9,16 @@
 
 namespace aquafarm::agents {
 
-/// Farm steps and finished episodes of several calls of Environment::Step that the training has not
-/// counted yet.
+/// Farm steps and finished episodes that the training has not counted yet. They are the results of
+/// several calls of Environment::Step.
 class PendingSteps {
  public:
+  /// Adds the results of one call.
   void Add(const StepResults& results);
   void Clear();
   /// Number of calls of Add since the last Clear.
   std::size_t calls() const { return steps_.size(); }
-  /// Farm steps of a call.
+  /// Farm steps of a call. @param call [0, calls())
   std::uint64_t steps(std::size_t call) const { return steps_[call]; }
 
   /// Calls visit(episode) for the episodes that ended in a call, ordered by farm.
@@ -28,15 +29,15 @@ class PendingSteps {
     }
   }
 
-  /// Bytes for another rank that runs the same program.
+  /// Returns bytes for another rank, which must run the same program.
   std::string ToBytes() const;
-  /// @throws InputError if the bytes are not those of ToBytes
+  /// Restores the steps from the bytes of ToBytes. @throws InputError if there are too few bytes
   static PendingSteps FromBytes(const std::string& bytes);
 
  private:
-  std::vector<std::uint64_t> steps_;      // by call
-  std::vector<std::uint64_t> calls_;      // by finished episode
-  std::vector<EpisodeSummary> finished_;  // by call, then by farm
+  std::vector<std::uint64_t> steps_;      // by call: farm steps
+  std::vector<std::uint64_t> calls_;      // by finished episode: index of its call
+  std::vector<EpisodeSummary> finished_;  // ordered by call, then by farm
 };
 
 }  // namespace aquafarm::agents

@@ -25,11 +25,12 @@ namespace fs = std::filesystem;
 
 constexpr int kStartLimit_s = 180;  // importing torch takes long on a busy machine
 constexpr int kChildSocket = 3;
-constexpr std::uint32_t kMaxWords = 4096;  // bytes of an error
+constexpr std::uint32_t kMaxWords = 4096;  // max bytes of an error
 constexpr const char* kEnded =
     "its Python process has ended, its last lines are above; AQUAFARM_PYTHON selects a Python";
 
-// In the workspace that this program is installed in, else in the sources.
+// Returns the path of serve_policy.py: next to this program if it is installed there, else in the
+// sources.
 std::string ServerPath() {
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
@@ -43,7 +44,7 @@ const char* Variable(const char* name) {
   return value == nullptr || *value == '\0' ? nullptr : value;
 }
 
-// The observations of all agents as bytes, and the shape of one.
+// The observations of all agents as bytes, and the shape of one observation.
 struct Observations {
   const void* data{};
   std::size_t size{};
@@ -101,7 +102,8 @@ PolicyProcess::PolicyProcess(const std::string& where, int answer_limit_s)
   } else if (venv != nullptr) {
     python = std::string(venv) + "/bin/python";
   }
-  // ROS adds Debian's packages to PYTHONPATH, which would hide those of another Python.
+  // ROS sets PYTHONPATH to packages for Debian's Python. They would hide packages of another
+  // Python.
   const bool is_default = chosen == nullptr && venv == nullptr;
   Start({python, ServerPath(), std::to_string(kChildSocket), where_}, is_default);
   try {
@@ -125,7 +127,7 @@ std::uint8_t PolicyProcess::KindOf(const std::string& line) const {
 PolicyProcess::~PolicyProcess() { Stop(); }
 
 void PolicyProcess::Stop() {
-  close(socket_);  // the process ends at the end of its input
+  close(socket_);  // the process then reads the end of its input, and ends
   constexpr int kTries = 100;
   for (int i = 0; i < kTries; ++i) {
     if (waitpid(process_, nullptr, WNOHANG) != 0) return;
@@ -138,7 +140,7 @@ void PolicyProcess::Stop() {
 void PolicyProcess::Start(const std::vector<std::string>& command, bool keeps_python_path) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    throw InputError("policy " + where_ + ": no socket: " + std::strerror(errno));
+    throw InputError("policy " + where_ + ": cannot open a socket: " + std::strerror(errno));
   }
   socket_ = ends[0];
   std::vector<std::string> words = command;
@@ -227,13 +229,14 @@ void PolicyProcess::Act(const EnvironmentSpec& spec, const StepResults& results,
     reported = Ask(spec, results, actions);
   } catch (const std::exception& error) {
     broken_ = error.what();
-    shutdown(socket_, SHUT_RDWR);  // so that no later request reads what is left of this answer
+    shutdown(socket_, SHUT_RDWR);  // so that no later request reads the remainder of this answer
     throw;
   }
   if (!reported.empty()) Fail(reported);
 }
 
-// Returns an error that the process reports, or an empty text after the actions.
+// Sends a request and receives the actions. Returns the error that the process reports instead, or
+// an empty text.
 std::string PolicyProcess::Ask(const EnvironmentSpec& spec, const StepResults& results,
                                std::vector<std::uint8_t>& actions) {
   const Observations seen = ObservationsOf(observation_types_, spec, results);
@@ -242,7 +245,7 @@ std::string PolicyProcess::Ask(const EnvironmentSpec& spec, const StepResults& r
   Send(header.data(), sizeof(header), answer_limit_);
   Send(seen.data, seen.size, answer_limit_);
   Send(results.legal.data(), results.legal.size() * sizeof(ActionMask), answer_limit_);
-  std::uint32_t length = 0;  // of an error
+  std::uint32_t length = 0;  // bytes of an error; 0: actions follow
   Receive(&length, sizeof(length), answer_limit_);
   if (length > kMaxWords) {
     Fail("got an error of " + std::to_string(length) + " bytes, expected at most " +

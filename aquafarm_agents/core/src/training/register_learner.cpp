@@ -17,16 +17,17 @@ struct Registration {
   std::string built_with;
 };
 
-// Created by the first registration, which may precede the other static objects of this library.
+// All registrations. A function-local static, because the first registration may run before the
+// other static objects of this library are initialized.
 std::vector<Registration>& Registrations() {
   static std::vector<Registration> registrations;
   return registrations;
 }
 
 void LoadLibrary(const std::string& path) {
-  static std::set<void*> loaded;  // one handle per library, whatever path names it
+  static std::set<void*> loaded;  // a library has the same handle for each of its paths
   const std::size_t count = Registrations().size();
-  // Never closed, because its code is in use until the program ends.
+  // The library is never closed, because its code is used until the program ends.
   void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     const char* const reason = dlerror();

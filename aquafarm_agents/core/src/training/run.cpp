@@ -37,7 +37,7 @@ std::string Count(std::uint64_t value) {
   return text;
 }
 
-/// One training; its members are the state shared by the steps of Train.
+/// One training run. Its members are the state that the steps of Train share.
 class Run {
  public:
   Run(RunOptions options, const std::function<void(const RunStatus&)>& on_status,
@@ -93,7 +93,7 @@ void Run::All(const MakeEnvironment& make_environment) {
   CheckRunOptions(options_);
   if (options_.algorithm == kAutoAlgorithm) Choose(make_environment);
   const Algorithm& algorithm = FindAlgorithm(options_.algorithm);
-  std::optional<RunFolder> folder;  // of rank 0 alone
+  std::optional<RunFolder> folder;  // only on rank 0
   if (group() == nullptr || group()->rank() == 0) {
     folder.emplace(options_.run_dir, options_.resume);
     if (options_.resume) TakeOver(*folder);
@@ -149,7 +149,7 @@ void Run::SetDefaultLimit(const Algorithm& algorithm, const EnvironmentSpec& spe
   if (!note.empty()) Notify(RunPhase::kStarting, note);
 }
 
-// Checks that all ranks were started alike, and takes over the limits of rank 0.
+// Checks that all ranks were started with the same arguments, and adopts the limits of rank 0.
 void Run::Agree(const EnvironmentSpec& spec, const Learner& learner, bool has_checkpoint) {
   Checkpoint policy;
   learner.SavePolicy(policy);
@@ -170,7 +170,8 @@ void Run::Agree(const EnvironmentSpec& spec, const Learner& learner, bool has_ch
   for (const auto& [name, value] : own.items()) {
     const nlohmann::json& expected = first.at("same").at(name);
     if (value == expected) continue;
-    if (name == "weights" && first.at("limits").at("has_checkpoint")) continue;  // it replaces them
+    // A checkpoint replaces the initial weights.
+    if (name == "weights" && first.at("limits").at("has_checkpoint")) continue;
     throw InputError(name + ": got " + value.dump() + " on rank " +
                      std::to_string(group()->rank()) + ", expected " + expected.dump() +
                      " as on rank 0; start all ranks with the same program and arguments");
@@ -179,7 +180,7 @@ void Run::Agree(const EnvironmentSpec& spec, const Learner& learner, bool has_ch
   first.at("limits").at("steps").get_to(options_.steps);
 }
 
-// Fig. 6. A first environment has the spec. The observation types depend on the chosen algorithm.
+// Selects the algorithm (Fig. 6) by the spec of a temporary environment without observations.
 void Run::Choose(const MakeEnvironment& make_environment) {
   const Choice choice = ChooseAlgorithm(make_environment(0)->spec());
   options_.algorithm = report_.status.algorithm = choice.algorithm;
@@ -187,7 +188,7 @@ void Run::Choose(const MakeEnvironment& make_environment) {
   CheckRunOptions(options_);
 }
 
-// A resumed run keeps its initial policy, and its old limits unless new ones are given.
+// Reads run.json of a resumed run: its `init`, and its limits unless new ones are given.
 void Run::TakeOver(const RunFolder& folder) {
   const std::string path = folder.path() + "/run.json";
   std::error_code ignored;
@@ -224,7 +225,7 @@ void Run::Initialize(Learner& learner) {
   Notify(RunPhase::kStarting, "starting with the weights of " + options_.init);
 }
 
-// Resumes from the newest checkpoint, or from the one before it if the newest is damaged.
+// Resumes from the newest undamaged checkpoint. Returns false if there is no checkpoint.
 bool Run::Resume(Trainer& trainer, const RunFolder* folder) {
   if (ranked_ != nullptr) return ResumeFromRank0(trainer, folder);
   Checkpoint checkpoint;
@@ -235,7 +236,7 @@ bool Run::Resume(Trainer& trainer, const RunFolder* folder) {
   return true;
 }
 
-// Rank 0 sends the checkpoint to the others, whose hosts need not see the run folder.
+// Rank 0 sends the checkpoint to the other ranks, whose hosts may have no access to the run folder.
 bool Run::ResumeFromRank0(Trainer& trainer, const RunFolder* folder) {
   Checkpoint checkpoint;
   std::string path;

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kKeptCheckpoints = 2;
 
-// Names sort in the order of their steps.
+// Returns the file name of a checkpoint. The names sort in the order of the steps.
 std::string CheckpointName(std::uint64_t steps) {
   char name[40];
   std::snprintf(name, sizeof(name), "step_%015llu.ckpt", static_cast<unsigned long long>(steps));

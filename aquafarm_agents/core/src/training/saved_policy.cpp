@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// In the workspace that this program is installed in, else in the sources.
+// Returns the path of generalist.ckpt: in the workspace where this program is installed, else in
+// the sources.
 std::string GeneralistPath() {
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);  // <prefix>/lib/<package>/
@@ -28,7 +29,7 @@ std::uint8_t ObservationTypesOf(const Checkpoint& checkpoint) {
   const Algorithm& algorithm = FindAlgorithm(checkpoint.algorithm);
   std::uint8_t bits = algorithm.observation_types(checkpoint.options);
   bits &= static_cast<std::uint8_t>(~algorithm.only_for_training);
-  // On farms with other features a policy of tokens reads the states instead.
+  // On farms with other features, a policy that reads tokens needs the states (TokenPolicy).
   return ReadsTokens(checkpoint) ? bits | kStatesBit : bits;
 }
 
@@ -42,7 +43,7 @@ SavedPolicy FindPolicy(const std::string& where) {
   if (where == kGeneralist) {
     saved.checkpoint = ReadCheckpoint(GeneralistPath());
     saved.observation_types = ObservationTypesOf(saved.checkpoint);
-    // Its tokens are checked by name, so it plays in every version that has them.
+    // MakePolicy compares the names of its features, so it fits every version with these features.
     saved.checkpoint.version.clear();
     return saved;
   }

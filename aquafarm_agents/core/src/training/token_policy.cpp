@@ -9,7 +9,8 @@
 namespace aquafarm::agents {
 namespace {
 
-// The hash stays that of the farms, whose states are copied.
+// Returns the scenario with view.tokens. Its hash stays that of the farms, because
+// Farm::CopyStateFrom compares it.
 std::shared_ptr<const Scenario> WithTokens(const EnvironmentSpec& spec) {
   Scenario scenario = ParseScenario(spec.scenario_yaml, spec.scenario_name);
   scenario.view.tokens = true;

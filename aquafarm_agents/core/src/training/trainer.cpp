@@ -110,13 +110,15 @@ TrainingEnd Trainer::Run(const std::atomic<bool>* stop, const OnProgress& on_pro
     end = TrainingEnd::kDiverged;
   } catch (const InputError& error) {
     message_ = error.what();
-    // Alone, the farms came back with another scenario. A rank has farms of its own.
+    // If this process trains alone, lost farms came back with another scenario. With several ranks
+    // each rank has local farms, which cannot change their scenario.
     end = options_.group == nullptr ? TrainingEnd::kLost : TrainingEnd::kBadInput;
   }
-  // The other ranks do not know of the error of this one, so it must not exchange anything more.
+  // With several ranks nothing is saved here: the other ranks are not informed of the error, so
+  // this rank must not exchange anything more.
   if (end == TrainingEnd::kLost && options_.group == nullptr) {
     SaveWithoutFarms();
-    // In a shared launch Ctrl-C also stops the farms.
+    // Ctrl-C also stops farms that were started by the same launch file.
     if (stop != nullptr && *stop) end = TrainingEnd::kInterrupted;
   }
   Report(on_progress);
@@ -152,7 +154,8 @@ void Trainer::Train(const std::atomic<bool>* stop, const OnProgress& on_progress
   Begin();
   Report(on_progress);
   std::uint32_t calls = 0;
-  // With several shards the training stops only where it counts, at the same step on all ranks.
+  // With several shards the training stops only at a synchronization, so that all ranks stop at the
+  // same step.
   bool stops = sync_interval_ == 1 && stop != nullptr && *stop;
   while (!IsDone() && !stops) {
     is_saved_ = false;
@@ -188,7 +191,8 @@ void Trainer::Count(const StepResults& results) {
   CountRestarts();
 }
 
-// Must be called after the episodes that ended before the restarts were counted.
+// Counts restarts of the farms. Must be called after the episodes that ended before the restarts
+// have been counted.
 void Trainer::CountRestarts() {
   if (uncounted_restarts_ == 0) return;
   progress_.restarts += uncounted_restarts_;
@@ -205,7 +209,8 @@ void Trainer::CountEpisode(const EpisodeSummary& result) {
   ++progress_.episodes;
   const std::int32_t ranks = options_.group == nullptr ? 1 : options_.group->size();
   const auto farms = static_cast<std::uint64_t>(environment_.spec().farms * ranks);
-  next_episode_ = std::max(next_episode_, result.episode + farms + 1);  // next episode of this farm
+  // The farm's next episode has the number result.episode + farms.
+  next_episode_ = std::max(next_episode_, result.episode + farms + 1);
   progress_.last_return = result.episode_return;
   if (progress_.episodes >= returns_.size()) {
     float sum = 0.0F;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of the training in which the ranks of a process group check, count and save together.
+// The parts of a training in which the ranks of a process group check, count and save together.
 #include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kEnvironment = "environment";  // section of all farms
 
-/// Totals and decisions of rank 0, which the other ranks follow.
+/// Totals and decisions of rank 0, which the other ranks adopt.
 struct Decision {
   std::uint64_t steps{};
   std::uint64_t episodes{};
@@ -48,7 +48,8 @@ EnvironmentSpec WholeSpec(const EnvironmentSpec& spec, const ProcessGroup* group
   return whole;
 }
 
-// Counts the pending steps of ranks in the order of one process: by call, then by farm.
+// Counts the pending steps of all ranks in the order in which one process would count them: by
+// call, then by farm.
 void Trainer::CountPending(const std::vector<PendingSteps>& parts) {
   for (std::size_t call = 0; call < parts.front().calls(); ++call) {
     for (const PendingSteps& part : parts) progress_.steps += part.steps(call);
@@ -58,7 +59,8 @@ void Trainer::CountPending(const std::vector<PendingSteps>& parts) {
   }
 }
 
-// Returns true if the training stops here. Rank 0 decides, so that all ranks stop and save alike.
+// Counts the pending steps and saves if it is time. Returns whether the training stops here. Rank 0
+// decides both, so that all ranks stop and save at the same step.
 bool Trainer::Synchronize(const std::atomic<bool>* stop) {
   Decision decision;
   decision.stops = stop != nullptr && *stop ? 1 : 0;
@@ -88,8 +90,8 @@ bool Trainer::Synchronize(const std::atomic<bool>* stop) {
   return decision.stops != 0;
 }
 
-// Completes the sections of this rank by those of the others. Returns false on the other ranks,
-// which write nothing.
+// On rank 0, adds the sections of the other ranks to the checkpoint and returns true. Returns false
+// on the other ranks, which write nothing.
 bool Trainer::CollectSections(Checkpoint& checkpoint) const {
   if (options_.group == nullptr) return true;
   nlohmann::json own = nlohmann::json::object();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Slow oracles of the value networks and of one update: plain loops in double precision, gradients
+// Slow oracles for the value networks and their updates: plain loops in double precision, gradients
 // by central differences, Adam by its equations (Kingma and Ba 2015). They share no code with the
 // learners.
 
@@ -21,7 +21,8 @@ class ParameterReader {
  public:
   explicit ParameterReader(const Values& parameters) : parameters_(parameters) {}
 
-  /// Returns W x + b with W [outputs, inputs], then b, in the layout of torch::nn::Linear.
+  /// Reads a layer in the layout of torch::nn::Linear: W [outputs, x.size()], then b [outputs].
+  /// Returns W x + b.
   Values Linear(const Values& x, std::size_t outputs) {
     const std::size_t bias = place_ + outputs * x.size();
     Values y(outputs);
@@ -48,7 +49,8 @@ inline Values Relu(Values x) {
   return x;
 }
 
-/// Returns Q(s, ·) of a network with two hidden layers.
+/// Returns Q(s, ·) of a network with two hidden layers of `hidden` units.
+/// @param x features
 inline Values MlpOracle(const Values& parameters, const Values& x, std::size_t hidden) {
   ParameterReader reader(parameters);
   const Values first = Relu(reader.Linear(x, hidden));
@@ -58,17 +60,19 @@ inline Values MlpOracle(const Values& parameters, const Values& x, std::size_t h
 
 /// State of an LSTM.
 struct Memory {
-  Values h;
-  Values c;
+  Values h;  // output, [hidden]
+  Values c;  // cell state, [hidden]
 };
 
 /// Returns Q(s, ·) of the recurrent network and updates its state (Hochreiter and Schmidhuber 1997,
 /// with the forget gate of Gers et al. 2000; gates in PyTorch's order i, f, g, o).
+/// @param skip whether the layer after the LSTM also receives the input of the LSTM
 inline Values LstmOracle(const Values& parameters, const Values& x, std::size_t hidden, bool skip,
                          Memory& memory) {
   ParameterReader reader(parameters);
   const Values seen = Relu(reader.Linear(x, hidden));
-  const std::size_t of_input = 4 * hidden * hidden;  // followed by as many of h and two biases
+  // Weights of the input; as many weights of h and two biases follow.
+  const std::size_t of_input = 4 * hidden * hidden;
   Values gates(4 * hidden);
   for (std::size_t g = 0; g < gates.size(); ++g) {
     gates[g] = reader.at(2 * of_input + g) + reader.at(2 * of_input + gates.size() + g);
@@ -89,7 +93,7 @@ inline Values LstmOracle(const Values& parameters, const Values& x, std::size_t 
   return reader.Linear(Relu(reader.Linear(joined, joined.size())), kActionCount);
 }
 
-/// Returns the gradient of `loss` at `parameters`, by central differences.
+/// Returns the gradient of `loss` at `parameters`, computed by central differences.
 inline Values Differences(Values parameters, const std::function<double(const Values&)>& loss) {
   constexpr double kStep = 1e-6;
   Values gradient(parameters.size());
@@ -104,7 +108,10 @@ inline Values Differences(Values parameters, const std::function<double(const Va
   return gradient;
 }
 
-/// One step of Adam with PyTorch's constants. @param step number of this step, starting at 1
+/// Returns the parameters after one step of Adam with PyTorch's constants.
+/// @param mean, square moving averages before the step
+/// @param step number of this step, starting at 1
+/// @param rate learning rate
 inline Values AdamOracle(Values parameters, const Values& gradient, const Values& mean,
                          const Values& square, int step, double rate) {
   constexpr double kMeanDecay = 0.9;

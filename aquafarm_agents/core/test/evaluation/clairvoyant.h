@@ -7,7 +7,7 @@
 
 namespace aquafarm::agents::test {
 
-/// Returns the planner that knows the whole episode.
+/// Returns the planner that knows the true future of the disasters.
 inline std::unique_ptr<Policy> Plan(const EnvironmentSpec& spec) {
   return std::make_unique<PlannerPolicy>(spec, Foresight::kOracle);
 }

@@ -7,7 +7,7 @@
 
 namespace aquafarm::agents {
 
-/// Returns numbers of a random stream, uniform from `min` to 1.
+/// Returns `size` random numbers, uniform in [min, 1). Equal arguments give equal numbers.
 inline std::vector<float> Noise(std::size_t size, std::uint32_t stream, float min = -1.0F) {
   RandomStream rng({9, 0, RngStream::kLearner, stream});
   std::vector<float> values(size);

@@ -9,7 +9,8 @@
 
 namespace aquafarm::agents {
 
-/// Returns a tensor of numbers of a random stream, uniform from -1 to 1.
+/// Returns a float tensor of random numbers, uniform in [-1, 1). Equal arguments give equal
+/// numbers.
 inline torch::Tensor NoiseTensor(const std::vector<std::int64_t>& shape, std::uint32_t stream) {
   torch::Tensor tensor = torch::empty(shape);
   const std::vector<float> values = Noise(static_cast<std::size_t>(tensor.numel()), stream);

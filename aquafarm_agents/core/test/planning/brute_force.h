@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Slow oracle of the planners: tries every sequence of actions on a tiny farm.
+// Slow oracle for the planners: tries every sequence of actions on a tiny farm.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,8 @@
 
 namespace aquafarm::agents::test {
 
-// 4 × 3 cells, an island, a rock, a port and two devices; every kind of penalty occurs.
+// Returns a scenario of 4 × 3 cells with an island, a rock, a port, two devices, one ship and a
+// storm.
 inline Scenario TinyScenario(std::int32_t duration, float exposure, std::int32_t capacity) {
   Scenario scenario;
   scenario.name = "tiny";
@@ -42,11 +43,12 @@ inline Scenario TinyScenario(std::int32_t duration, float exposure, std::int32_t
   return scenario;
 }
 
-// Returns the max return of all action sequences by trying every one. States with the same future
-// are evaluated once.
+// Returns the max return of all action sequences from the present state on, by trying each of them.
+// States with the same future are evaluated once.
+// @param seen results by state; empty at the first call of an episode
 inline double BruteForce(const Farm& farm, std::map<std::string, double>& seen) {
   if (farm.over()) return 0.0;
-  // Hash() includes the return so far, so states are named without it.
+  // Farm::Hash includes the return so far, which does not affect the future.
   const Ship& ship = farm.ships()[0];
   std::string name = std::to_string(farm.step()) + ' ' + std::to_string(ship.cell.x) + ' ' +
                      std::to_string(ship.cell.y);
@@ -68,7 +70,7 @@ inline double BruteForce(const Farm& farm, std::map<std::string, double>& seen) 
   return best;
 }
 
-// Executes a plan and returns its return.
+// Executes a plan and returns the sum of its rewards.
 inline double Play(Farm& farm, const Plan& plan) {
   const float before = farm.ships()[0].episode_return;
   for (const std::uint8_t action : plan.actions) {
@@ -77,7 +79,8 @@ inline double Play(Farm& farm, const Plan& plan) {
   return static_cast<double>(farm.ships()[0].episode_return - before);
 }
 
-// Compares the plan of each episode, and the team bound, with brute force.
+// Compares the plan and the team bound of each episode with brute force.
+// @param valid a scenario with one ship
 inline void ExpectBruteForce(const Scenario& valid, std::uint64_t episodes) {
   ValidateScenario(valid);
   const auto scenario = std::make_shared<const Scenario>(valid);

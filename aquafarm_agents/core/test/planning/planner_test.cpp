@@ -12,7 +12,6 @@
 
 #include "agents_fixture.h"
 #include "aquafarm/agents/evaluation/evaluation.h"
-#include "aquafarm/agents/planning/optimum.h"
 #include "aquafarm/agents/planning/team_bound.h"
 #include "aquafarm/agents/training/saved_policy.h"
 #include "aquafarm/base/check.h"
@@ -401,36 +400,6 @@ TEST(RecedingHorizon, IsNeverBetterThanClairvoyant) {
     achieved += static_cast<double>(farm.ships()[0].episode_return);
   }
   EXPECT_GT(achieved, 0.8 * optimum);
-}
-
-// Farms whose best plan earns `value` of the device, less a cost per step.
-Farm FarmWorth(float value, std::uint64_t episode) {
-  Scenario scenario = aquafarm::test::TinyScenario();
-  scenario.devices.sites.front().value = value;
-  scenario.rewards.step = -30.0F;
-  Farm farm(std::make_shared<const Scenario>(scenario));
-  farm.Reset(1, episode);
-  return farm;
-}
-
-TEST(CompareWithOptimum, RefusesAnOptimumThatIsNotPositive) {
-  const auto poor = [](std::uint64_t, std::uint64_t episode) { return FarmWorth(10.0F, episode); };
-  const std::string message = test::MessageOf<InputError>(
-      [&] { CompareWithOptimum({EpisodeSummary{}}, poor, 1000000, 1, nullptr); });
-  EXPECT_CONTAINS(message, "optimum: got a mean return of -");
-}
-
-TEST(CompareWithOptimum, SkipsResamplesWithoutAPositiveOptimum) {
-  std::vector<EpisodeSummary> episodes(2);
-  episodes[1].episode = 1;
-  for (EpisodeSummary& episode : episodes) episode.episode_return = -1.0F;
-  const auto mixed = [](std::uint64_t, std::uint64_t episode) {
-    return FarmWorth(episode == 0 ? 10000.0F : 10.0F, episode);
-  };
-  const OptimumShare share = CompareWithOptimum(episodes, mixed, 1000000, 1, nullptr);
-  EXPECT_LE(share.low, share.share);
-  EXPECT_GT(share.high, share.share);
-  EXPECT_LT(share.high, 0.0);  // a loss on ranches that are worth something
 }
 
 TEST(Planner, SaysWhatItCannotPlanFor) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Derivatives by complex steps: f'(x) is the imaginary part of f(x + ih) / h.
+// Complex numbers for the complex-step derivative: f'(x) ≈ Im f(x + ih) / h for a small h. Its
+// error is of the order of h² and contains no rounding error of a difference (Squire and Trapp
+// 1998).
 
 #include <complex>
 #include <vector>

@@ -97,7 +97,7 @@ TEST(ProcessGroup, AWorkThatFailsEndsTheWaitAtOnce) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
   EXPECT_EQ(zero.lost, "work: the disk is full");
   EXPECT_EQ(one.lost.rfind("ranks: rank 0 of 2 has ended or does not answer", 0), 0U) << one.lost;
-  EXPECT_NE(one.lost.find("it was to read or write the run folder within 60 s"), std::string::npos)
+  EXPECT_NE(one.lost.find("it did not read or write the run folder within 60 s"), std::string::npos)
       << one.lost;
 }
 
@@ -106,7 +106,7 @@ TEST(ProcessGroup, AWorkThatDoesNotEndIsGivenUpAfterItsLimit) {
       [&](ProcessGroup& group) { group.RunOnRank0([] { std::this_thread::sleep_for(kSlow); }); },
       1.0);
   EXPECT_EQ(one.lost.rfind("ranks: rank 0 of 2 has ended or does not answer", 0), 0U) << one.lost;
-  EXPECT_NE(one.lost.find("it was to read or write the run folder within 1 s"), std::string::npos)
+  EXPECT_NE(one.lost.find("it did not read or write the run folder within 1 s"), std::string::npos)
       << one.lost;
   EXPECT_NE(zero.lost, "");
 }

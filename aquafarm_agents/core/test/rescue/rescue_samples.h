@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// A storm that passes a ranch of 12 × 10 cells from the west, and a small rescue.
+// A storm that passes over a ranch of 12 × 10 cells from west to east, and a small rescue problem.
 
 #include <string>
 
@@ -12,7 +12,8 @@ namespace aquafarm::agents::test {
 
 inline const std::string kScenarios = AQUAFARM_SCENARIO_DIR;
 
-/// Moves 40 cells of 5 km east in 60 steps of 10 minutes, through the middle of the ranch.
+/// Returns a storm whose centre moves 40 cells of 5 km to the east in 60 steps of 10 minutes, along
+/// the row y = 5 of the ranch.
 inline CentralForecast PassingStorm() {
   CentralForecast forecast;
   StormPath& path = forecast.path;
@@ -55,7 +56,7 @@ inline EnsembleOptions SmallEnsemble(std::int32_t members) {
   return options;
 }
 
-/// Three devices, two ports and two ships on open water.
+/// Returns a problem with three devices, two ports and two ships on a map without land.
 inline RescueProblem SmallRescue() {
   RescueProblem problem;
   problem.water.setOnes(10, 12);

@@ -20,24 +20,27 @@ struct AgentDriverOptions {
 };
 
 /// Agent of one ship, as in a deployment. It subscribes only to that ship's observation, claims the
-/// ship and calls its move, pickup and drop_off services. In lockstep mode its command waits for
-/// the commands of the other ships. In paced mode a late command makes the ship hold. An agent that
-/// starts in mid-episode joins that episode.
+/// ship and calls its move, pickup and drop_off services. In lockstep its command waits for the
+/// commands of the other ships. In paced running the ship holds if its command is late. An agent
+/// that starts during an episode joins that episode.
 class AgentDriver {
  public:
   /// Waits for the sim node.
-  /// @param observation_types of the policy, without kStatesBit, which needs the complete farm
-  /// state
-  /// @throws InputError if there is no such ship; EnvironmentLost
+  /// @param observation_types observation types of the policy; kStatesBit is not supported, because
+  ///        an observation does not contain the complete farm
+  /// @throws InputError if there is no such ship, or the scenario has too many states for a policy
+  ///         that requires the index
+  /// @throws EnvironmentLost if the sim node does not respond within the limit
   AgentDriver(const ros::NodeHandle& node, std::uint8_t observation_types,
               AgentDriverOptions options);
   ~AgentDriver();
 
   const aquafarm::agents::EnvironmentSpec& spec() const;
 
-  /// Claims the ship and drives it until `episodes` episodes have ended, or without end if 0.
-  /// Returns early when stopped.
-  /// @returns for each observed end of an episode, whether every device was delivered
+  /// Claims the ship and drives it until `episodes` episodes in which it acted have ended; 0:
+  /// without limit. Returns early when stopped.
+  /// @param seed seed of the policy's random draws
+  /// @returns by ended episode: whether every device was delivered
   /// @throws InputError if another node has claimed the ship; EnvironmentLost if the sim node is
   ///         unreachable for longer than the limit
   std::vector<bool> Drive(aquafarm::agents::Policy& policy, std::uint64_t seed,

@@ -22,19 +22,24 @@ struct ShipDriverOptions {
   const std::atomic<bool>* stop{};
 };
 
-/// Drives ships of a running ranch, paced or lockstep, by ship commands. It loads the farm's saved
-/// state into a local farm, which computes the policy's observation types exactly as in training.
+/// Drives ships of a running ranch, paced or in lockstep, by ship commands. It loads the saved
+/// state of the farms into local farms, which compute the observations exactly as in training.
 class ShipDriver {
  public:
-  /// Waits for the sim node. @throws InputError, EnvironmentLost
+  /// Waits for the sim node.
+  /// @throws InputError if there is no such ship, or the scenario does not support the observation
+  ///         types
+  /// @throws EnvironmentLost if the sim node does not respond within the limit
   ShipDriver(const ros::NodeHandle& node, std::uint8_t observation_types,
              ShipDriverOptions options);
   ~ShipDriver();
 
   const aquafarm::agents::EnvironmentSpec& spec() const;
 
-  /// Drives until `episodes` episodes have ended, or without end if 0. Returns early when stopped.
-  /// A single ship is claimed until then.
+  /// Drives the ships until `episodes` episodes have ended; 0: without limit. Returns early when
+  /// stopped. If it drives a single ship, it claims this ship meanwhile.
+  /// @param seed seed of the policy's random draws
+  /// @returns the summaries of the ended episodes
   /// @throws InputError if another node has claimed the ship; EnvironmentLost if the sim node is
   ///         unreachable for longer than the limit
   std::vector<aquafarm::EpisodeSummary> Drive(aquafarm::agents::Policy& policy, std::uint64_t seed,

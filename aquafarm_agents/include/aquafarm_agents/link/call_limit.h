@@ -15,13 +15,13 @@ namespace aquafarm_agents {
 
 inline constexpr double kRetryPeriod_s = 0.1;  ///< between attempts to reach a sim node
 
-/// Runs a task in a thread of its own. Ends the process with ExitCode::kLost and a line on standard
-/// error if it is not done after so many looks of 0.2 s each.
+/// Runs a task in a separate thread and waits for its end. If the task does not end within
+/// 0.2 s · `looks`, prints a line to standard error and ends the process with ExitCode::kLost.
 void EndUnlessDone(const std::function<void()>& task, int looks);
 
-/// Adds the timeout that roscpp lacks to service calls: a call that exceeds the limit is aborted
-/// and returns false; the process ends if roscpp does not abort it (EndUnlessDone). For a single
-/// caller whose calls do not overlap.
+/// Adds a timeout to service calls, which roscpp lacks. A call that exceeds the limit is aborted
+/// and returns false. If roscpp cannot abort it, the process ends (EndUnlessDone). Calls must not
+/// overlap.
 class CallLimit {
  public:
   explicit CallLimit(double limit_s);
@@ -29,9 +29,9 @@ class CallLimit {
   CallLimit(const CallLimit&) = delete;
   CallLimit& operator=(const CallLimit&) = delete;
 
-  /// @returns false if there was no response: the service is gone or the limit is exceeded. The
-  ///          client is then shut down and must be recreated, because roscpp sometimes continues to
-  ///          report a dropped connection as valid.
+  /// @returns false if there was no response, because the service is gone or the limit is exceeded.
+  ///          The client is then shut down and must be created again. It is shut down because
+  ///          roscpp sometimes reports a dropped connection as valid.
   template <typename Service>
   bool Call(ros::ServiceClient& client, Service& service) {
     Arm(client);

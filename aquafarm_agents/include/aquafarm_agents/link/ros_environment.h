@@ -24,28 +24,30 @@ namespace aquafarm_agents {
 
 struct RosEnvironmentOptions {
   std::int32_t farms{};  ///< 0: all farms of the sim node
-  /// The farms play the same episodes as in an environment with all farms of the share, and Load
-  /// reads their part of a state that all farms saved. If its total is 0, this environment has all
-  /// farms.
+  /// The share of all farms that this environment has. Its farms play the same episodes as in an
+  /// environment with all farms, and Load reads their part of the saved state of all farms. If its
+  /// total is 0, this environment has all farms.
   aquafarm::agents::FarmShare share;
   std::uint8_t observation_types{aquafarm::agents::kIndexBit};
   bool hashes{};
   double wait_limit_s{20.0};        ///< max wait for the sim node to start or to return
   double call_limit_s{30.0};        ///< max duration of one call
-  double pause_limit_s{3600.0};     ///< max wait for a paused (or paced) farm to continue
-  const std::atomic<bool>* stop{};  ///< ends all waits; null if they cannot be ended
-  std::function<void(const std::string&)> on_notice;  ///< reports losses, waits and returns
+  double pause_limit_s{3600.0};     ///< max wait while the farms are paused, paced or claimed
+  const std::atomic<bool>* stop{};  ///< ends all waits if true; null if they cannot be ended
+  /// Called with a line of text when the environment waits for the sim node or restarts the farms.
+  std::function<void(const std::string&)> on_notice;
 };
 
-/// Farms behind a sim node's services. Connections are persistent. A lost call is repeated with the
-/// same number, so that no farm steps twice. The farms are reset to new episodes of the same seed
-/// if another client has stepped, reset or loaded them, or if the sim node returned without them;
-/// ConsumeRestart() then returns true. Any call throws EnvironmentLost if the sim node is
-/// unreachable for longer than the limits.
+/// The farms of a sim node, used through its services over persistent connections. A lost call is
+/// repeated with the same request id, so that no farm steps twice. If another client has stepped,
+/// reset or loaded the farms, or the sim node was restarted, Step resets the farms to new episodes
+/// of the same seed, and ConsumeRestart() then returns true. Every call throws EnvironmentLost if
+/// the sim node does not respond within the limits, and Step also after more than 20 such restarts
+/// without the end of an episode.
 class RosEnvironment final : public aquafarm::agents::Environment {
  public:
   /// Waits for the sim node.
-  /// @throws InputError if its farms do not support the options
+  /// @throws InputError if the sim node's farms do not support the options, or run paced
   RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOptions options);
 
   const aquafarm::agents::EnvironmentSpec& spec() const override { return spec_; }
@@ -57,8 +59,8 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   bool ConsumeRestart() override;
 
  private:
-  /// Opens a connection. All are opened at the start: a master that was restarted does not know the
-  /// sim node's services, but open connections remain.
+  /// Opens a connection. The constructor opens all of them, because a restarted master does not
+  /// know the services of the sim node, while open connections remain usable.
   template <typename Service>
   void Connect(ros::ServiceClient& client, const std::string& name);
   template <typename Service>
@@ -90,16 +92,15 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   aquafarm::agents::EnvironmentSpec spec_;
   aquafarm::agents::FarmShare share_;
   aquafarm::agents::StepResults results_;
-  std::unique_ptr<aquafarm::FarmBatch> copies_;  // of the farms; null unless requested
+  std::unique_ptr<aquafarm::FarmBatch> copies_;  // copies of the farms; null without kStatesBit
   aquafarm_msgs::Step step_;                     // reused buffer
   std::uint64_t sequence_;
   bool restarted_{};
   int restarts_{};  // since the last end of an episode
 
-  std::uint64_t
-      state_id_{};  // of the last result; a different one means that the farms have changed
+  std::uint64_t state_id_{};  // of the last result
   std::uint64_t seed_{};
-  std::uint64_t next_episode_{};  // above all started episodes
+  std::uint64_t next_episode_{};  // greater than the index of every started episode
   std::uint64_t offset_{};        // farm i of all plays episodes offset_ + i + k * share_.total
 };
 

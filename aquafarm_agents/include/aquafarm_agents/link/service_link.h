@@ -13,13 +13,14 @@
 
 namespace aquafarm_agents {
 
-/// One persistent service connection with timeouts. It reconnects after a failure.
+/// A persistent connection to a service, with timeouts. It reconnects after a failure.
 class ServiceLink {
  public:
   inline static constexpr double kCallLimit_s = 30.0;
 
   /// @param wait_limit_s max wait for a response after the first attempt failed
-  /// @param stop may be set by a signal handler; null if calls cannot be stopped
+  /// @param stop ends Call if true, for example set by a signal handler; null if calls cannot be
+  ///        stopped
   /// @param call_limit_s max wait for the response to one attempt
   ServiceLink(ros::NodeHandle node, double wait_limit_s, const std::atomic<bool>* stop,
               double call_limit_s = kCallLimit_s)
@@ -29,7 +30,8 @@ class ServiceLink {
         call_limit_s_(call_limit_s),
         limit_(call_limit_s) {}
 
-  /// Calls the service. @throws EnvironmentLost if there is no response within the limit
+  /// Calls the service, again and again until it responds.
+  /// @throws EnvironmentLost if there is no response within the limit, or the call was stopped
   template <typename Service>
   void Call(const std::string& name, Service& service) {
     ros::WallTime lost_since;
@@ -38,7 +40,7 @@ class ServiceLink {
       if (!client_.isValid()) client_ = node_.serviceClient<Service>(name, true);
       if (client_.isValid() && limit_.Call(client_, service)) return;
       const ros::WallTime now = ros::WallTime::now();
-      // A response may take long. The wait counts from the call only if the call timed out.
+      // The wait starts at the end of the first failed attempt, or at its begin if it timed out.
       if (lost_since.isZero()) lost_since = (now - begun).toSec() < call_limit_s_ ? now : begun;
       const bool stopped = !ros::ok() || (stop_ != nullptr && *stop_);
       if (stopped || (now - lost_since).toSec() >= wait_limit_s_) {

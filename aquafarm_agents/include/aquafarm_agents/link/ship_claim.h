@@ -11,19 +11,22 @@
 
 namespace aquafarm_agents {
 
-/// Claims a ship for this node during its lifetime.
+/// Claims a ship for this node. The destructor releases the ship.
 class ShipClaim {
  public:
   /// @param wait_limit_s max wait for the sim node
-  /// @throws InputError if another node has claimed the ship; EnvironmentLost
+  /// @throws InputError if another node has claimed the ship
+  /// @throws EnvironmentLost if the sim node does not respond within the limit
   ShipClaim(ros::NodeHandle node, std::int32_t ship, double wait_limit_s,
             const std::atomic<bool>* stop);
   ~ShipClaim();
   ShipClaim(const ShipClaim&) = delete;
   ShipClaim& operator=(const ShipClaim&) = delete;
 
-  /// Renews the claim periodically, which also checks that the sim node is running. Must be called
-  /// while no command is sent. @throws InputError, EnvironmentLost like the constructor
+  /// Renews the claim if the last renewal is 3 s old, which also checks that the sim node is
+  /// running. Must be called repeatedly while the node sends no commands, which renew the claim
+  /// too.
+  /// @throws InputError, EnvironmentLost as the constructor
   void RenewWhenDue();
 
  private:

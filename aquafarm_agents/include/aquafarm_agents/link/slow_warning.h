@@ -9,7 +9,8 @@
 
 namespace aquafarm_agents {
 
-/// Warns at most once per 5 s of wall time, because ROS time stops with the farm. Thread-safe.
+/// Logs a warning at most once per 5 s of wall time. ROS_WARN_THROTTLE is not used, because it
+/// counts ROS time, which stops with the farm. Thread-safe.
 class SlowWarning {
  public:
   void Say(const std::string& text) {

@@ -3,17 +3,18 @@
 
 namespace aquafarm_agents {
 
-/// Trains through the services of a ranch, configured by private parameters. Publishes the progress
-/// on `training` and prints a summary.
+/// Trains a learner through the services of a ranch. Publishes the progress on `training` and
+/// prints a summary. Private parameters configure the run.
 /// @returns an ExitCode
 int RunTrainNode();
 
-/// Plays a saved policy through the services of a ranch: evaluates it, or drives ships.
+/// Plays a policy through the services of a ranch: evaluates it, or drives ships.
 /// @returns an ExitCode
 int RunPolicyNode();
 
-/// Plans the rescue of a ranch's devices again at every bulletin and every change of the ranch, in
-/// a thread of its own. Publishes `plan`, a path for each ship, markers and a chart.
+/// Plans the rescue of a ranch's devices, and plans again after every bulletin and every step of
+/// the ranch. Publishes `plan`, a path for each ship, markers, a chart and a heartbeat. A separate
+/// thread makes the plans.
 /// @returns an ExitCode
 int RunPlanNode();
 

@@ -7,7 +7,7 @@
 
 namespace aquafarm_agents {
 
-/// Prints why a node ends. @returns its exit code
+/// Prints the error that ends a node to standard error. @returns `code` as the exit code of main
 inline int Refuse(const char* node, aquafarm::agents::ExitCode code, const char* what) {
   std::fprintf(stderr, "%s: %s\n", node, what);
   return static_cast<int>(code);

@@ -6,11 +6,11 @@
 
 namespace aquafarm_agents {
 
-/// Set by Ctrl-C and by the shutdown of roslaunch.
+/// True after SIGINT or SIGTERM, for example from Ctrl-C or roslaunch.
 inline std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // set in a signal handler
 
-/// Installs handlers that request saving and exit. Call it after ros::init with NoSigintHandler.
+/// Installs signal handlers that set stop_requested. Call it after ros::init with NoSigintHandler.
 inline void StopOnSignals() {
   const auto handler = [](int) { stop_requested = true; };
   std::signal(SIGINT, handler);

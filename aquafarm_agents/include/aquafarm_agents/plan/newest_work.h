@@ -12,23 +12,25 @@
 
 namespace aquafarm_agents {
 
-/// Works on requests in a thread of its own. The newest request wins: one that waits is replaced
-/// by the next. Request is the type of a request.
+/// Processes requests in a separate thread. At most one request waits: a new request replaces the
+/// waiting one.
 ///
-///   Ask(a)  Ask(b)  Ask(c)          b is replaced while a is worked on
+///   Ask(a)  Ask(b)  Ask(c)          c replaces b while a is processed
 ///   [work a .........][pause][work c ..]
+///
+/// @tparam Request type of a request
 template <typename Request>
 class NewestWork {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// @param work is called in the thread; must not throw
+  /// @param work processes a request; called in the thread; must not throw
   /// @param min_period between the starts of two calls of `work`
   NewestWork(std::function<void(const Request&)> work, std::chrono::duration<double> min_period)
       : work_(std::move(work)), min_period_(min_period), thread_([this] { Run(); }) {}
   NewestWork(const NewestWork&) = delete;
   NewestWork& operator=(const NewestWork&) = delete;
-  /// Waits for the end of the present call. A waiting request is dropped.
+  /// Waits for the end of the present call of `work`. Drops a waiting request.
   ~NewestWork() {
     {
       const aquafarm::MutexLock lock(mutex_);
@@ -38,7 +40,7 @@ class NewestWork {
     thread_.join();
   }
 
-  /// Never waits for work.
+  /// Hands over a request. Returns at once.
   void Ask(Request request) {
     {
       const aquafarm::MutexLock lock(mutex_);
@@ -47,13 +49,13 @@ class NewestWork {
     changed_.notify_all();
   }
 
-  /// Returns whether a request waits or is worked on.
+  /// Returns whether a request waits or is being processed.
   bool busy() const {
     const aquafarm::MutexLock lock(mutex_);
     return waiting_.has_value() || working_;
   }
 
-  /// Returns for how long the present call has run [s]; 0 if there is none.
+  /// Returns for how long the present call of `work` has run [s]; 0 if there is none.
   double busy_s() const {
     const aquafarm::MutexLock lock(mutex_);
     return working_ ? std::chrono::duration<double>(Clock::now() - began_).count() : 0.0;
@@ -88,7 +90,7 @@ class NewestWork {
   bool working_ AQUAFARM_GUARDED_BY(mutex_){};
   Clock::time_point began_ AQUAFARM_GUARDED_BY(mutex_);  // of the present call
   bool ending_ AQUAFARM_GUARDED_BY(mutex_){};
-  std::thread thread_;  // last: it uses all others
+  std::thread thread_;  // last, because the thread uses all other members
 };
 
 }  // namespace aquafarm_agents

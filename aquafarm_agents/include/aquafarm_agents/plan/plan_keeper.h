@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Makes rescue plans from the present inputs and keeps the last good one.
+/// Makes rescue plans from the current inputs and keeps the last plan that could be made.
 
 #include <cstdint>
 #include <memory>
@@ -15,31 +15,33 @@
 
 namespace aquafarm_agents {
 
-/// All that a plan is made from, at one moment.
+/// All inputs of a plan at one time.
 struct PlanInputs {
   std::shared_ptr<const aquafarm::Scenario> scenario;  ///< null: no ranch is known yet
   aquafarm::agents::RescueRequest request;             ///< without bulletin
   std::vector<StampedFile> bulletins;                  ///< newest first; empty with request.storm
-  std::vector<StampedFile> files;                      ///< devices and ships
-  std::optional<aquafarm::agents::FleetState> fleet;   ///< if the plan follows a ranch
-  std::uint64_t step{};                                ///< of that ranch
-  std::int64_t refresh{};  ///< another number plans again even if nothing else changed
-  std::string command;
-  std::string fault;  ///< why the inputs are incomplete or outdated; empty: they are not
+  std::vector<StampedFile> files;                      ///< lists of devices and of ships
+  std::optional<aquafarm::agents::FleetState> fleet;   ///< set if the plan follows a ranch
+  std::uint64_t step{};                                ///< step of that ranch
+  std::int64_t refresh{};  ///< a change of this number causes a new plan
+  std::string command;     ///< command line that the plan records
+  std::string fault;       ///< why the inputs are incomplete or outdated; empty: they are complete
 };
 
-/// Compares all inputs but the fault: plans of equal inputs are equal.
+/// Returns whether two inputs lead to the same plan. Compares scenario, files, request.at, refresh,
+/// and the seed, episode and step of the fleet. The rest of the request must be equal.
 bool SamePlan(const PlanInputs& a, const PlanInputs& b);
 
 /// Makes a plan with one bulletin.
-/// @throws InputError as MakeRescueCase
+/// @param bulletin path; empty with request.storm
+/// @throws InputError as MakeRescueCase and UseFleet
 PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin);
 
-/// Keeps the last plan. A bulletin that is refused leaves the one before it in use.
+/// Keeps the last plan. If the newest bulletin cannot be used, the previous one stays in use.
 class PlanKeeper {
  public:
-  /// Plans again if the inputs changed. Never throws: what is wrong is in `fault` of the plan.
-  /// @returns whether plan() changed
+  /// Plans again if the inputs have changed. Never throws: errors are in `fault` of the plan.
+  /// @returns whether plan() has changed
   bool Update(const PlanInputs& inputs);
   /// Returns the last plan; before the first one `result` is NONE.
   const PlanMessages& plan() const { return plan_; }
@@ -50,8 +52,8 @@ class PlanKeeper {
 
   PlanMessages plan_;
   std::optional<PlanInputs> inputs_;  // of the last attempt
-  std::string refused_;               // why the newest inputs were refused
-  std::string good_;                  // last bulletin that was planned with
+  std::string refused_;               // why the newest inputs were refused; empty: they were not
+  std::string good_;                  // bulletin in use; empty before the first plan
 };
 
 }  // namespace aquafarm_agents

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// V_π and greedy actions as standard messages, for rviz, Foxglove and bags.
+/// Values (V_π) and greedy actions by cell as standard messages, for rviz, Foxglove and bags.
 
 #include <nav_msgs/OccupancyGrid.h>
 #include <sensor_msgs/PointCloud2.h>
@@ -13,14 +13,14 @@
 
 namespace aquafarm_agents {
 
-/// Grid of values scaled from 0 (lowest) to 100 (highest); -1 in cells without a value. All cells
-/// are -1 if the policy has no values.
+/// Returns the grid of values, scaled from 0 (lowest) to 100 (highest); -1 in cells without a
+/// value. All cells are -1 if the policy has no values.
 nav_msgs::OccupancyGrid ValuesToGrid(const std::vector<aquafarm::agents::GreedyAction>& moves,
                                      const aquafarm::Scenario& scenario,
                                      const std_msgs::Header& header);
 
-/// One point per cell: float32 x, y, z [m] of its centre, float32 unscaled value (NaN if there is
-/// none), uint8 action as in FarmState.
+/// Returns one point per entry of `moves`: float32 x, y, z [m] of the cell's centre, float32 value
+/// (not scaled; NaN if there is none), uint8 action as in ShipState.
 sensor_msgs::PointCloud2 ValuesToPoints(const std::vector<aquafarm::agents::GreedyAction>& moves,
                                         const aquafarm::Scenario& scenario,
                                         const std_msgs::Header& header);

@@ -17,9 +17,10 @@
 
 namespace aquafarm_agents {
 
-/// Publishes V_π and the greedy action of each cell of farm 0 in its current state (`values` and
-/// `values/points`, both latched) while there are subscribers. A low-priority thread computes them
-/// and sleeps nine times as long as it works, so that it does not slow down playing and training.
+/// Publishes V_π and the greedy action of ship 0 in each cell of farm 0 in its current state
+/// (topics `values` and `values/points`, both latched) while there are subscribers. A low-priority
+/// thread computes them. It sleeps nine times as long as it works, so that it hardly slows down
+/// playing and training.
 class ValuesPublisher {
  public:
   /// @param period_s min time between two publications; 0 disables them
@@ -28,12 +29,13 @@ class ValuesPublisher {
   ValuesPublisher(const ValuesPublisher&) = delete;
   ValuesPublisher& operator=(const ValuesPublisher&) = delete;
 
-  /// Replaces the policy if a publication is due soon. `make` copies the learner's policy. It is
-  /// called so rarely that it takes at most a fiftieth of the caller's time.
+  /// Replaces the policy if there are subscribers and a publication is due.
+  /// @param make returns a copy of the learner's policy; called so rarely that it takes at most a
+  ///        fiftieth of the caller's time
   void Refresh(const std::function<std::unique_ptr<aquafarm::agents::Policy>()>& make);
 
-  /// Replaces the policy. Ignores policies without values: planners (which read the complete farm
-  /// state) and random (which reads no observation).
+  /// Replaces the policy. Ignores policies that cannot have values: those that read the complete
+  /// farm state, such as planners, and those that read no observation, such as random.
   void Offer(std::unique_ptr<aquafarm::agents::Policy> policy);
 
  private:
@@ -46,7 +48,7 @@ class ValuesPublisher {
   const std::chrono::duration<double> period_;
   ros::Publisher grid_;
   ros::Publisher points_;
-  std::unique_ptr<aquafarm::FarmBatch> farms_;  // copies of the sim node's; used by the thread
+  std::unique_ptr<aquafarm::FarmBatch> farms_;  // copies of the sim node's farms; for the thread
   std::string frame_;
   Clock::time_point copy_due_;  // used only by the caller of Refresh
 

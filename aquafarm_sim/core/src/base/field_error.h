@@ -7,7 +7,8 @@
 
 namespace aquafarm::internal {
 
-/// Invalid input at a key, such as "disasters[0].grade". The file reader adds the line number.
+/// Invalid value at a key, such as "disasters[0].grade". The YAML reader adds the file and the
+/// line.
 class FieldError : public InputError {
  public:
   FieldError(std::string field_path, const std::string& text)
@@ -16,9 +17,11 @@ class FieldError : public InputError {
   const std::string path;
 };
 
+/// Returns "path.key", or `key` if the path is empty.
 inline std::string Join(const std::string& path, const std::string& key) {
   return path.empty() ? key : path + "." + key;
 }
+/// Returns "path[index]".
 inline std::string At(const std::string& path, std::size_t index) {
   return path + "[" + std::to_string(index) + "]";
 }

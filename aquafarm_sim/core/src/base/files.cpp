@@ -12,7 +12,7 @@
 namespace aquafarm::internal {
 
 void NeedRegularFile(const std::string& path) {
-  std::error_code error;  // the reader of the file reports a missing file
+  std::error_code error;  // opening a missing file reports it
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (error || std::filesystem::is_regular_file(status)) return;
   throw InputError(path + ": cannot read: not a regular file");
@@ -20,7 +20,8 @@ void NeedRegularFile(const std::string& path) {
 
 namespace {
 
-// Returns the max size of a file, by its format, which the first bytes show.
+// Returns the max size of a file [bytes]. A file whose first non-blank character is { or [ counts
+// as JSON.
 std::streamoff SizeLimit(std::ifstream& file) {
   constexpr std::streamoff kMaxBytes = std::streamoff{512} << 20U;
   constexpr std::streamoff kMaxJsonBytes = std::streamoff{64} << 20U;

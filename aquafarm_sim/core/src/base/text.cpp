@@ -27,7 +27,7 @@ std::string FormatReal(T value) {
 }
 
 // A stream with the classic locale rounds correctly and rejects nan, inf and other decimal
-// separators. It accepts hexadecimal numbers, which are therefore excluded first.
+// separators. It also accepts hexadecimal numbers, so they are excluded first.
 template <typename T>
 bool ParseReal(const std::string& text, T& value) {
   if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return false;
@@ -41,7 +41,7 @@ bool ParseReal(const std::string& text, T& value) {
 
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-// Parses a complete text; `value` is unchanged if it is not a number of its type.
+// Parses a complete text. `value` is unchanged if the text is not a number of type T.
 template <typename T>
 bool ParseAll(std::string_view text, T& value) {
   T parsed{};
@@ -52,7 +52,7 @@ bool ParseAll(std::string_view text, T& value) {
   return true;
 }
 
-// As ParseAll, also with a sign '+'.
+// As ParseAll, but accepts a leading '+'.
 template <typename T>
 std::optional<T> ParseSigned(std::string_view text) {
   if (!text.empty() && text[0] == '+') text.remove_prefix(1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Formatting and parsing of text, independent of the locale.
+/// Formats and parses text, independent of the locale.
 
 #include <cstdint>
 #include <optional>
@@ -11,8 +11,8 @@
 
 namespace aquafarm::internal {
 
-/// Returns the shortest decimal text that parses back to the same bits. The decimal separator is a
-/// point in every locale.
+/// Returns a short decimal text that Parse converts back to the same value, with a point as decimal
+/// separator. A value that is not finite gives "nan", "inf" or "-inf", which Parse rejects.
 std::string Format(float value);
 
 std::string Format(double value);
@@ -21,8 +21,8 @@ std::string Format(std::int32_t value);
 
 std::string Format(std::uint64_t value);
 
-/// Parses a complete text as a number; returns false if it is not a number or does not fit the
-/// type.
+/// Parses a complete text as a number. Returns false and keeps `value` if the text is not a finite
+/// number or does not fit the type. Blanks are not accepted; integers must not start with '+'.
 bool Parse(const std::string& text, float& value);
 
 bool Parse(const std::string& text, double& value);
@@ -34,29 +34,34 @@ bool Parse(const std::string& text, std::uint64_t& value);
 /// Joins names as "a, b, c".
 std::string List(const std::vector<std::string>& names);
 
-/// Returns a file's text without a leading byte order mark.
+/// Returns a file's text without its leading UTF-8 byte order mark, if it has one.
 std::string_view WithoutMark(std::string_view text);
 
+/// Returns a text without leading and trailing blanks, tabs and carriage returns.
 std::string_view Trim(std::string_view text);
 
+/// Splits a text at blanks, tabs and carriage returns.
 std::vector<std::string_view> SplitWords(std::string_view text);
 
-/// Splits a text at commas and trims the fields.
+/// Splits a text at commas and trims the fields. An empty text has one empty field.
 void SplitFields(std::string_view text, std::vector<std::string_view>& fields);
 
-/// Returns "'text'", truncated if long and without control characters.
+/// Returns "'text'" with control characters replaced by '?' and at most 40 bytes of the text.
 std::string Quoted(std::string_view text);
 
+/// Returns a text with a-z replaced by A-Z; other characters are kept.
 std::string Upper(std::string_view text);
 
-/// Parses a decimal number; nullopt if `text` is not one.
+/// Trims a text and parses it as a decimal number, with or without a sign; nullopt if it is not
+/// one. Also accepts "inf" and "nan", so callers check the range.
 std::optional<double> ParseNumber(std::string_view text);
 
-/// Parses a whole number, with or without '+'; nullopt if `text` is not one.
+/// Parses a whole number, with or without a sign; nullopt if `text` is not one. Blanks are not
+/// accepted.
 std::optional<std::int32_t> ParseWhole(std::string_view text);
 
-/// Removes the first non-blank line from a text and returns it trimmed; empty at the end of the
-/// text.
+/// Removes the lines of a text up to the first non-blank one, and returns that line trimmed.
+/// Returns "" if there is no such line.
 std::string_view TakeLine(std::string_view& text);
 
 }  // namespace aquafarm::internal

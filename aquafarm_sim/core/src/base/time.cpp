@@ -9,7 +9,8 @@
 namespace aquafarm::internal {
 namespace {
 
-// Returns the days since 1970-01-01 of a date of the Gregorian calendar.
+// Returns the number of days from 1970-01-01 to a date of the Gregorian calendar, for years from 1.
+// Source: Hinnant, https://howardhinnant.github.io/date_algorithms.html (days_from_civil).
 std::int64_t DaysFromCivil(int year, int month, int day) {
   const std::int64_t y = month <= 2 ? year - 1 : year;
   const std::int64_t era = y / 400;
@@ -26,8 +27,8 @@ int DaysInMonth(int year, int month) {
   return kDays[static_cast<std::size_t>(month - 1)] + (month == 2 && IsLeap(year) ? 1 : 0);
 }
 
-// Removes up to `most` leading digits from a text and returns their value; nullopt if there are
-// fewer than `least`.
+// Removes up to `max` leading digits from a text and returns their value; nullopt if there are
+// fewer than `min` digits.
 std::optional<int> TakeDigits(std::string_view& text, std::size_t max, std::size_t min = 1) {
   std::size_t count = 0;
   int value = 0;
@@ -39,13 +40,15 @@ std::optional<int> TakeDigits(std::string_view& text, std::size_t max, std::size
   return value;
 }
 
+// Removes the first character if `any_of` contains it, and returns whether it did.
 bool Take(std::string_view& text, std::string_view any_of) {
   if (text.empty() || any_of.find(text[0]) == std::string_view::npos) return false;
   text.remove_prefix(1);
   return true;
 }
 
-// Parses a zone such as "Z", "+08:00" or "+0800" to seconds; `fallback` if the text is empty.
+// Parses a zone such as "Z", "+08:00" or "+0800" to seconds east of Greenwich. Returns `fallback`
+// if the text is empty and nullopt if it is not a zone.
 std::optional<std::int64_t> TakeZone(std::string_view text, std::int64_t fallback) {
   if (text.empty()) return fallback;
   if (text == "Z") return 0;

@@ -71,8 +71,9 @@ struct Header {
     const double limit = max + grid.cell_size * 0.501;
     if (first >= -limit && last <= limit) return;
     Fail(Has(center) ? center : corner,
-         ", cells from " + Format(first) + " to " + Format(last) + ", expected degrees in [" +
-             Format(-max) + ", " + Format(max) + "], as CELLSIZE is below 1",
+         ", so that the cells reach from " + Format(first) + " to " + Format(last) +
+             ", expected degrees in [" + Format(-max) + ", " + Format(max) +
+             "], because CELLSIZE is below 1",
          place);
   }
 };
@@ -104,7 +105,7 @@ bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
                ": unknown key, expected ncols, nrows, cellsize, xllcenter, yllcenter, "
                "xllcorner, yllcorner, xlower, ylower or nodata_value");
   }
-  if (header.Has(key)) place.Fail(key + ": is there twice");
+  if (header.Has(key)) place.Fail(key + ": got the key twice, expected it once");
   const std::string axis = key.substr(0, 4);  // XLLC or YLLC
   for (const std::string& other : {axis + "ENTER", axis + "ORNER"}) {
     if (header.Has(other)) place.Fail(key + ": appears together with " + other + ", expected one");
@@ -184,7 +185,8 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
     for (const std::string_view word : words) {
       const double value = internal::ReadNumber(word, "value", -1.0e9, 1.0e9, place);
       if (count >= wanted) {
-        place.Fail("got more than the " + std::to_string(wanted) + " values of the header");
+        place.Fail("got more values than the " + std::to_string(wanted) +
+                   " that the header states");
       }
       const auto i = static_cast<Eigen::Index>(count++);
       grid.value(rows - 1 - i / columns, i % columns) =
@@ -195,7 +197,7 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
   }
   if (count < wanted) {
     place.Fail("got " + std::to_string(count) + " values, expected the " + std::to_string(wanted) +
-               " of the header");
+               " that the header states");
   }
   return grid;
 }

@@ -70,8 +70,8 @@ std::string FaultOf(const CoastRing& ring, std::size_t& left) {
       doubles = doubles || Doubles(ring[a], ring[a + 1], ring[b], ring[b + 1]);
       if (--left > 0) continue;
       return "of " + std::to_string(lines) + " lines " + (doubles ? "overlaps itself and " : "") +
-             "was not looked through for crossings after " + std::to_string(kMaxComparisons) +
-             " comparisons of the file, nor are those behind it";
+             "was not fully checked for crossings, nor are the rings after it: the limit of " +
+             std::to_string(kMaxComparisons) + " comparisons per file is reached";
     }
   }
   return doubles ? "overlaps itself" : "";
@@ -82,7 +82,9 @@ class CoastReader {
   CoastReader(Coast& coast, ParseContext& place) : coast_(coast), place_(place) {}
 
   void ReadObject(const Json& value, const std::string& path, int depth) {
-    if (depth > kMaxNested) place_.FailValue(path, "got collections nested too deeply");
+    if (depth > kMaxNested)
+      place_.FailValue(path, "got collections nested more deeply than " +
+                                 std::to_string(kMaxNested) + " levels");
     const internal::JsonObject object(value, path, place_);
     const std::string type = object.Text({"type"});
     if (type == "FeatureCollection") return ReadList(object, "features", depth);
@@ -133,7 +135,7 @@ class CoastReader {
       place_.FailValue(path, "got " +
                                  (value.is_array() ? std::to_string(value.size()) + " points"
                                                    : std::string("no list of points")) +
-                                 ", expected a ring of at least 4, the last as the first");
+                                 ", expected a ring of at least 4, the last equal to the first");
     }
     CoastRing ring;
     for (std::size_t i = 0; i < value.size(); ++i) {
@@ -146,7 +148,10 @@ class CoastReader {
         place_.FailValue(At(path, i), "got " + internal::Quoted(point.dump()) +
                                           ", expected [longitude, latitude] in degrees");
       }
-      if (++points_ > kMaxPoints) place_.FailValue(path, "got too many points for one chart");
+      if (++points_ > kMaxPoints) {
+        place_.FailValue(path, "got more than " + std::to_string(kMaxPoints) +
+                                   " points in one chart; cut it to the area that you need");
+      }
       ring.push_back({latitude, longitude});
     }
     if (ring.front().latitude != ring.back().latitude ||
@@ -155,8 +160,8 @@ class CoastReader {
     }
     const std::string fault = FaultOf(ring, comparisons_left_);
     if (!fault.empty()) {
-      place_.WarnValue(path,
-                       "the ring " + fault + "; what it goes round an odd number of times is land");
+      place_.WarnValue(
+          path, "the ring " + fault + "; an area that it encloses an odd number of times is land");
     }
     return ring;
   }

@@ -112,7 +112,7 @@ MapImage ParsePgm(const std::string& bytes, ParseContext& place) {
     }
     image.grey.data()[i] = static_cast<std::uint8_t>(white == 255 ? value : value * 255 / white);
   }
-  if (text && header.HasMore()) place.Fail("got more pixels than its size states");
+  if (text && header.HasMore()) place.Fail("got more pixels than the stated size has");
   return image;
 }
 
@@ -160,7 +160,9 @@ MapImage ParseWithStb(const std::string& bytes, const ParseContext& place) {
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   if (width > kMaxMapSide || height > kMaxMapSide || pixels / kMaxPacking > bytes.size()) {
     place.Fail("got a size of " + std::to_string(width) + " x " + std::to_string(height) +
-               " pixels in " + std::to_string(bytes.size()) + " bytes");
+               " pixels in " + std::to_string(bytes.size()) + " bytes, expected at most " +
+               std::to_string(kMaxMapSide) + " x " + std::to_string(kMaxMapSide) + " and " +
+               std::to_string(kMaxPacking) + " pixels per byte");
   }
   const std::unique_ptr<stbi_uc, void (*)(void*)> loaded(
       stbi_load_from_memory(data, size, &width, &height, &channels, 0), &stbi_image_free);

@@ -7,18 +7,18 @@
 
 namespace aquafarm::internal {
 
-/// A greyscale image, row 0 at the top.
+/// A greyscale image [height, width], row 0 at the top.
 struct MapImage {
-  Grid<std::uint8_t> grey;   ///< mean of the colours
-  Grid<std::uint8_t> alpha;  ///< empty if every pixel is opaque
+  Grid<std::uint8_t> grey;   ///< mean of the colours, 0 black to 255 white
+  Grid<std::uint8_t> alpha;  ///< 255 is opaque; empty if the image has no alpha channel
 };
 
 /// Max width and height of an image [pixels].
 inline constexpr std::int32_t kMaxMapSide = 16384;
 
-/// Reads PGM (P2, P5), PNG and BMP; the content decides the format. The size in the header is
-/// checked before memory is allocated.
-/// @throws InputError "chart.pgm: got 12 bytes of pixels, expected 65536 x 65536 …"
+/// Reads PGM (P2, P5), PNG or BMP, as detected from the content. The size in the header is checked
+/// before memory is allocated.
+/// @throws InputError "chart.pgm:3: got 12 bytes of pixels, expected 64 x 64 of 1 byte"
 MapImage ParseMapImage(const std::string& bytes, const std::string& origin_name);
 
 }  // namespace aquafarm::internal

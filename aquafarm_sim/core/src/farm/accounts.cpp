@@ -7,7 +7,8 @@
 namespace aquafarm {
 namespace {
 
-// Returns a share in [0, 1] of an amount, in whole cents; exact for shares of 0 and 1.
+// Returns amount × share, with the share clamped to [0, 1], rounded to cents.
+// Exact for shares of 0 and 1.
 Cents Share(Cents amount, double share) {
   return std::llround(static_cast<double>(amount) * std::clamp(share, 0.0, 1.0));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forecasts that are issued during an episode.
+// Forecasts that are issued during an episode, and bulletins.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -14,6 +14,7 @@
 namespace aquafarm {
 namespace {
 
+// Returns a disaster of the farm. @throws InputError if there is no such disaster
 const Disaster& Present(const Farm& farm, std::int32_t disaster) {
   const auto count = static_cast<std::int32_t>(farm.disasters().size());
   if (disaster >= 0 && disaster < count) {
@@ -24,12 +25,13 @@ const Disaster& Present(const Farm& farm, std::int32_t disaster) {
                    "forecast_only");
 }
 
-// Checks the numbers of a forecast by the rules for a disaster with the rings of the present one.
+// Checks the numbers of a forecast with ValidateDisaster, as part of a disaster that has as many
+// rings as the current one.
 void CheckNumbers(const Disaster& disaster, const IssuedForecast& forecast) {
   DisasterSpec spec;
   spec.track = {RingsOf(disaster)};
   Waypoint& first = spec.track[0];
-  for (std::size_t k = 0; k < first.radii.size(); ++k) {  // sizes that every rule accepts
+  for (std::size_t k = 0; k < first.radii.size(); ++k) {  // radii and risks that pass every check
     first.radii[k] = static_cast<float>(k + 1);
     first.risks[k] = kWorstRisk;
     if (!first.quadrants.empty()) first.quadrants[k].fill(first.radii[k]);
@@ -42,7 +44,8 @@ void CheckNumbers(const Disaster& disaster, const IssuedForecast& forecast) {
   ValidateDisaster(spec);
 }
 
-// Returns the newest forecast of a storm, issued at a step at the latest.
+// Returns the newest forecast of a storm. If it is issued after `step`, the result is issued at
+// `step` and has the later waypoints of the track as its points.
 IssuedForecast IssuedBy(float step, const DisasterSpec& storm) {
   IssuedForecast forecast = storm.forecasts.back();
   if (forecast.step <= step) return forecast;
@@ -54,6 +57,7 @@ IssuedForecast IssuedBy(float step, const DisasterSpec& storm) {
   return forecast;
 }
 
+// Throws an error about a step of a forecast unless `fits`.
 void RequireStep(const char* what, float got, const std::string& expected, bool fits) {
   if (fits) return;
   throw InputError(std::string("forecast.") + what + ": got " + internal::Format(got) +
@@ -115,7 +119,8 @@ const Bulletin& Farm::BulletinOf(std::size_t disaster) const {
 void Farm::IssueForecast(std::int32_t id, const IssuedForecast& forecast) {
   CheckForecast(*this, id, forecast);
   const auto k = static_cast<std::size_t>(id);
-  // Earlier forecasts are not kept: all ships receive the new one with the bulletin.
+  // Earlier forecasts are dropped. No ship can still observe one of them, because in partial view a
+  // bulletin is issued now.
   forecasts_[k] = std::make_shared<const std::vector<IssuedForecast>>(1, forecast);
   if (scenario_->view.mode == ViewMode::kPartial) IssueBulletin(k);
 }

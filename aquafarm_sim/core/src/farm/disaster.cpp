@@ -10,8 +10,8 @@
 namespace aquafarm {
 namespace {
 
-// Taylor series on [0, 45] degrees, where nine terms are exact to double precision. It uses only
-// + and *, so results are bit-identical on every machine, which libm does not guarantee.
+// Taylor series on [0, 45] degrees, where nine terms are exact to double precision. It uses only +,
+// * and /, so results are bit-identical on every machine; libm does not guarantee this.
 struct SineCosine {
   double sine{};
   double cosine{};
@@ -39,8 +39,8 @@ std::array<std::array<float, 2>, 360> MakeHeadings() {
     if (within > 45) std::swap(value.sine, value.cosine);
     const auto sine = static_cast<float>(value.sine);
     const auto cosine = static_cast<float>(value.cosine);
-    // East is the sine and north the cosine of a compass bearing.
-    constexpr float kZero = 0.0F;  // avoids -0 in the table
+    // The east component is the sine of a compass bearing and the north component its cosine.
+    constexpr float kZero = 0.0F;  // 0 - x instead of -x avoids -0 in the table
     switch (quadrant) {
       case 0:
         headings[static_cast<std::size_t>(degrees)] = {sine, cosine};
@@ -59,16 +59,18 @@ std::array<std::array<float, 2>, 360> MakeHeadings() {
   return headings;
 }
 
+// Sets the displacement per step from heading and speed.
 void SetMotion(ObservableDisaster& disaster) {
   const std::array<float, 2> direction = HeadingVector(disaster.heading_deg);
   disaster.dx = direction[0] * disaster.speed;
   disaster.dy = direction[1] * disaster.speed;
 }
 
-// A ring of radius 0 is absent and gets -1, which is below every squared distance.
+// Returns the squared radius of a ring. A ring of radius 0 is absent and gets -1, so that no
+// squared distance is within it.
 float Squared(float radius) { return radius > 0.0F ? radius * radius : -1.0F; }
 
-// Sets all rings of a waypoint or spec.
+// Sets all rings to those of a waypoint or spec.
 void SetRings(ObservableDisaster& disaster, const std::vector<float>& radii,
               const std::vector<QuadrantRadii>& quadrants) {
   disaster.by_quadrant = !quadrants.empty();
@@ -81,8 +83,8 @@ void SetRings(ObservableDisaster& disaster, const std::vector<float>& radii,
   }
 }
 
-// Sets the grade, and the heading and speed for displays and bulletins, on the leg after a
-// waypoint.
+// Sets the state that is constant on the leg after a waypoint: the index of the waypoint, grade and
+// displacement, and for displays and bulletins the speed and the nearest whole heading.
 void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
               std::size_t waypoint) {
   disaster.waypoint = static_cast<std::int32_t>(waypoint);
@@ -102,8 +104,11 @@ void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
   }
 }
 
-// Reflects a position outside [low, high], and the heading, at the border. A disaster that was set
-// outside moves in on its heading; if it moves away, it turns and stays for this step.
+// Reflects one coordinate that is outside [low, high], and the heading, at the border. If the
+// coordinate was already outside before the step, as after SetDisaster, a disaster that does not
+// move farther away continues. One that moves away stays where it was in this step, and its heading
+// is reflected.
+// @param mirror reflected heading plus heading [degrees]: 360 for x, 180 for y
 void Bounce(float& position, float before, float low, float high, std::int32_t mirror,
             Disaster& disaster) {
   const bool below = position < low;
@@ -118,12 +123,14 @@ void Bounce(float& position, float before, float low, float high, std::int32_t m
   SetMotion(disaster);
 }
 
+// Returns a coordinate; one outside [low, high] enters again at the other border.
 float Wrapped(float position, float low, float high) {
   if (position < low) return std::min(position + (high - low), high);
   if (position > high) return std::max(position - (high - low), low);
   return position;
 }
 
+// Applies the border to a disaster that has moved.
 void MeetBorder(Disaster& disaster, float x_before, float y_before, std::int32_t width,
                 std::int32_t height) {
   if (disaster.border == Border::kLeave) return;
@@ -142,6 +149,7 @@ void MeetBorder(Disaster& disaster, float x_before, float y_before, std::int32_t
   if (is_outside(disaster.y, high_y)) Bounce(disaster.y, y_before, low, high_y, 180, disaster);
 }
 
+// Turns a disaster by 45 degrees to one side with its turn probability.
 void Turn(Disaster& disaster, const StreamKey& turn_key, std::int32_t step) {
   if (disaster.turn_threshold == 0) return;
   const auto count = static_cast<std::uint32_t>(step);
@@ -218,7 +226,7 @@ Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t 
   disaster.steps_left = spec.duration;
   RandomStream rng({seed, episode, RngStream::kDisasterSpawn, static_cast<std::uint32_t>(id)});
   const float margin = disaster.margin;
-  // Always drawn, so that setting one field of a spec does not change the other draws.
+  // Always drawn, so that a spec that sets one of these values does not change the draws of others.
   const float x = rng.Uniform(-0.5F - margin, static_cast<float>(width) - 0.5F + margin);
   const float y = rng.Uniform(-0.5F - margin, static_cast<float>(height) - 0.5F + margin);
   const auto heading = static_cast<std::int32_t>(rng.Below(360));
@@ -298,7 +306,8 @@ void FillRisks(const Scenario& scenario, const std::vector<Disaster>& disasters,
     const auto& factors = scenario.damage.kinds[kind];
     for (Eigen::Index y = 0; y < risk.rows(); ++y) {
       for (Eigen::Index x = 0; x < risk.cols(); ++x) {
-        // Most cells are calm. Elsewhere the risk of a single disaster is known already.
+        // Shortcuts: most cells have no risk. With a single disaster and no sea, the risk only has
+        // to be multiplied by one factor.
         const Cell cell{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
         const float worst = risk(y, x);
         const bool is_alone = disasters.size() == 1 && !scenario.seas;

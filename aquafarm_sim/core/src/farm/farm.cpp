@@ -16,8 +16,8 @@ namespace {
 
 float Clamped(float health) { return health > 0.0F ? health : 0.0F; }
 
-// Returns whether a ship's action triggered a reward term other than the step reward, even if the
-// term is 0.
+// Returns whether the action of a ship triggered a reward term that replaces the step reward, even
+// if that term is 0.
 bool TriggersReward(const Ship& ship) {
   switch (ship.outcome) {
     case Outcome::kOk:
@@ -73,7 +73,7 @@ Farm::Farm(std::shared_ptr<const Scenario> scenario, std::shared_ptr<const Layou
 void Farm::ResetTracks() {
   tracks_.clear();
   for (const DisasterSpec& spec : scenario_->disasters) {
-    // Aliasing pointer: the scenario owns the waypoints, and the pointer keeps the scenario alive.
+    // The aliasing pointer shares ownership of the scenario, which contains the waypoints.
     tracks_.emplace_back(scenario_, &spec.track);
   }
   tracks_changed_ = false;
@@ -93,7 +93,7 @@ void Farm::DrawStorms() {
   }
 }
 
-// Makes the track of a drawn storm one that only this farm owns, and returns it.
+// Gives a disaster a track that only this farm owns and returns it, with outdated waypoints.
 std::vector<Waypoint>& Farm::DrawnTrack(std::size_t id) {
   tracks_[id].reset();
   std::shared_ptr<std::vector<Waypoint>>& track = drawn_->tracks[id];
@@ -170,12 +170,12 @@ void Farm::IndexShips() {
 void Farm::Prefetch() const {
   constexpr std::size_t kLine = 64;
   const auto load = [](const void* from, std::size_t size) {
-    if (from == nullptr) return;  // such as a farm without disasters
+    if (from == nullptr) return;  // an empty list, for example without disasters
     for (std::size_t at = 0; at < size; at += kLine) {
       __builtin_prefetch(static_cast<const char*>(from) + at, /*will be written*/ 1);
     }
   };
-  // The first of each: most farms have one ship and one disaster.
+  // Only the first object of each list, because most farms have one ship and one disaster.
   load(ships_.data(), sizeof(Ship));
   load(devices_.data(), sizeof(Device));
   load(disasters_.data(), sizeof(Disaster));
@@ -249,7 +249,8 @@ void Farm::Act(std::int32_t id, Action action) {
   }
 }
 
-// A moving ship is never on its destination cell, so its own entry needs no special case.
+// Returns whether an active ship is in the cell with a linear index. The caller only passes cells
+// that its own ship does not occupy.
 bool Farm::Occupied(std::int32_t index) const {
   std::int32_t found = 0;
   for (const std::int32_t other : ship_index_) found += other == index ? 1 : 0;
@@ -302,7 +303,7 @@ void Farm::Move(Ship& ship, std::int32_t id, Action action) {
     return;
   }
   ship.outcome = Outcome::kOk;
-  ship.distance = move_km_[static_cast<std::size_t>(std::abs(by.x * by.y))];  // without a branch
+  ship.distance = move_km_[static_cast<std::size_t>(std::abs(by.x * by.y))];  // [1] is diagonal
   ship.episode_distance += ship.distance;
   record_.distance += ship.distance;
   ship.cell = to;
@@ -310,8 +311,8 @@ void Farm::Move(Ship& ship, std::int32_t id, Action action) {
   if (ship.own_device != kNone) devices_[static_cast<std::size_t>(ship.own_device)].cell = to;
 }
 
-// A crashing ship does nothing else in its step, so the loss can be applied before the damage
-// phase.
+// The loss is applied before the damage phase. The order does not matter, because a ship that
+// crashes does nothing else in its step.
 void Farm::CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits) {
   if (ship.aboard == 0 && ship.own_device == kNone) return;
   const float probability = scenario_->damage.crash_probability;
@@ -388,7 +389,7 @@ void Farm::DropOff(Ship& ship, std::int32_t id) {
   ship.terms.drop_off = scenario_->rewards.drop_off + value;
 }
 
-// Devices are exposed to the risk at their current cell, aboard a ship or not.
+// Damages every device that is not delivered by the risk at its current cell, aboard or not.
 void Farm::Damage() {
   const float exposure = scenario_->damage.exposure_damage;
   if (exposure == 0.0F) return;
@@ -404,8 +405,8 @@ void Farm::Consume(const EnergySpec& energy) {
   for (Ship& ship : ships_) {
     if (ship.outcome == Outcome::kOutOfPlay) continue;
     const bool is_ship = ship.own_device == kNone;
-    // A ship moves with the devices that it has aboard after its action: a pickup and a drop-off
-    // cover no distance.
+    // Uses the devices aboard after the action. Pickups and drop-offs cover no distance, so this is
+    // also the number during a move.
     ship.energy = EnergyOf(is_ship ? energy.ships : energy.self_propelled, ship.distance,
                            ship.aboard, RiskAt(ship.cell));
     if (energy.weight > 0.0) ship.terms.energy = static_cast<float>(-energy.weight * ship.energy);
@@ -448,7 +449,8 @@ void Farm::Finish() {
   }
 }
 
-// A ship is moored if it is in a port at the end of a step in which it did not move.
+// Counts the rescue ships that are not moored in this step. A ship is moored if it is in a port at
+// the end of a step in which it did not move.
 void Farm::CountShipSteps() {
   for (const Ship& ship : ships_) {
     const bool moved = ship.outcome == Outcome::kOk && ship.action < Action::kPickup;

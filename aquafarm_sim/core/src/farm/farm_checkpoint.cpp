@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hashing, saving and loading of an episode in progress, and disasters that arrive during it.
+// Hashes, saved states and copies of an episode in progress, and disasters that arrive during it.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -72,7 +72,7 @@ void HashTrack(const std::vector<Waypoint>& track, Hasher& hasher) {
   }
 }
 
-// A disaster without forecasts adds nothing, so that hashes of older versions stay valid.
+// Adds nothing for a disaster without forecasts, so that hashes of older versions stay valid.
 void HashForecasts(const std::vector<Forecasts>& forecasts, Hasher& hasher) {
   for (std::size_t id = 0; id < forecasts.size(); ++id) {
     if (forecasts[id] == nullptr) continue;
@@ -99,7 +99,7 @@ void RequireSame(const char* what, const T& got, const T& expected) {
   throw InputError(text.str());
 }
 
-// Reads the ships of a state. @param ships those at the start of the episode
+// Reads the ships of a saved state. @param ships the ships at the start of the episode; replaced
 void ReadShips(const json& list, std::vector<Ship>& ships) {
   RequireSame("ships", list.size(), ships.size());
   for (std::size_t i = 0; i < ships.size(); ++i) {
@@ -109,7 +109,8 @@ void ReadShips(const json& list, std::vector<Ship>& ships) {
   }
 }
 
-// Reads the devices of a state. @param devices those at the start of the episode
+// Reads the devices of a saved state. @param devices the devices at the start of the episode;
+// replaced
 // @returns the number of devices not yet delivered
 std::int32_t ReadDevices(const json& list, std::vector<Device>& devices) {
   RequireSame("devices", list.size(), devices.size());
@@ -165,7 +166,7 @@ void Farm::HashState(Hasher& hasher) const {
     hasher.Add(ship.own_device, ship.aboard);
     hasher.Add(ship.reward, ship.episode_return);
     hasher.Add(Int(ship.outcome), ship.active ? 1 : 0);
-    if (scenario_->energy) {  // part of the features
+    if (scenario_->energy) {  // features contain the energy
       hasher.Add(static_cast<float>(ship.energy), static_cast<float>(ship.episode_energy));
     }
   }
@@ -177,7 +178,7 @@ void Farm::HashState(Hasher& hasher) const {
   for (std::size_t id = 0; id < disasters_.size(); ++id) {
     HashDisaster(disasters_[id], BulletinOf(id), hasher);
   }
-  // Else the tracks are those of the scenario.
+  // In other cases the tracks are those of the scenario, whose hash covers them.
   if (tracks_changed_ || drawn_ != nullptr) {
     for (const Track& track : tracks_) HashTrack(*track, hasher);
   }
@@ -289,8 +290,8 @@ void Farm::CopyStateFrom(const Farm& from) {
   remaining_ = from.remaining_;
 }
 
-// What `from` has of its scenario becomes that of this farm's scenario, which may be another
-// object.
+// Copies the tracks of `from`. A track that points into the scenario of `from` is replaced by the
+// same track of this farm's scenario, because the scenarios may be two objects.
 void Farm::CopyTracksFrom(const Farm& from) {
   const std::vector<DisasterSpec>& specs = scenario_->disasters;
   tracks_ = from.tracks_;
@@ -307,7 +308,8 @@ void Farm::CopyTracksFrom(const Farm& from) {
   }
 }
 
-// The hash detects damaged bytes. Forged bytes must not cause out-of-bounds access either.
+// Checks a loaded state. The hash detects damaged bytes; these checks prevent forged bytes from
+// causing access out of bounds.
 void Farm::CheckConsistent() const {
   const auto on_map = [this](Cell cell) {
     return cell.x >= 0 && cell.x < scenario_->width && cell.y >= 0 && cell.y < scenario_->height;
@@ -354,7 +356,8 @@ void Farm::CheckConsistent() const {
   if (!fits) throw InputError("state: inconsistent; use another saved state");
 }
 
-// Keeps the scenario's own track if the tracks are equal, so that its forecasts stay available.
+// Returns a track as a shared pointer. If it equals the track of the scenario, the pointer is that
+// of the scenario, so that NewestForecast still finds the forecasts of the scenario.
 Track Farm::Owned(std::size_t id, std::vector<Waypoint> track) const {
   const auto& specs = scenario_->disasters;
   const bool drawn = id < specs.size() && specs[id].storms;
@@ -374,11 +377,11 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
   ValidateDisaster(spec);
   const bool added = id == count;
   if (added && !spec.start && spec.track.empty()) {
-    throw InputError("start: a new disaster needs a start or a track");
+    throw InputError("start: got nothing, expected a start or a track for a new disaster");
   }
   if (spec.storms) {
     throw InputError(
-        "storms: got an archive, expected a disaster of its own track; storms are drawn "
+        "storms: got an archive, expected a disaster with a track; storms are drawn "
         "by the scenario alone");
   }
   Disaster disaster =
@@ -398,12 +401,13 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
       disaster.x = present.x;
       disaster.y = present.y;
     }
-    // Ring sizes of the replaced disaster do not apply to the new one.
+    // The rings in the old bulletin belong to the replaced disaster.
     if (!bulletins_.empty()) CopyRings(disaster, bulletins_[k]);
     disasters_[k] = disaster;
     tracks_[k] = std::move(track);
   }
-  // Turn draws come in blocks of four steps; the current block is not drawn yet.
+  // Turn draws come in blocks of four steps, and a new disaster does not have the current block
+  // yet.
   Disaster& placed = disasters_[k];
   placed.draws = Draw(
       {record_.seed, record_.episode, RngStream::kDisasterTurn, static_cast<std::uint32_t>(id)},

@@ -7,7 +7,7 @@
 namespace aquafarm::internal {
 namespace {
 
-// Fills the rings by quadrant and those of the last bulletin.
+// Reads the rings by quadrant and the rings of the last bulletin.
 void ReadRings(Reader& a, SavedDisaster& d) {
   d.by_quadrant = a.state.contains("quadrants");
   if (d.by_quadrant) {
@@ -22,12 +22,12 @@ void ReadRings(Reader& a, SavedDisaster& d) {
     a.Fields("bulletin_rings", d.bulletin.radius, d.bulletin.quadrant);
   } else if (RingsMayHaveChanged(d, d.bulletin)) {
     throw InputError(
-        "state: disaster: bulletin_rings: missing, expected the rings as the last bulletin gave "
-        "them, which states saved by older versions lack");
+        "state: disaster: bulletin_rings: missing, expected the rings of the last bulletin; "
+        "states saved by older versions lack them: use another saved state");
   }
 }
 
-// Forged bytes must not cause out-of-bounds access or an endless search.
+// Rejects values from forged bytes that would cause access out of bounds or endless loops.
 void CheckDisaster(const SavedDisaster& d) {
   const auto is_heading = [](std::int32_t degrees) { return degrees >= 0 && degrees <= 359; };
   if (!is_heading(d.heading_deg)) throw InputError("state: heading out of range");

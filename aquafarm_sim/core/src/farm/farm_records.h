@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The records of a saved episode: the fields of each, listed once for writing and reading.
+// The records of a saved episode. The fields of each record are listed once, for writing and for
+// reading.
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -16,7 +17,7 @@
 
 namespace aquafarm {
 
-// A disaster with its last bulletin, as in a saved state.
+// A disaster with its last bulletin, as one record of a saved state.
 struct SavedDisaster : Disaster {
   Bulletin bulletin;
 };
@@ -32,12 +33,14 @@ std::int32_t Int(Enum value) {
   return static_cast<std::int32_t>(value);
 }
 
-// Returns whether the rings may have changed since a bulletin was issued.
+// Returns whether the rings may have grown since a bulletin was issued, so that its rings must be
+// stored. Rings of a track need not be stored, because they follow from the waypoints.
 inline bool RingsMayHaveChanged(const Disaster& disaster, const Bulletin& bulletin) {
   return disaster.radius_growth != 0.0F && bulletin.step != kNone;
 }
 
-// Archives that write a record to JSON and read it back. Each Visit lists the fields of one record.
+// The two archives: Writer writes a record to JSON, and Reader reads it back.
+// FieldsOf<Record>::Visit lists the fields of a record for both.
 
 class Writer {
  public:
@@ -46,12 +49,13 @@ class Writer {
   void Field(const char* key, const T& value) {
     state[key] = ToJson(value);
   }
-  /// Several values under one key.
+  /// Writes several values as a list under one key.
   template <typename... T>
   void Fields(const char* key, const T&... values) {
     state[key] = json::array({ToJson(values)...});
   }
-  /// A field that states of older versions lack.
+  /// Writes a field that saved states of older versions lack. If it is missing, Reader keeps the
+  /// value.
   template <typename T>
   void Added(const char* key, const T& value) {
     Field(key, value);
@@ -117,7 +121,7 @@ class Reader {
   static int CountOf(EndReason) { return kEndReasonCount; }
 };
 
-// The fields of a record in saved states, for both archives.
+// Lists the fields of a record in saved states, for both archives.
 template <typename Record>
 struct FieldsOf;
 
@@ -145,7 +149,7 @@ struct FieldsOf<Ship> {
     a.Field("outcome", ship.outcome);
     std::array<float, kRewardTermCount> t = Numbers(ship.terms);
     a.Fields("terms", t[0], t[1], t[2], t[3], t[4], t[5], t[6]);
-    for (std::size_t i = 7; i < t.size(); ++i) {  // terms that were added later
+    for (std::size_t i = 7; i < t.size(); ++i) {  // terms added after version 0.1.0
       a.Added((std::string(kRewardTermNames[i]) + "_term").c_str(), t[i]);
     }
     if constexpr (Archive::kReads) ship.terms = TermsOf(t);
@@ -178,7 +182,7 @@ struct FieldsOf<EpisodeRecord> {
   static void Visit(Archive& a, R& record) {
     VisitEpisodeFields(
         [&a](const EpisodeField& field, auto& value) {
-          // The fields of version 0.1.0 are named like their columns.
+          // Fields of version 0.1.0 have their column names as keys.
           field.is_added ? a.Added(field.name, value) : a.Field(field.column, value);
         },
         record);
@@ -186,8 +190,8 @@ struct FieldsOf<EpisodeRecord> {
   }
 };
 
-// The radii of quadrants and those of the last bulletin are written only where they differ
-// from what the other fields give.
+// The radii by quadrant are written only for a disaster that has them. The rings of the last
+// bulletin are written only if they may differ from the current rings. DisasterFrom reads both.
 template <>
 struct FieldsOf<SavedDisaster> {
   template <typename Archive, typename D>
@@ -219,7 +223,9 @@ struct FieldsOf<SavedDisaster> {
   }
 };
 
-// Reads a disaster. @throws InputError if a value is out of range
+// Reads a disaster.
+// @throws InputError if a value is out of range
+// @throws json::exception if a field is missing or has another type
 SavedDisaster DisasterFrom(const json& j);
 
 json TrackToJson(const std::vector<Waypoint>& track);

@@ -23,7 +23,7 @@ std::string RenderText(const Farm& farm) {
       farm.over() ? "  ended: " + std::string(ToString(record.reason)) : std::string();
   std::string text = scenario.name + numbers + reason + '\n';
   const std::size_t start = text.size();
-  const auto at = [&](Cell cell) -> char& {  // each row ends with a line feed
+  const auto at = [&](Cell cell) -> char& {  // + 1: each row ends with a line feed
     const std::int32_t row = scenario.height - 1 - cell.y;
     return text[start + static_cast<std::size_t>(row * (scenario.width + 1) + cell.x)];
   };

@@ -12,7 +12,8 @@ const std::vector<Waypoint>& TrackOf(const Farm& farm, std::int32_t disaster) {
   return *farm.tracks()[static_cast<std::size_t>(disaster)];
 }
 
-// Returns the last forecast of a list that was issued by a step; nullptr if there is none.
+// Returns the last forecast of a list that was issued at or before a step; nullptr if there is
+// none.
 const IssuedForecast* LastIssued(const std::vector<IssuedForecast>& list, float step) {
   if (list.empty()) return nullptr;  // the common case
   const auto next =
@@ -21,7 +22,7 @@ const IssuedForecast* LastIssued(const std::vector<IssuedForecast>& list, float 
   return next == list.begin() ? nullptr : &*(next - 1);
 }
 
-// Returns the index of the first point after a step, or the number of points.
+// Returns the index of the first point after a step, or the number of points if there is none.
 template <typename Points>
 std::size_t After(float step, const Points& points) {
   const auto next = std::upper_bound(points.begin(), points.end(), step,
@@ -29,8 +30,8 @@ std::size_t After(float step, const Points& points) {
   return static_cast<std::size_t>(next - points.begin());
 }
 
-// Returns the true state at a step. Before the first waypoint the disaster is at the first one,
-// after the last waypoint at the last one.
+// Returns the true state at a step. Before the first waypoint it is that of the first one, and
+// after the last waypoint that of the last one.
 Waypoint TruthAt(const std::vector<Waypoint>& track, float step) {
   const std::size_t next = After(step, track);
   Waypoint now = track[next == 0 ? 0 : next - 1];
@@ -52,8 +53,8 @@ Waypoint TruthAt(const std::vector<Waypoint>& track, float step) {
   return now;
 }
 
-// Returns the position that a forecast of step `issued` starts from. A disaster without a track has
-// only its present state and its last bulletin.
+// Returns the position at which a forecast of step `issued` starts. Without a track, earlier
+// positions are not stored, so it is the current position or that of the last bulletin.
 std::array<float, 2> PositionAt(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
   const std::vector<Waypoint>& track = TrackOf(farm, disaster);
   if (track.empty()) {
@@ -71,8 +72,8 @@ std::array<float, 2> PositionAt(const Farm& farm, std::int32_t disaster, std::in
   return {from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part};
 }
 
-// Returns the displacement per step that is known at a step: that of the true track then, else that
-// of the present or of the last bulletin.
+// Returns the displacement per step that is known at step `issued`. It is that of the true track.
+// Without a track, it is the current one or that of the last bulletin.
 std::array<float, 2> MotionAt(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
   const std::vector<Waypoint>& track = TrackOf(farm, disaster);
   if (track.empty()) {
@@ -89,7 +90,7 @@ std::array<float, 2> MotionAt(const Farm& farm, std::int32_t disaster, std::int3
   return {(to.x - from.x) / (to.step - from.step), (to.y - from.y) / (to.step - from.step)};
 }
 
-// Adds to every radius, as GrowRings does.
+// Returns a waypoint with `by` cells added to every radius, as GrowRings does.
 Waypoint Grown(Waypoint point, float by) {
   for (float& radius : point.radii) radius = std::max(0.0F, radius + by);
   for (QuadrantRadii& radii : point.quadrants) {
@@ -98,8 +99,8 @@ Waypoint Grown(Waypoint point, float by) {
   return point;
 }
 
-// One forecast. At the step of issue it equals the truth. After it, it is the issued forecast or,
-// without one, the displaced true track.
+// One forecast, as of step `issued`. It starts at the position of PositionAt. After that step it is
+// the newest forecast of an authority, or if there is none, the true track displaced by the error.
 class Forecast {
  public:
   Forecast(const Farm& farm, std::int32_t disaster, std::int32_t issued)
@@ -124,11 +125,11 @@ class Forecast {
     if (newest_ == nullptr) return {from.x, from.y};
     const float until = std::min(step, EndAfter(from.step));
     if (next >= 2) return On(Point(next - 2), from, until);
-    const float beyond = until - from.step;  // a single point has no last leg
+    const float beyond = until - from.step;  // only one point: no last leg to extrapolate
     return {from.x + beyond * motion_[0], from.y + beyond * motion_[1]};
   }
 
-  // Returns the forecast as a track: with its own rings if it has some, else with the true ones.
+  // Returns the forecast as a track, with the rings of StateAt.
   std::vector<Waypoint> AsTrack() const {
     std::vector<Waypoint> track;
     for (const float step : Steps()) {
@@ -152,7 +153,8 @@ class Forecast {
   bool FollowsTrueRings() const { return !HasOwnRings() && !track_.empty(); }
   const Disaster& Present() const { return farm_.disasters()[static_cast<std::size_t>(disaster_)]; }
   // Returns the step until which a forecast is extrapolated beyond its last point: the end of the
-  // true track or of the disaster.
+  // true track or, without a track, of the disaster. It is not before the last point.
+  // @param last step of the last point
   float EndAfter(float last) const {
     const float end =
         track_.empty() ? static_cast<float>(farm_.step()) + static_cast<float>(Present().steps_left)
@@ -160,7 +162,7 @@ class Forecast {
     return std::max(end, last);
   }
 
-  // Returns the steps from its issue on at which the track changes.
+  // Returns the waypoint steps of AsTrack: the step of issue, later points, and the end.
   std::vector<float> Steps() const {
     std::vector<float> steps{issued_};
     for (std::size_t i = After(issued_, track_); FollowsTrueRings() && i < track_.size(); ++i) {
@@ -175,13 +177,14 @@ class Forecast {
     return steps;
   }
 
-  // Returns grade and rings at one of Steps().
+  // Returns grade and rings at one of Steps(): those of the forecast, if it has rings, else the
+  // true ones.
   Waypoint StateAt(float step) const {
     if (FollowsTrueRings()) return TruthAt(track_, step);
     const float growth = track_.empty() ? Present().radius_growth : 0.0F;
     if (step > issued_ && HasOwnRings()) {
       const Waypoint& last = newest_->points[IndexAfter(step) - 1];
-      // It is not known that a disaster shrinks after its forecast.
+      // A forecast does not report that a disaster shrinks after its last point.
       return Grown(last, std::max(0.0F, growth) * (step - last.step));
     }
     if (!track_.empty()) return TruthAt(track_, issued_);
@@ -206,16 +209,16 @@ class Forecast {
   const Farm& farm_;
   std::int32_t disaster_;
   const std::vector<Waypoint>& track_;
-  const IssuedForecast* newest_;  // null: uses the displaced true track
+  const IssuedForecast* newest_;  // null: the displaced true track applies
   float issued_;
-  std::size_t first_;  // index of the first future point
+  std::size_t first_;  // index of the first point after the step of issue
   Place now_;
   std::array<float, 2> motion_{};  // known at the step of issue [cells/step]
   std::array<float, 2> error_{};
 };
 
-// Returns the sum of four draws from [0, 1) minus its mean. It is approximately normal and
-// bit-identical on every machine.
+// Returns the sum of four numbers that are uniform in [0, 1), minus the mean of that sum. It is
+// approximately normal and bit-identical on every machine.
 float NearlyNormal(const std::array<std::uint32_t, 4>& draws) {
   return ToUnit(draws[0]) + ToUnit(draws[1]) + ToUnit(draws[2]) + ToUnit(draws[3]) - 2.0F;
 }
@@ -235,7 +238,7 @@ float MeanForecastError(const Scenario& scenario, float lead) {
 
 std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episode,
                                          std::int32_t disaster) {
-  // 1 / mean length of a vector of two such sums; verified by a test.
+  // 1 / mean length of a vector whose two components are NearlyNormal; verified by a test.
   constexpr float kScale = 1.3697F;
   const StreamKey key{seed, episode, RngStream::kForecast, static_cast<std::uint32_t>(disaster)};
   return {kScale * NearlyNormal(Draw(key, 0)), kScale * NearlyNormal(Draw(key, 1))};

@@ -12,7 +12,8 @@ namespace aquafarm {
 namespace {
 
 constexpr std::uint32_t kMaxTries = 100;
-// Separate streams: the draws of rocks do not affect those of ports and devices.
+// Ports, devices and rocks have separate random streams, so that the draws of one part do not
+// affect those of another.
 enum Part : std::uint32_t { kPortPart, kDevicePart, kRockPart, kPartCount };
 static_assert(kMaxTries * kPartCount < (1U << 24U), "RandomStream streams");
 
@@ -21,8 +22,9 @@ constexpr const char* kRocksKey = "layout.rocks.count";
 constexpr const char* kRockCellsKey = "layout.rocks.cells";
 constexpr const char* kPortsKey = "layout.ports.count";
 constexpr const char* kDevicesKey = "layout.devices.count";
-constexpr std::int32_t kLongestRow = 8;  // [devices]
+constexpr std::int32_t kLongestRow = 8;  // max number of devices in a row
 
+// Returns the value of Layout::obstacle for a crash reward.
 std::uint8_t ObstacleLevel(float reward) {
   return static_cast<std::uint8_t>(255.0F * std::min(1.0F, -reward / 20.0F) + 0.5F);
 }
@@ -36,8 +38,8 @@ std::int32_t CeilSqrt(std::int64_t value) {
 
 std::int32_t CeilDiv(std::int32_t a, std::int32_t b) { return (a + b - 1) / b; }
 
-// Returns the middle of part i of `parts` equal parts of a side, with a random offset of up to a
-// quarter of a part.
+// Divides a side into `parts` equal parts. Returns the middle of part i plus a random offset of up
+// to a quarter of a part.
 std::int32_t NearMiddle(RandomStream& rng, std::int32_t i, std::int32_t parts, std::int32_t side) {
   const std::int32_t middle = (2 * i + 1) * side / (2 * parts);
   const std::int32_t slack = side / (4 * parts);
@@ -69,7 +71,8 @@ void LayoutGenerator::Generate(std::uint64_t seed, std::uint64_t episode, Layout
                    std::to_string(scenario_.width) + " x " + std::to_string(scenario_.height) +
                    " cells with every device and port connected by water in " +
                    std::to_string(kMaxTries) + " tries (seed " + std::to_string(seed) +
-                   ", episode " + std::to_string(episode) + ")");
+                   ", episode " + std::to_string(episode) +
+                   "); use fewer objects or a larger grid");
 }
 
 bool LayoutGenerator::TryPlace(std::uint64_t seed, std::uint64_t episode, std::uint32_t attempt,
@@ -134,7 +137,7 @@ void LayoutGenerator::PlaceIslands(Layout& layout) const {
   }
 }
 
-// Places rocks without their rewards; DrawRocks assigns them.
+// Places the objects with cells in the scenario. DrawRocks sets the rewards of the rocks later.
 void LayoutGenerator::PlaceExplicit(Layout& layout) const {
   for (const Cell cell : scenario_.ports.cells) AddPort(cell, layout);
   for (const Cell cell : scenario_.rocks.cells) layout.cells(cell.y, cell.x) |= kRockBit;
@@ -223,7 +226,7 @@ bool LayoutGenerator::DrawRocks(RandomStream& rng, Layout& layout) {
 
 void LayoutGenerator::Spread(RandomStream& rng, Layout& layout) {
   const std::int32_t count = scenario_.devices.count;
-  // Parts are approximately square: rows² = count · height / width.
+  // The number of rows makes parts about square: rows² = count · height / width.
   const std::int32_t rows = std::min({count, scenario_.height,
                                       std::max(1, CeilSqrt(static_cast<std::int64_t>(count) *
                                                            scenario_.height / scenario_.width))});
@@ -302,7 +305,8 @@ Cell LayoutGenerator::NearestFree(const Layout& layout, Cell wanted) const {
     for (std::int32_t dy = -ring; dy <= ring; ++dy) {
       const std::int32_t y = wanted.y + dy;
       if (y < 0 || y >= scenario_.height) continue;
-      // At the top and bottom of the ring the complete row, elsewhere only its two ends.
+      // The first and last rows of the ring are searched completely, the other rows only at both
+      // ends.
       const std::int32_t stride = dy == -ring || dy == ring ? 1 : 2 * ring;
       for (std::int32_t dx = -ring; dx <= ring; dx += stride) {
         const std::int32_t x = wanted.x + dx;

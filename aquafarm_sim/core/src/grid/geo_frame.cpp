@@ -20,7 +20,7 @@ bool GeoFrame::Faces(GeoPoint point) const {
   double north = 0.0;
   double up = 0.0;
   plane.Forward(point.latitude, point.longitude, 0.0, east, north, up);
-  constexpr double kHalfRadius_m = 6.371e6 / 2.0;  // 1 - cos(60 degrees) = 1/2
+  constexpr double kHalfRadius_m = 6.371e6 / 2.0;  // Earth: 6371 km; 1 - cos(60 degrees) = 1/2
   return up > -kHalfRadius_m;
 }
 

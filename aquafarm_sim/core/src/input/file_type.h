@@ -6,10 +6,11 @@
 
 namespace aquafarm::internal {
 
+/// Kinds of input files.
 enum class FileKind : std::uint8_t {
   kUnknown,
   kTracks,   ///< storm tracks in any format
-  kNotices,  ///< warnings or anchorage forecasts
+  kNotices,  ///< warnings of a weather service, or anchorage forecasts
   kGeoJson,
   kAsciiGrid,
   kMapYaml,
@@ -17,18 +18,18 @@ enum class FileKind : std::uint8_t {
   kNetcdf,
 };
 
-/// Type of a file, detected from its content.
+/// Kind and description of a file.
 struct DetectedFile {
   FileKind kind{};
-  std::string words;  ///< description: "a netCDF file", "tracks of storms (CMA best track)", or
-                      ///< the quoted first line
+  std::string words;  ///< description, such as "a netCDF file"; for an unknown text, its first
+                      ///< line in quotes
 };
 
-/// Detects the type of a file from its content.
+/// Detects the kind of a file. @param text content of the file, or its beginning
 DetectedFile DetectFileType(const std::string& text);
 
-/// Returns the kind of chart that the extension of a file name indicates. Used if the content is
-/// not recognized, so that the reader of that kind reports the error.
+/// Returns the kind of chart that the extension of a file name suggests. The ranch builder uses it
+/// for content of unknown kind, so that the reader of that kind reports the error.
 FileKind KindByName(const std::string& path);
 
 }  // namespace aquafarm::internal

@@ -346,7 +346,7 @@ const Json* JsonObject::TryList(Keys keys) const {
 std::int64_t JsonObject::NeedTime(Keys keys, std::int64_t zone_s) const {
   return OfFix([&] {
     const std::optional<std::int64_t> time = ParseDateTime(Text(keys), zone_s);
-    if (!time) Fail(keys, Find(keys), "a time as 2021-07-25T14:00:00");
+    if (!time) Fail(keys, Find(keys), "a time such as 2021-07-25T14:00:00");
     return *time;
   });
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// JSON as found in bulletins. The text may have a byte-order mark or a Markdown fence, or be the
-/// value of a JavaScript variable (`let x = …;`, after comments). Numbers may be numbers or text. A
-/// missing value may be null, "", "null" or an absent key.
+/// JSON as found in bulletins. The text may start with a byte order mark, may be inside a Markdown
+/// fence, or may be the value of a JavaScript variable (`let x = …;`, after comments). A number may
+/// be written as a string. A missing value is an absent key, null, a blank string or "null".
 
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -17,28 +17,29 @@
 
 namespace aquafarm::internal {
 
-/// Returns whether a text starts with `let x = …`, `var x = …` or `const x = …`.
+/// Returns whether a text starts with `let`, `var` or `const` and a blank, and contains '='.
 bool IsAssignment(std::string_view text);
 
-/// Removes byte-order mark, Markdown fence and JavaScript from a JSON text. Line numbers stay the
-/// same.
+/// Replaces the byte order mark, the Markdown fence and the JavaScript around a JSON text by
+/// blanks. Line numbers stay the same.
 std::string CleanJson(const std::string& text);
 
-/// Parses JSON. @throws InputError "file:line: invalid JSON: …", also for a duplicate key in
-/// an object
+/// Parses JSON.
+/// @throws InputError "file:line: invalid JSON: …"; also for a key that occurs twice in an object,
+///   more than 64 nested levels, or a number that a double cannot hold
 nlohmann::json ParseJson(const std::string& text, ParseContext& place);
 
-/// Returns whether a value is missing: null, a blank text, the text "null", or an object that
-/// contains only such values.
+/// Returns whether a value is missing: null, a blank string, "null", or an object whose values are
+/// all null, blank or "null".
 bool IsBlank(const nlohmann::json& value);
 
-/// Returns the line on which the value of a path such as "[0].points[3].lat" ends, or on which it
-/// begins if it is a list or an object. Returns the line of the nearest existing parent if there is
-/// no such value.
+/// Returns the line of the value at a path such as "[0].points[3].lat": the line on which an object
+/// or a list begins, or on which another value ends. If the path has no value, returns the line of
+/// its nearest existing parent.
 std::int32_t LineOfJson(const std::string& text, const std::string& path);
 
 /// A JSON object with its path. Each look-up accepts several spellings of a key and uses the first
-/// one that has a value.
+/// spelling that has a value.
 class JsonObject {
  public:
   /// @throws InputError if `value` is not an object
@@ -47,27 +48,33 @@ class JsonObject {
   using Keys = std::initializer_list<const char*>;
   /// Returns the value, or nullptr if it is missing.
   const nlohmann::json* Find(Keys keys) const;
-  /// Returns the spelling used in this object: the key with a value, else a key without a value,
-  /// else the first spelling.
+  /// Returns the spelling that this object uses: the first one with a value, else the first one
+  /// whose value is missing, else the first of `keys`.
   std::string KeyOf(Keys keys) const;
   /// Returns a number; nullopt if it is missing. @throws InputError if it is not in [min, max]
   std::optional<double> Number(Keys keys, double min, double max) const;
+  /// Returns a number. @throws InputError if it is missing or not in [min, max]
   double NeedNumber(Keys keys, double min, double max) const;
   /// As Number; an invalid value is ignored with one warning per key and file.
   std::optional<double> TryNumber(Keys keys, double min, double max) const;
-  /// Returns a text, or a number as text; "" if it is missing. @throws InputError
+  /// Returns a string, or a number as text; "" if it is missing. @throws InputError for another
+  /// type
   std::string Text(Keys keys) const;
-  /// As Text; anything else is ignored with one warning per key and file.
+  /// As Text; a value of another type is ignored with one warning per key and file.
   std::string TryText(Keys keys) const;
-  /// Returns UTC seconds; `zone_s` applies if the text has no zone. @throws FixError
+  /// Returns UTC seconds since 1970. @param zone_s offset that applies to a text without a zone [s]
+  /// @throws FixError if the time is missing or invalid
   std::int64_t NeedTime(Keys keys, std::int64_t zone_s) const;
-  /// @throws FixError
+  /// Returns a position, with a longitude in (-180, 180].
+  /// @throws FixError if a coordinate is missing or not in range: latitude [-90, 90], longitude
+  ///   [-180, 360]
   GeoPoint NeedPosition(Keys latitude, Keys longitude) const;
   /// Returns a list, or nullptr if it is missing. @throws InputError if it is not a list
   const nlohmann::json* List(Keys keys) const;
-  /// As List; anything else is ignored with one warning per key and file.
+  /// As List; a value of another type is ignored with one warning per key and file.
   const nlohmann::json* TryList(Keys keys) const;
-  /// Sets the parse position to this object, for an error or a warning, and returns it.
+  /// Sets the position of the parse context to this object, for an error or a warning, and returns
+  /// the context.
   ParseContext& Here() const;
   const std::string& path() const { return path_; }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Context of a text parser: lines with their numbers, strict parsing of numbers and times, and the
-/// position for errors and warnings.
+/// Context of a text parser: the current line, strict parsing of numbers and times, and messages
+/// with the position of errors and warnings.
 
 #include <functional>
 #include <map>
@@ -15,31 +15,33 @@
 
 namespace aquafarm::internal {
 
-/// Thrown when the time or the position of a point is invalid: the reader leaves out that point and
-/// keeps the storm.
+/// Thrown if the time or the position of a point of a storm track is invalid. The reader leaves out
+/// that point and keeps the storm.
 class FixError : public InputError {
  public:
   using InputError::InputError;
 };
 
-/// The points of one storm that were left out.
+/// Counts the points of one storm that were left out.
 struct LeftOut {
   std::size_t count{};
-  std::string first;  ///< message about the first of them
+  std::string first;  ///< error message of the first point left out
 };
 
-/// Position of a parser. Reports errors and warnings with the file and the line.
+/// Position of a parser. Reports errors and warnings with the file and the line. Adds no warning to
+/// a list of 100 or more.
 class ParseContext {
  public:
   ParseContext(const std::string& file, std::vector<std::string>& warnings)
       : file_(file), warnings_(warnings) {}
 
-  std::int32_t line{};  ///< 0: `locate` determines it on demand
-  std::string path;     ///< path of a value in JSON, reported before the error
+  std::int32_t line{};  ///< current line, from 1; 0: `locate` finds it on demand
+  std::string path;     ///< path of the current JSON value, part of messages; else empty
+  /// Returns the line of the JSON value at a path. Empty if the text is not JSON.
   std::function<std::int32_t(const std::string& path)> locate;
-  std::size_t locate_bytes{};  ///< length of the text that `locate` reads
+  std::size_t locate_bytes{};  ///< length of the text that `locate` searches
 
-  /// @throws InputError "file:line: what", with a path "file:line: path.what"
+  /// @throws InputError "file:line: what", or "file:line: path.what" if `path` is set
   [[noreturn]] void Fail(const std::string& what) const;
   /// @throws InputError "file:line: value_path: what", with the line of that value
   [[noreturn]] void FailValue(const std::string& value_path, const std::string& what) const;
@@ -47,27 +49,33 @@ class ParseContext {
   [[noreturn]] void RefuseFix(const std::string& what) const;
   /// @throws FixError with the message of FailValue
   [[noreturn]] void RefuseFixValue(const std::string& value_path, const std::string& what) const;
+  /// Adds a warning with the message of Fail.
   void Warn(const std::string& what);
+  /// Adds a warning with the message of FailValue.
   void WarnValue(const std::string& value_path, const std::string& what);
-  /// Adds one warning per `kind`: the first with its line, then the number of later ones.
+  /// Adds a warning for the first call with a `kind`. Later calls with that kind only update a
+  /// count in its text.
   void WarnOnce(const std::string& kind, const std::string& what);
+  /// As WarnOnce, with the message of FailValue.
   void WarnValueOnce(const std::string& kind, const std::string& value_path,
                      const std::string& what);
-  /// As WarnOnce, with the message of an error; `end` states the consequence.
+  /// As WarnOnce, with the message of an error followed by `end`, the consequence of the error.
   void WarnOnce(const std::string& kind, const InputError& error, const std::string& end);
-  /// Counts a point that is left out and warns about the first one.
+  /// Counts a point that is left out, and calls WarnOnce for the kind "point".
   void LeaveOut(const FixError& error, LeftOut& left_out);
 
  private:
   struct Repeated {
     std::size_t index{};  // index of the warning
-    std::size_t more{};   // number of warnings of its kind after the first
-    std::string text;
+    std::size_t more{};   // number of later calls with its kind
+    std::string text;     // text of the warning without that number
   };
-  // Returns true for the second and later ones of a kind, which are counted.
+  // Returns whether the kind has a warning. If so, counts the call in the text of that warning.
   bool IsRepeated(const std::string& kind);
+  // Adds the first warning of a kind.
   void AddFirst(const std::string& kind, std::string text);
-  // Returns "file:line: ", with the line of a value in JSON.
+  // Returns "file:line: ". With `locate`, the line is that of a JSON value; after too many searches
+  // the line is left out.
   std::string Located(const std::string& value_path) const;
   std::string At(const std::string& what) const;
   std::string AtValue(const std::string& value_path, const std::string& what) const;
@@ -77,7 +85,8 @@ class ParseContext {
   mutable std::size_t searches_{};
 };
 
-/// Reads one point with `read()`. @returns false if its time or position is invalid: it is left out
+/// Calls `read` to read one point. Returns false if the point is left out because its time or
+/// position is invalid (FixError).
 template <typename Read>
 bool TryFix(Read read, LeftOut& left_out, ParseContext& place) {
   try {
@@ -89,13 +98,13 @@ bool TryFix(Read read, LeftOut& left_out, ParseContext& place) {
   }
 }
 
-/// Iterates over the lines of a text, without CR and LF.
+/// Iterates over the lines of a text, without CR and LF. Counts them in place.line.
 class LineReader {
  public:
   LineReader(std::string_view text, ParseContext& place) : rest_(text), place_(place) {
     place.line = 0;
   }
-  /// Reads the next line and sets place.line to its number; returns false at the end of the text.
+  /// Reads the next line and increments place.line. Returns false at the end of the text.
   bool Next(std::string_view& line);
 
  private:
@@ -103,14 +112,14 @@ class LineReader {
   ParseContext& place_;
 };
 
-/// Parses a whole number in [min, max].
-/// @throws InputError "name: got 'x', expected a whole number in …"
+/// Parses a whole number in [min, max]. Blanks around it are ignored.
+/// @throws InputError "file:line: name: got 'x', expected a whole number in …"
 std::int32_t ReadWhole(std::string_view text, const char* name, std::int32_t min, std::int32_t max,
                        const ParseContext& place);
-/// Parses a decimal number in [min, max]. @throws InputError
+/// As ReadWhole, for a decimal number.
 double ReadNumber(std::string_view text, const char* name, double min, double max,
                   const ParseContext& place);
-/// Parses as ReadWhole does; returns nullopt for a blank text.
+/// As ReadWhole; nullopt for a blank text.
 std::optional<std::int32_t> ReadWholeOrBlank(std::string_view text, const char* name,
                                              std::int32_t min, std::int32_t max,
                                              const ParseContext& place);
@@ -121,14 +130,14 @@ std::optional<std::int32_t> TryWhole(std::string_view text, const char* name, st
 /// As TryWhole, for a decimal number.
 std::optional<double> TryNumber(std::string_view text, const char* name, double min, double max,
                                 ParseContext& place);
-/// Ending of the warning about an ignored value.
+/// End of the warning about an ignored value.
 inline constexpr const char* kIgnored = "; the value is ignored";
 
-/// Parses a whole number of a time or a position. @throws FixError
+/// As ReadWhole, for a part of a time or a position. @throws FixError instead of InputError
 std::int32_t ReadFixNumber(std::string_view text, const char* name, std::int32_t min,
                            std::int32_t max, const ParseContext& place);
 
-/// Returns UTC seconds of YYYYMMDDHH. @throws FixError for a date that does not exist
+/// Parses YYYYMMDDHH to UTC seconds since 1970. @throws FixError if the text is not such an hour
 std::int64_t ReadHour(std::string_view text, const ParseContext& place);
 
 }  // namespace aquafarm::internal

@@ -12,13 +12,14 @@
 namespace aquafarm {
 namespace {
 
-// The painted planes come first, so that a run past the end of a plane stays inside the buffer.
+// RiskBrush paints the first two planes. The other planes follow them, so that a run of cells past
+// the end of a painted plane stays inside the buffer.
 enum Plane : std::size_t { kRisk, kForecast, kObstacle, kPort, kDevice, kSelf, kCargo, kOthers };
 
 // Returns the digit of a device in a status code: deployed (0), aboard the ship (1) or gone (2).
 std::int32_t Standing(DeviceStatus status, bool aboard_self) {
   const std::int32_t is_away = status != DeviceStatus::kDeployed ? 1 : 0;
-  return is_away * (aboard_self ? 1 : 2);  // without a branch: farms differ in it
+  return is_away * (aboard_self ? 1 : 2);  // branch-free: a branch would often be mispredicted
 }
 
 }  // namespace
@@ -39,7 +40,7 @@ Encoder::Encoder(const Scenario& scenario)
     }
   }
 
-  // Base-3 codes grow as 3^D; with more devices no table would fit in memory.
+  // status_rank_ has 3^D entries for D devices: 19 MB for the maximum.
   constexpr std::int32_t kMaxDevices = 14;
   if (fetchable_ > kMaxDevices) return;
   std::size_t codes = 1;

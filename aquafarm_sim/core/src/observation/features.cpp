@@ -43,7 +43,7 @@ float* WriteSelf(const FeatureScales& scales, const View& view, float* out) {
   const float horizon = scales.time;
   out[0] = 2.0F * static_cast<float>(view.self.x) * scale - 1.0F;
   out[1] = 2.0F * static_cast<float>(view.self.y) * scale - 1.0F;
-  // A disaster that is set in play may last longer than the scenario's own.
+  // A disaster that SetDisaster adds may last longer than the horizon.
   out[2] = std::max(0.0F, 1.0F - static_cast<float>(view.step) / horizon);
   out[3] = static_cast<float>(view.capacity - view.aboard) / static_cast<float>(view.capacity);
   out[4] = KnownRiskAt(view, view.self) * kRiskScale;
@@ -56,8 +56,8 @@ float* WriteBlocked(const View& view, float* out) {
   const std::int32_t height = view.scenario->height;
   const Cell self = view.self;
   const std::uint8_t* const here = view.layout->cells.data() + LinearIndex(self, width);
-  // Without branches, because ships are often at the edge, where ports are. A move off the map
-  // reads the ship's own cell instead.
+  // Branch-free: ports are at the edge, so ships are often there, and a branch would often be
+  // mispredicted. A move off the map reads the bits of the ship's own cell.
   const std::array<bool, 3> off_x{self.x == 0, false, self.x == width - 1};
   const std::array<bool, 3> off_y{self.y == 0, false, self.y == height - 1};
   for (const Cell move : kMoves) {
@@ -91,8 +91,8 @@ void WritePorts(const FeatureScales& scales, const View& view, float* out) {
   }
 }
 
-// Writes what every scenario has, as one group: a call through a pointer takes as long as writing
-// one of its parts.
+// Writes the features that every scenario has. They form one group, because a call through a
+// function pointer takes as long as writing one part of it.
 void WriteBase(const FeatureScales& scales, const View& view, float* out) {
   out = WriteSelf(scales, view, out);
   out = WriteBlocked(view, out);
@@ -169,13 +169,14 @@ void WriteEnergy(const FeatureScales& scales, const View& view, float* out) {
   out[0] = static_cast<float>(view.energy) * scales.energy;
 }
 
-// Writes the next move and the number of moves left to every port and every deployed device.
+// Writes the next move and the number of moves left to every port and to every fetchable device
+// that is deployed; 0 for the other fetchable devices.
 void WriteRoutes(const FeatureScales& scales, const View& view, float* out) {
   const float scale = scales.length;
   const Layout& layout = *view.layout;
   const auto cell = static_cast<std::size_t>(LinearIndex(view.self, view.scenario->width));
   const RouteEntry* route = layout.routes.data() + cell * layout.route_count();
-  // Also encodes unreachable targets.
+  // Upper bound of the moves that are written; an unreachable target gets it.
   const std::int32_t farthest = 2 * (view.scenario->width + view.scenario->height);
   const auto write = [&] {
     *out++ = static_cast<float>(route->east);
@@ -292,9 +293,9 @@ std::vector<FeatureGroup> FeatureGroups(const Scenario& scenario) {
       DisasterGroup(scenario),
       {"others", Numbered("other", agents - 1, {"visible", "east", "north", "aboard"}),
        WriteOthers},
-      // With these one network can control all agents. A single agent needs none.
+      // The id lets one network control all agents. A single agent needs no id.
       {"identity", Numbered("agent", agents > 1 ? agents : 0, {"self"}), WriteIdentity}};
-  // Only where the reward depends on it.
+  // The energy is a feature only if the reward depends on it.
   const bool costs_energy = scenario.energy && scenario.energy->weight > 0.0;
   if (costs_energy) groups.push_back({"energy", {"energy_used"}, WriteEnergy});
   if (scenario.view.routes) groups.push_back({"routes", RouteNames(scenario), WriteRoutes});

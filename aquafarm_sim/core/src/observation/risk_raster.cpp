@@ -13,7 +13,7 @@ namespace {
 using IntRun = std::int32_t __attribute__((vector_size(kRun * sizeof(std::int32_t))));
 using ByteRun = std::uint8_t __attribute__((vector_size(kRun)));
 
-// The cells [x0, x1) × [y0, y1) that a disaster can reach.
+// The cells [x0, x1) × [y0, y1) that contain all cells of the map inside a disaster.
 struct Box {
   std::int32_t x0, x1, y0, y1;
 };
@@ -28,8 +28,8 @@ Box ReachedBox(float cx, float cy, float reach, std::int32_t width, std::int32_t
 
 constexpr IntRun kLanes = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-// The last run of a row may extend past the end of the row and of the plane. Cells there get level
-// 0, which leaves them unchanged.
+// Paints circular rings. The last run of a row may extend past the end of the row and of the plane;
+// level 0 leaves the bytes there unchanged.
 AQUAFARM_WIDEST
 void PaintRings(float cx, float cy, const float* radius_squared, const std::int32_t* levels,
                 Box box, std::int32_t width, std::uint8_t* plane) {
@@ -55,7 +55,7 @@ void PaintRings(float cx, float cy, const float* radius_squared, const std::int3
   }
 }
 
-// As PaintRings for rings by quadrants, cell by cell.
+// Paints rings with a radius per quadrant, cell by cell.
 void PaintQuadrants(const ObservableDisaster& disaster, float cx, float cy, Box box,
                     std::int32_t width, std::uint8_t* plane) {
   ObservableDisaster there = disaster;
@@ -87,7 +87,8 @@ CourseMoves MakeCourseMoves() {
 
 const CourseMoves kCourseMoves = MakeCourseMoves();
 
-// Computes the positions x, y [steps] on the courses from a cell, clamped to the map.
+// Computes the cells of all courses that start at `from`, clamped to the map.
+// @param x, y [steps] one run for each step
 AQUAFARM_WIDEST
 void FollowCourses(Cell from, std::int32_t width, std::int32_t height, std::size_t steps,
                    FloatRun* x, FloatRun* y) {
@@ -103,7 +104,8 @@ void FollowCourses(Cell from, std::int32_t width, std::int32_t height, std::size
   }
 }
 
-// Merges the risk of the rings into risk [steps] at the cells x, y [steps], step by step.
+// Adds a disaster with circular rings: each cell of the courses keeps the worse risk.
+// @param x, y, risk [steps] one run for each step
 AQUAFARM_WIDEST
 void MaxWithRings(const ObservableDisaster& disaster, float age, std::size_t steps,
                   const FloatRun* x, const FloatRun* y, FloatRun* risk) {
@@ -123,7 +125,7 @@ void MaxWithRings(const ObservableDisaster& disaster, float age, std::size_t ste
   }
 }
 
-// As WorsenByRings for rings by quadrants, cell by cell.
+// Does the same as MaxWithRings for rings with a radius per quadrant, cell by cell.
 void MaxWithQuadrants(const ObservableDisaster& disaster, float age, std::size_t steps,
                       const FloatRun* x, const FloatRun* y, FloatRun* risk) {
   for (std::size_t step = 0; step < steps; ++step) {

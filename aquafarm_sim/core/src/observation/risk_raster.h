@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Risk of disasters at many cells at once, for encodings. Uses the same float comparisons as
-/// RiskOf, but processes runs of cells with the vector extensions of GCC and Clang. § refers to the
-/// paper, see docs/model.md.
+/// Risk of disasters at many cells, for encodings. The float comparisons are those of RiskOf, but
+/// the vector extensions of GCC and Clang process runs of cells at once. § refers to the paper, see
+/// docs/model.md.
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ namespace aquafarm {
 /// 1 / |worst risk| of §2.1.
 inline constexpr float kRiskScale = 1.0F / 20.0F;
 
-/// Converts [0, 1] to a byte in [0, 255].
+/// Clamps a number to [0, 1] and scales it to a byte in [0, 255].
 inline std::uint8_t ToByte(float part) {
   return static_cast<std::uint8_t>(std::min(std::max(part, 0.0F), 1.0F) * 255.0F + 0.5F);
 }
@@ -27,14 +27,14 @@ inline std::uint8_t ToByte(float part) {
 inline constexpr std::int32_t kRun = 16;
 using FloatRun = float __attribute__((vector_size(kRun * sizeof(float))));
 
-/// Paints the risk of one disaster on byte planes [H, W]; 255 is the worst risk.
+/// Paints the risk of one disaster on planes of bytes [H, W]; 255 is the worst risk.
 class RiskBrush {
  public:
   /// @param disaster must outlive the brush
   RiskBrush(const ObservableDisaster& disaster, std::int32_t width, std::int32_t height);
 
-  /// Paints the disaster `ahead` steps along its current motion. Where the plane already has a
-  /// risk, keeps the worse one.
+  /// Paints the disaster after it has moved for `ahead` steps along its motion. Cells keep the
+  /// worse of the painted risk and the one that the plane already has.
   /// @param plane up to kRun - 1 bytes after its end may be read and written back unchanged
   void Paint(float ahead, std::uint8_t* plane) const;
 
@@ -46,20 +46,21 @@ class RiskBrush {
   std::array<std::int32_t, kMaxRings> levels_{};
 };
 
-/// Number of courses: one per move and, last, staying.
+/// Number of courses: one straight course per move, then staying.
 inline constexpr std::int32_t kCourseCount = kMoveCount + 1;
 static_assert(kCourseCount <= kRun);
 
-/// Risks that a ship would meet on each course if every disaster keeps its motion.
+/// Risks at the cells of each course of a ship, if every disaster keeps its motion.
 class LookaheadRisks {
  public:
-  /// Starts the courses at `self` with the risk of the sea. A ship stops at the edge of the map.
+  /// Computes the courses from `self` and sets their risks to those of the sea. A ship stops at the
+  /// edge of the map.
   LookaheadRisks(const Scenario& scenario, Cell self);
 
-  /// Merges a disaster as known `age` steps ago; the worse risk is kept.
+  /// Adds a disaster whose state was observed `age` steps ago; each cell keeps the worse risk.
   void MaxWith(const ObservableDisaster& disaster, float age);
 
-  /// Writes the risks; 1 is the worst risk of §2.1.
+  /// Writes the risks, 0 or negative; −1 is the worst risk of §2.1.
   /// @param next [kMoveCount] risk after one step of each move
   /// @param courses [kCourseCount] mean risk of each course
   void Write(float* next, float* courses) const;
@@ -67,7 +68,7 @@ class LookaheadRisks {
  private:
   inline static constexpr std::size_t kSteps = 6;  // length of a course
 
-  // One entry per step and one lane per course; the remaining lanes are unused.
+  // Cell and risk after each step. A run has one lane per course; the other lanes are unused.
   std::array<FloatRun, kSteps> x_;
   std::array<FloatRun, kSteps> y_;
   std::array<FloatRun, kSteps> risk_{};

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Forecast risk for the tokens: every known disaster keeps its motion and size until it ends.
+/// Forecast risk for the tokens. It assumes that every known disaster keeps its motion and its size
+/// until it ends.
 
 #include <algorithm>
 #include <array>
@@ -13,10 +14,10 @@
 
 namespace aquafarm {
 
-/// Steps until the largest ring of a disaster reaches a cell and until it has passed.
+/// Steps until the largest ring of a disaster reaches a cell, and until it has left the cell.
 struct RingTimes {
-  float in{-1.0F};   ///< 0: the cell is inside now; -1: never
-  float out{-1.0F};  ///< -1: never inside, or never left
+  float in{-1.0F};   ///< 0: the cell is inside now; -1: it is never inside
+  float out{-1.0F};  ///< at most the steps until the disaster ends; -1: the cell is never inside
 };
 
 /// The known disasters of a view that have not ended.
@@ -29,11 +30,13 @@ class TokenRisk {
     has_sea_ = scenario_.seas && !scenario_.seas->risk.empty();
   }
 
+  /// Returns whether the map has no risk: no disaster is known, and the sea has no risk.
   bool is_calm() const { return count_ == 0 && !has_sea_; }
   std::size_t count() const { return count_; }
   const KnownDisaster& disaster(std::size_t i) const { return *disasters_[i]; }
 
-  /// Returns the risk at a cell of the map after `ahead` steps, [0, 1]; 1 is the worst.
+  /// Returns the worst risk of sea and disasters at a cell of the map after `ahead` steps, in
+  /// [0, 1]; 1 is kWorstRisk.
   float At(Cell cell, float ahead) const {
     float worst = has_sea_ ? scenario_.SeaRiskAt(cell) : 0.0F;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -46,7 +49,8 @@ class TokenRisk {
     return -worst * kRiskScale;
   }
 
-  /// Returns whether no disaster can meet a ship from `from` within `steps`.
+  /// Returns true if no disaster can reach a ship that starts at `from` and moves for `steps`
+  /// steps. The bound is conservative, and the answer is always false if the sea has a risk.
   bool IsCalmWithin(Cell from, std::int32_t steps) const {
     constexpr float kLongestMove = 1.4142136F;
     if (has_sea_) return false;
@@ -63,7 +67,7 @@ class TokenRisk {
     return true;
   }
 
-  /// Returns the times of the disaster that reaches the cell first.
+  /// Returns the times of the disaster that reaches the cell first; -1 if no disaster does.
   RingTimes RingsAt(Cell cell) const {
     RingTimes first;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -73,7 +77,9 @@ class TokenRisk {
     return first;
   }
 
-  /// Solves |c + v t - cell| = reach for the centre c, the motion v and the largest radius.
+  /// Returns the times of one disaster: the solutions t of |c + v·t − cell| = r, where c is its
+  /// centre now (extrapolated from its last known position), v its motion per step and r its
+  /// largest radius.
   static RingTimes TimesOf(const KnownDisaster& known, Cell cell) {
     const ObservableDisaster& belief = known.belief;
     const auto age = static_cast<float>(known.age);

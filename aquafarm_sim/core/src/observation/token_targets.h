@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The devices and ports that have a token, and the routes between them: what follows a visit.
+/// The devices and ports that have a token, and the lengths of the routes between them.
 
 #include <algorithm>
 #include <array>
@@ -13,10 +13,12 @@
 
 namespace aquafarm {
 
-/// Ids in id order; of more than the slots, those with the smallest distance.
+/// Keeps at most `slots` ids, in id order. If more are added, keeps those with the smallest
+/// distance; at equal distance the lower id.
 template <std::size_t slots>
 class Kept {
  public:
+  /// Adds an id. Ids must be added in ascending order.
   void Add(std::int32_t id, float distance) {
     if (count_ < slots) {
       Put(count_++, id, distance);
@@ -43,12 +45,15 @@ class Kept {
   std::size_t count_{};
 };
 
-/// Returns the routes from a cell to all ports and devices, as Layout::routes.
+/// Returns the part of Layout::routes that starts at a cell: the routes to all ports and then to
+/// all fetchable devices, [Layout::route_count()].
 inline const RouteEntry* RoutesFrom(const View& view, Cell cell) {
   const auto index = static_cast<std::size_t>(LinearIndex(cell, view.scenario->width));
   return view.layout->routes.data() + index * view.layout->route_count();
 }
 
+/// The targets of a ship that have a slot: ports, and fetchable devices that are deployed or aboard
+/// the ship. The nearest ones by water are kept; devices aboard are always nearer than others.
 /// @tparam kDevices slots for devices @tparam kPorts slots for ports
 template <std::size_t kDevices, std::size_t kPorts>
 class TargetsOf {
@@ -74,20 +79,22 @@ class TargetsOf {
   std::size_t ports() const { return ports_.size(); }
   std::size_t device(std::size_t slot) const { return devices_[slot]; }  ///< id
   std::size_t port(std::size_t slot) const { return ports_[slot]; }      ///< id
-  /// Index of the device of a slot in Layout::routes.
+  /// Index of the device of a slot in RoutesFrom.
   std::size_t route(std::size_t slot) const { return routes_[slot]; }
 
-  /// Returns the moves from the port of a slot to the nearest deployed device; 0 without one.
+  // The routes below end at deployed devices that have a slot. Their length is kUnreachable if no
+  // such device can be reached, and 0 if there is no such device.
+
+  /// Returns the number of moves from the port of a slot to the nearest deployed device.
   std::int32_t FromPort(std::size_t slot) const {
     return ToDevice(view_.layout->ports[port(slot)], kNoDevice);
   }
-  /// Returns the moves from the device of a slot to the nearest other deployed device; 0 without
-  /// one.
+  /// Returns the number of moves from the device of a slot to the nearest other deployed device.
   std::int32_t ToNextDevice(std::size_t slot) const {
     return ToDevice(view_.devices[device(slot)].cell, slot);
   }
-  /// Returns the moves from the device of a slot to a port and on to the nearest other deployed
-  /// device, by the best port.
+  /// Returns the number of moves of the shortest route from the device of a slot to a port and then
+  /// to another deployed device; without another deployed device, to the nearest port.
   std::int32_t ToNextDeviceByPort(std::size_t slot) const {
     const RouteEntry* const routes = RoutesFrom(view_, view_.devices[device(slot)].cell);
     std::int32_t best = kUnreachable;
@@ -108,7 +115,7 @@ class TargetsOf {
     return route;
   }
 
-  // Moves to the nearest deployed device except that of a slot; 0 without one.
+  // Returns the number of moves to the nearest deployed device, without the one of slot `except`.
   std::int32_t ToDevice(Cell from, std::size_t except) const {
     const RouteEntry* const routes = RoutesFrom(view_, from);
     std::int32_t best = kUnreachable;

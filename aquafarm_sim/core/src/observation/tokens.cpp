@@ -13,15 +13,15 @@
 namespace aquafarm {
 namespace {
 
-constexpr float kFarthest = 4.0F;           // of lengths, in kTokenLength
-constexpr float kCloseSteps = 4.0F;         // at which "close" is 1/2
-constexpr float kRingSteps = 8.0F;          // at which "rings_in" is 1/2
-constexpr float kCountScale = 1.0F / 4.0F;  // of devices aboard and capacity
-constexpr float kLong = 1.0F / 1000.0F;     // of steps
-constexpr float kShort = 1.0F / 100.0F;     // of steps
-constexpr std::int32_t kNear = 8;           // steps of "route_risk_near"
-constexpr float kTwoRoutes = 0.5F;          // of the length of two routes
-constexpr float kEnergyMoves = 100.0F;      // straight moves whose energy is 1
+constexpr float kFarthest = 4.0F;           // bound of lengths and other unbounded features
+constexpr float kCloseSteps = 4.0F;         // moves at which the feature `close` is 1/2
+constexpr float kRingSteps = 8.0F;          // steps at which `rings_in` and `rings_out` are 1/2
+constexpr float kCountScale = 1.0F / 4.0F;  // factor of devices aboard and of the capacity
+constexpr float kLong = 1.0F / 1000.0F;     // factor of long times [1/steps]
+constexpr float kShort = 1.0F / 100.0F;     // factor of short times [1/steps]
+constexpr std::int32_t kNear = 8;           // steps summed in `route_risk_near`
+constexpr float kTwoRoutes = 0.5F;          // factor of the length of two successive routes
+constexpr float kEnergyMoves = 100.0F;      // straight moves after which `energy_used` is 1
 constexpr std::int32_t kSide = 2 * kTokenWindow + 1;
 
 using TokenTargets =
@@ -39,7 +39,8 @@ float* WritePlace(Cell from, Cell to, float* out) {
   return out;
 }
 
-// The scales are those of one scenario; a ranch of a family has its own time.
+// Uses the view's scenario instead of FeatureScales::time: one encoder serves all ranches of a
+// family, and their episodes differ in length.
 float StepsLeft(const View& view) {
   return std::max(0.0F, HorizonOf(*view.scenario) - static_cast<float>(view.step));
 }
@@ -69,8 +70,8 @@ std::vector<std::string> ShipNames() {
   return names;
 }
 
-// Writes what a straight move costs and what the episode has consumed; 0 unless energy is part of
-// the reward.
+// Writes the reward that a straight move costs and the energy consumed in the episode; 0 unless
+// energy is part of the reward.
 float* WriteMoveEnergy(const View& view, float* out) {
   std::fill_n(out, 2, 0.0F);
   const Scenario& scenario = *view.scenario;
@@ -93,8 +94,8 @@ bool IsBlocked(const View& view, Cell cell) {
   return !on_map || (view.layout->bits(cell) & kBlockedBits) != 0;
 }
 
-// Writes what is blocked, and the risk in each open cell when the ship could be there: after as
-// many steps as the cell is away.
+// Writes which cells are blocked, and the risk in each open cell at the earliest step at which the
+// ship could be there.
 float* WriteWindow(const View& view, const TokenRisk& risk, float* out) {
   constexpr std::int32_t kCells = kSide * kSide;
   std::fill_n(out + kCells, kCells, 0.0F);
@@ -146,7 +147,8 @@ std::vector<std::string> TargetNames() {
   return names;
 }
 
-// Writes the summed risk along a route and the risk at its end on arrival.
+// Writes the risk summed over the first kNear and the first kTokenRoute steps of a route, each
+// divided by kNear, and the risk at its end on arrival.
 float* WriteRouteRisk(const View& view, const TokenRisk& risk, std::size_t route, Cell target,
                       std::int32_t steps, float* out) {
   float near = 0.0F;
@@ -167,7 +169,9 @@ float* WriteRouteRisk(const View& view, const TokenRisk& risk, std::size_t route
   return out;
 }
 
-// @param steps of the route by water from the ship; `route` is its index in Layout::routes
+// Writes the features that devices and ports have in common.
+// @param route index of the target in RoutesFrom
+// @param steps length of the route from the ship
 float* WriteTarget(const View& view, const TokenRisk& risk, std::size_t route, Cell target,
                    std::int32_t steps, bool is_aboard, float* out) {
   *out++ = 1.0F;

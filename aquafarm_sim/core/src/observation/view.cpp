@@ -17,7 +17,8 @@ float SquaredDistance(Cell a, float x, float y) {
   return dx * dx + dy * dy;
 }
 
-// Returns whether any sensor sees a thing at a point. @param reach radius of the thing [cells]
+// Returns whether a circle around (x, y) touches the range of any sensor. @param reach radius of
+// the circle [cells]
 bool IsSeen(const std::vector<Sensor>& sensors, float x, float y, float reach) {
   return std::any_of(sensors.begin(), sensors.end(), [&](const Sensor& sensor) {
     const float range = sensor.radius + reach;
@@ -29,7 +30,7 @@ bool IsSeen(const std::vector<Sensor>& sensors, Cell cell) {
   return IsSeen(sensors, static_cast<float>(cell.x), static_cast<float>(cell.y), 0.0F);
 }
 
-// In full view there are none: ships see everything.
+// Collects the sensors of the view of a ship at `self`. A full view has no sensors.
 void CollectSensors(const Farm& farm, Cell self, std::vector<Sensor>& sensors) {
   const ViewSpec& view = farm.scenario().view;
   sensors.clear();
@@ -69,7 +70,8 @@ void RestoreBulletin(const std::vector<Waypoint>& track, const Bulletin& bulleti
   }
 }
 
-// Replaces the current motion by the motion of the forecast, if there is one.
+// Replaces the motion by the mean motion of the forecast until kForecastSteps after now, if there
+// is a forecast.
 void ApplyForecast(const Farm& farm, std::size_t id, KnownDisaster& known) {
   const auto disaster = static_cast<std::int32_t>(id);
   const std::int32_t issued = farm.step() - known.age;
@@ -97,8 +99,8 @@ float DangerOf(const View& view, const KnownDisaster& known) {
   return -WorstRisk(known.belief) / (1.0F + gap / side);
 }
 
-// Sets the forecast positions at the lead times of the scenario, from the motion of the last
-// information if there is no forecast.
+// Sets the forecast positions at the lead times of the scenario. Without a forecast, extrapolates
+// the last known motion.
 void ApplyLeads(const Farm& farm, std::size_t id, KnownDisaster& known) {
   const Scenario& scenario = farm.scenario();
   const auto disaster = static_cast<std::int32_t>(id);
@@ -116,7 +118,7 @@ void ObserveDisaster(const Farm& farm, std::size_t id, bool full,
   const Disaster& disaster = farm.disasters()[id];
   known.belief = disaster;
   known.age = 0;
-  // A ship observes a disaster if its edge is within sensor range ([decided], see docs/model.md).
+  // A ship observes a disaster if its edge is within sensor range (our choice, see docs/model.md).
   known.visible = full || IsSeen(sensors, disaster.x, disaster.y, disaster.reach());
   const Bulletin& bulletin = farm.BulletinOf(id);
   known.known = known.visible || bulletin.step != kNone;
@@ -212,7 +214,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
     KnownDevice& known = *next++;
     const Cell cell = farm.CellOf(device);
     const bool visible = full || IsSeen(view.sensors, cell);
-    // Out of sight only the cell where the device was deployed is known.
+    // Out of sensor range, only the cell where the device was deployed is known.
     known.cell = visible ? cell : placed->cell;
     ++placed;
     known.kind = device.kind;

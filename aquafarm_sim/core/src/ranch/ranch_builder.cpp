@@ -42,7 +42,7 @@ using internal::Short;
 using internal::Text;
 using internal::YamlWriter;
 
-// Collects the parts of the file's text.
+// Builds a ranch: fills the plan part by part, then writes and reads its scenario file.
 class Builder {
  public:
   explicit Builder(const RanchRequest& request) : request_(request) {
@@ -77,8 +77,8 @@ class Builder {
   }
 
  private:
-  // Decides what depends on the scenario as written so far: the storms of an archive in reach, the
-  // view, and the values of devices. Returns whether the text changes.
+  // Completes the plan with what depends on the first draft of the scenario: the storms of an
+  // archive in reach, the view, and the values of devices. Returns whether the plan has changed.
   bool CompleteFromDraft() {
     const bool storms = !request_.archive.files.empty();
     if (storms) SelectStorms();
@@ -88,7 +88,7 @@ class Builder {
     return storms || plan_.routes || values;
   }
 
-  // Replaces the archives in the text by the storms in reach, which the reader selected.
+  // Replaces the files of the archive by the storms in reach, which ParseScenario has selected.
   void SelectStorms() {
     const StormsSpec& storms = *ranch_.scenario.disasters.front().storms;
     plan_.archive = storms.tracks;
@@ -100,8 +100,8 @@ class Builder {
     ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
   }
 
-  // A table with many states learns slowly; a network learns quickly with distances by water in its
-  // view.
+  // Returns whether the ranch has too many states for a table to learn quickly. Networks then get
+  // routes by water as features, unless the farm is too large for them.
   bool IsForNetworks() {
     constexpr std::uint32_t kSoonLearnt = 1'000'000;
     const std::uint32_t states = Encoder(ranch_.scenario).state_count();
@@ -111,10 +111,10 @@ class Builder {
     try {
       ValidateScenario(with_routes);
     } catch (const InputError&) {
-      return false;  // the farm is too large for distances by water
+      return false;
     }
     const std::string many = states == 0 ? "more than 268435456" : std::to_string(states);
-    Say("states: " + many + ", many for a table; features give networks the routes by water");
+    Say("states: " + many + ", slow to learn in a table; networks get routes by water as features");
     return true;
   }
 
@@ -148,13 +148,13 @@ class Builder {
     }
     const GeoPoint corner = GeoFrame(*request_.center, plan_.cell_size_m)
                                 .ToGeo(-(width() - 1) / 2.0, -(height() - 1) / 2.0);
-    // Rounded as in the file, so that both agree.
+    // Rounded to the digits in the file, so that the frame here equals that of the file.
     plan_.origin =
         GeoPoint{std::stod(Short(corner.latitude, 6)), std::stod(Short(corner.longitude, 6))};
     return GeoFrame(*plan_.origin, plan_.cell_size_m);
   }
 
-  // Prefixes messages about the land or water of a chart with its name.
+  // Calls `make` and prefixes the messages of its errors with the chart's path.
   template <typename Make>
   auto OfChart(Make make) {
     try {
@@ -233,17 +233,17 @@ class Builder {
     if (ports.empty()) Say(Text("ports: no shore, so %d drawn at the edge", request_.ports));
   }
 
-  // Reports an error at a fix, with its line in the track's file; JSON has no lines here.
+  // Throws an error about a fix, with its line in the track's file. Fixes of JSON have no line.
   [[noreturn]] void Fail(const StormFix& fix, const std::string& what) const {
     throw InputError(request_.track + ":" + (fix.line > 0 ? std::to_string(fix.line) + ":" : "") +
                      " " + FormatTime(fix.time) + ": " + what);
   }
 
-  // The scenario's reader applies the same check to the line that is written here.
+  // Repeats a check of the scenario reader here, where the line in the track's file is known.
   void CheckReach(const StormTrack& track) {
     const GeoFrame frame = Frame();
     const std::vector<StormFix>& all = track.fixes;
-    for (std::size_t i = 0; i < all.size(); ++i) {  // waypoints may lie between two fixes
+    for (std::size_t i = 0; i < all.size(); ++i) {  // includes the fixes next to the waypoints
       const bool past = i + 1 < all.size() && all[i + 1].time <= plan_.storm.waypoints[0].time;
       const bool later = i > 0 && all[i - 1].time >= plan_.storm.waypoints.back().time;
       if (past || later || frame.Faces(all[i].position)) continue;
@@ -253,8 +253,8 @@ class Builder {
     }
   }
 
-  // Returns the recorded track with its newest forecast. The forecast is its own or one of
-  // --forecasts, but a best track is complete and does not get one of --forecasts.
+  // Returns the recorded track, continued by its newest forecast. If it has no forecast, one of
+  // --forecasts continues it, unless it is a best track, which is complete.
   StormTrack Continued(StormTrack recorded, TrackFormat format) {
     const bool complete = format == TrackFormat::kCma || format == TrackFormat::kJma;
     if (!request_.forecasts.empty()) {
@@ -278,7 +278,7 @@ class Builder {
     if (!request_.radii.empty()) {
       const StormFile other = LoadStormFile(request_.radii);
       Keep(other.warnings);
-      radii = Text("; radii of %d from %s",
+      radii = Text("; radii of %d fixes from %s",
                    BorrowRings(internal::SameStorm("radii", other, track), track),
                    FileName(request_.radii).c_str());
     }
@@ -294,8 +294,8 @@ class Builder {
     plan_.storm_text = (track.name.empty() ? track.id : track.name + " (" + track.id + ")") + ", " +
                        std::string(ToString(file.format)) + " " + FileName(request_.track);
     Say("storm: " + plan_.storm_text +
-        Text(", %d fixes, winds of %d minutes", recorded, track.fixes[0].averaging_min) + radii +
-        Text("; radii estimated at %d%s, unknown at %d", plan_.storm.estimated,
+        Text(", %d fixes, %d-minute winds", recorded, track.fixes[0].averaging_min) + radii +
+        Text("; radii estimated at %d points%s, unknown at %d", plan_.storm.estimated,
              blank ? ", where quadrants are blank" : "", plan_.storm.silent));
     return track;
   }
@@ -309,12 +309,11 @@ class Builder {
     if (!request_.archive.files.empty()) {
       constexpr double kWatched_s = 48 * 3600.0;
       plan_.archive_steps = duration_ = StepsToCover(kWatched_s, plan_.step_s);
-      return Say(
-          Text("time: %g s a step; a storm is nearest 18 to 30 hours after the start, over "
-               "after %d steps",
-               plan_.step_s, duration_));
+      return Say(Text(
+          "time: %g s per step; storms are nearest 18 to 30 h after the start, over after %d steps",
+          plan_.step_s, duration_));
     }
-    if (request_.track.empty()) return Say(Text("time: %g s a step; no storm", plan_.step_s));
+    if (request_.track.empty()) return Say(Text("time: %g s per step; no storm", plan_.step_s));
     const StormTrack track = ReadTrack();
     const double half_diagonal_km =
         std::hypot(width(), height()) / 2.0 * plan_.cell_size_m / 1000.0;
@@ -338,7 +337,8 @@ class Builder {
     plan_.storm_steps = duration_;
     ends_unknown_ =
         end == plan_.storm.waypoints.back().time && (passage.over_at_end || passage.nearest_at_end);
-    Say(Text("time: %g s a step, from %s, ", plan_.step_s, FormatTime(plan_.start).c_str()) +
+    Say(Text("time: %g s per step, from %s; the storm is ", plan_.step_s,
+             FormatTime(plan_.start).c_str()) +
         Text(ends_unknown_ ? "known for %d steps only" : "over after %d steps", duration_));
     Trim(end);
     CheckReach(track);
@@ -360,7 +360,7 @@ class Builder {
         FormatTime(kept.front().issued));
   }
 
-  // Keeps the waypoints from the last one before the start to the first one after the end.
+  // Keeps the waypoints from the last one at or before the start to the first one not before `end`.
   void Trim(std::int64_t end) {
     std::vector<StormWaypoint>& all = plan_.storm.waypoints;
     std::size_t from = 0;
@@ -371,13 +371,13 @@ class Builder {
            all.begin() + static_cast<std::ptrdiff_t>(to)};
   }
 
-  // Requires that all disasters are known.
+  // Requires that the plan contains all disasters.
   std::int32_t StepLimit() const {
     if (ends_unknown_ && duration_ == plan_.storm_steps) return duration_;
     return duration_ > 0 ? duration_ + 100 : 5000;
   }
 
-  // Lists the notices that are in force during the episode, or all if it has no time.
+  // Lists the notices that are in force during the episode, or all notices if it has no date.
   void SayNotices() {
     if (request_.notices.empty()) return;
     const NoticeFile file = LoadNotices(request_.notices);
@@ -400,7 +400,7 @@ class Builder {
     SeaField field = LoadSeaField(sea.file, {sea.variable, time, request_.sea_depth_m}, frame,
                                   width(), height());
     NamedLayer layer{sea.name, ToLayer(field, frame, width(), height())};
-    // Rounded as in the file, so that the rules of the file and of this command agree.
+    // Rounded to the digits in the file, so that expressions give the same results in both.
     layer.layer = layer.layer.unaryExpr([](float value) {
       return std::isnan(value)
                  ? value
@@ -424,7 +424,7 @@ class Builder {
       const DisasterSpec disaster =
           ParseDisasterPreset(text, {plan_.cell_size_m, plan_.step_s, south});
       plan_.presets.push_back(disaster);
-      Say(Text("disaster: %s: grade %d, radius %.1f cells, %.3g cells a step, %d steps",
+      Say(Text("disaster: %s: grade %d, radius %.1f cells, %.3g cells per step, %d steps",
                text.c_str(), disaster.grade, static_cast<double>(disaster.radii.back()),
                static_cast<double>(disaster.speed), disaster.duration));
       duration_ = std::max(duration_, disaster.duration);
@@ -451,7 +451,7 @@ class Builder {
     }
   }
 
-  // Keeps the drawn positions of the devices and gives each the value of its cell.
+  // Fixes the drawn positions of the devices and gives each device the value of its cell.
   void ValueDevices() {
     Layout layout;
     LayoutGenerator(ranch_.scenario).Generate(request_.seed, 0, layout);
@@ -471,8 +471,8 @@ class Builder {
   Layer value_;              // value of a device, by cell
   StormFile forecasts_;      // content of --forecasts
   std::int32_t duration_{};  // max duration of all disasters
-  bool ends_unknown_{};  // the storm is near at the end of its known track: the time after it is
-                         // unknown
+  bool ends_unknown_{};  // the episode ends with the storm's known track while the storm is still
+                         // over the ranch or coming nearer
 };
 
 }  // namespace

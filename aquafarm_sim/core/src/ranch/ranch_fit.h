@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Checks that the inputs of a ranch fit together: its chart and its sea fields must cover it.
+/// Checks that the chart, the sea fields and the requested ports of a ranch match its position.
 
 #include <optional>
 #include <string>
@@ -22,20 +22,26 @@ struct RanchArea {
   std::int32_t height{};
 };
 
-/// @throws InputError if no land of a coast is within the ranch's latitudes and longitudes
+/// Checks that the bounding box of a coast overlaps that of the ranch, in latitude and longitude.
+/// @param path file of the coast, for messages
+/// @throws InputError if the boxes do not overlap
 void NeedCover(const Coast& coast, const RanchArea& ranch, const std::string& path);
 /// Counts the cells of the ranch whose centre is outside a grid in degrees; they become land.
-/// @returns a warning, or "" @throws InputError if all cells are outside
+/// @returns a warning if there are such cells, else "" @throws InputError if all cells are outside
 std::string NeedCover(const AsciiGrid& grid, const RanchArea& ranch, const std::string& path);
-/// @throws InputError with the reason if a field has no value on the ranch
+/// Checks that a field has a value in at least one cell of the ranch.
+/// @param layer the values of `field` on the cells @param path file of the field, for messages
+/// @throws InputError if all values are NaN
 void NeedValues(const SeaField& field, const Layer& layer, const RanchArea& ranch,
                 const std::string& path);
-/// Returns a warning if the time of a field differs from the start of the ranch, else "".
+/// Returns a warning if the time of a field differs from the start by more than two days, else "".
+/// Also returns "" if one of the times is unknown.
 std::string CheckTime(const SeaField& field, std::optional<std::int64_t> start,
                       const std::string& path);
-/// Returns a warning if a requested port is outside the ranch or on land, else "". Refuses such a
-/// port if the request has exact ports.
-/// @param shore cell of the nearest shore
+/// Checks that a requested port is in the ranch and not on land.
+/// @param shore shore cell nearest to the port, for messages
+/// @returns a warning if it is not, else ""
+/// @throws InputError instead of the warning if request.exact_ports is set
 std::string CheckPort(GeoPoint wanted, Cell shore, const RanchRequest& request,
                       const RanchArea& ranch, const Terrain& terrain);
 

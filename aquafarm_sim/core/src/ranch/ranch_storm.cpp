@@ -125,8 +125,8 @@ PassageReport Report(const StormRings& storm, const Passage& passage,
 
 std::string CheckWinds(std::int32_t held) {
   if (held == 0) return "";
-  return Text("storm: stretches of the track without a known wind at both ends: %d", held) +
-         "; the larger radii of both ends hold there; give a track with a wind at each point";
+  return Text("storm: stretches of the track in which the wind cannot be interpolated: %d", held) +
+         "; they have the larger radii of both ends; give a track with a wind at each point";
 }
 
 std::vector<StormForecast> ForecastsDuring(const std::vector<StormForecast>& forecasts,
@@ -161,7 +161,7 @@ std::string ArchiveLine(const std::vector<std::string>& files, const StormsSpec&
   };
   return "archive: " + names + ": " + of(storms.library->training, storms.years) +
          " for training, " + of(storms.library->evaluation, storms.evaluation_years) +
-         " for evaluation alone; credit their source";
+         " for evaluation only; credit their source";
 }
 
 std::string CheckStart(std::int64_t start, std::int64_t end, const StormRings& storm,
@@ -177,7 +177,7 @@ std::string CheckStart(std::int64_t start, std::int64_t end, const StormRings& s
   if (start >= first) return "";
   return "start: got " + FormatTime(start) +
          ", expected a time from the storm's first known position at " + FormatTime(first) +
-         " on; the storm stands there until then";
+         " on; the storm stays there until then";
 }
 
 }  // namespace aquafarm::internal

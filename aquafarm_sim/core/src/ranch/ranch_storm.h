@@ -11,14 +11,18 @@
 
 namespace aquafarm::internal {
 
-/// Returns the storm of `track` in another file: by its id, else by its name, at the same time.
+/// Finds the storm of `track` in another file. A single storm in the file matches if its name is
+/// equal or one of the names is missing. Otherwise the id selects the storm, or the name if no id
+/// matches.
 /// @param option name of the option with the file, for messages
-/// @throws InputError if the file has no such storm at that time
+/// @throws InputError if the file has no such storm, or if its period does not overlap that of
+///   `track`
 const StormTrack& SameStorm(const std::string& option, const StormFile& file,
                             const StormTrack& track);
 
-/// Returns the only storm of a file, or the one of a name or id.
-/// @throws InputError if there is no such storm, or if several fit
+/// Returns the storm of a file with the given name or id. `storm` may be empty if the file contains
+/// only one storm.
+/// @throws InputError if no storm or more than one matches
 StormTrack StormOf(const StormFile& file, const std::string& storm);
 
 /// Report of `aquafarm scenario` on a storm's passage, one line each.
@@ -27,27 +31,31 @@ struct PassageReport {
   std::vector<std::string> warnings;
 };
 
-/// Reports a passage. It never states that a storm stays away for longer than it is known, and it
-/// separates recorded from forecast data.
+/// Describes the passage of a storm. The report makes no statement about the time after the storm's
+/// last known position, and it separates recorded from forecast data.
 /// @param storm with at least one waypoint
 PassageReport Report(const StormRings& storm, const Passage& passage,
                      const StormKnowledge& knowledge);
 
-/// Returns a warning if the radii of some stretches are those of FineRings::held; else nothing.
+/// Returns a warning if `held` (FineRings::held) is above 0, else "".
 std::string CheckWinds(std::int32_t held);
 
-/// Returns the forecasts of an episode from the newest one issued by its start, each with the
-/// points after its issue, of the agency that each bulletin lists first.
-/// @param warnings receives one about a forecast that ends before the start
+/// Returns the forecasts that agents receive during an episode: the newest one issued at or before
+/// the start, and those issued between start and end. Each keeps only its points after its time of
+/// issue. Of several forecasts with the same time of issue, the first one with such points is kept.
+/// @param forecasts sorted by time of issue @param start, end UTC [s since 1970]
+/// @param warnings receives a line if the first forecast ends at or before the start; this forecast
+///   is left out
 std::vector<StormForecast> ForecastsDuring(const std::vector<StormForecast>& forecasts,
                                            std::int64_t start, std::int64_t end,
                                            std::vector<std::string>& warnings);
 
-/// Reports the storms that an archive gives a ranch, in one line.
+/// Returns one line that describes the storms of the archive `files` that a ranch uses.
 std::string ArchiveLine(const std::vector<std::string>& files, const StormsSpec& storms);
 
-/// Checks a start against the time of a storm.
-/// @param end UTC at which the storm has left the ranch, or at which its known track ends
+/// Checks that an episode starts before its storm is over.
+/// @param end UTC at which the episode ends: when the storm has left the ranch, 12 hours after it
+///   was nearest, or at the end of its known track
 /// @returns a warning if the start is before the first known position, else ""
 /// @throws InputError if the start is not before `end`
 std::string CheckStart(std::int64_t start, std::int64_t end, const StormRings& storm,

@@ -14,7 +14,7 @@
 namespace aquafarm::internal {
 namespace {
 
-// Values are written as in the text of every scenario (ToYaml).
+// Formats a value as ToYaml does.
 template <typename T>
 std::string Value(const T& value) {
   return YamlWriter::Value(value);
@@ -67,7 +67,7 @@ class Writer {
   }
 
  private:
-  // States where the written track changes from recorded to forecast.
+  // Returns a sentence on where the track changes from recorded to forecast; "" without a forecast.
   std::string ForecastNote() const {
     const auto& all = plan_.storm.waypoints;
     const bool forecast =
@@ -75,7 +75,7 @@ class Writer {
     return forecast ? " The storm is " + Describe(plan_.knowledge) + "." : "";
   }
 
-  // Of a small workboat at about 4 kn (docs/data.md).
+  // Writes the energy figures of a small workboat at about 4 kn (docs/data.md).
   void WriteEnergy() {
     constexpr double kOnBoard_kW = 2.0;
     const double idle_kwh = kOnBoard_kW * plan_.step_s / 3600.0;
@@ -85,7 +85,7 @@ class Writer {
 
   void Line(const std::string& line) { yaml_ += line + "\n"; }
 
-  // Written as numbers, so that the scenario needs no other file.
+  // Writes the layers as numbers, so that the scenario needs no other file.
   void WriteSeas() {
     Line("seas:\n  layers:");
     for (std::size_t i = 0; i < plan_.layers.size(); ++i) {
@@ -106,7 +106,7 @@ class Writer {
     if (!request_.sea_risk.empty()) Line("  risk: " + InQuotes(request_.sea_risk));
   }
 
-  // Writes the factors of the damage by kinds that are not 1.
+  // Writes the damage factors, by kind of device and kind of disaster, that are not 1.
   void WriteDamage() {
     Line("damage:\n  kinds:  # factors of the damage, docs/data.md");
     for (int device = 0; device < kDeviceKindCount; ++device) {
@@ -161,7 +161,7 @@ class Writer {
     Line("    border: " + Value(disaster.border) + Text("\n    duration: %d", disaster.duration));
   }
 
-  // Risks of the rings for grades 1 to 4; with fewer rings, those of the outer ones.
+  // Returns the default risks of the outermost `rings` rings, a row for each of the grades 1 to 4.
   static std::string RiskTable(std::size_t rings) {
     std::vector<std::vector<float>> rows;
     for (const std::vector<float>& row : DefaultGradeRisks()) {
@@ -170,7 +170,8 @@ class Writer {
     return Value(rows);
   }
 
-  // Written with the storms in reach, so that the scenario needs no other file.
+  // Writes the tracks of the storms in reach, so that the scenario needs no other file. Before they
+  // are selected, writes the paths of the archive's files.
   void WriteArchive() {
     const ArchiveRequest& archive = request_.archive;
     Line("  - kind: typhoon");

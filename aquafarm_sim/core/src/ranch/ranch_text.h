@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Writes the scenario file of a ranch from a complete RanchPlan.
+/// Writes the scenario file of a ranch from a RanchPlan.
 
 #include <cstdio>
 #include <string>
@@ -15,14 +15,14 @@
 
 namespace aquafarm::internal {
 
-/// Content of the file, collected part by part.
+/// Content of the file, as far as it differs from the request.
 struct RanchPlan {
   std::int32_t width{};
   std::int32_t height{};
   double cell_size_m{};
   std::optional<GeoPoint> origin;
   double step_s{};
-  std::int64_t start{};  ///< UTC of step 0, if there is a storm or a requested start
+  std::int64_t start{};  ///< UTC of step 0; 0 without a storm and without a requested start
   std::int32_t step_limit{};
   Terrain terrain;
   std::vector<Cell> ports;        ///< empty: drawn at random
@@ -31,19 +31,23 @@ struct RanchPlan {
   std::string storm_text;         ///< description of the storm, for people
   StormKnowledge knowledge;
   std::int32_t storm_steps{};
-  std::vector<StormForecast> forecasts;  ///< of the storm, sorted by time of issue
+  std::vector<StormForecast> forecasts;  ///< forecasts of the storm, sorted by time of issue
   std::vector<DisasterSpec> presets;
-  std::string archive;  ///< tracks of the --archive storms in reach, as text; empty: not selected
-  std::int32_t archive_steps{};  ///< duration of an episode with one of them; 0: no archive
+  /// Tracks of the archive's storms in reach, as text of an archive. If empty, the storms are not
+  /// selected yet, and the file lists the archive's files instead.
+  std::string archive;
+  std::int32_t archive_steps{};  ///< duration of an archive storm [steps]; 0: no archive
   std::vector<NamedLayer> layers;
   std::vector<std::string> sea_units;  ///< one for each layer
   bool routes{};                       ///< view.routes of the scenario
 };
 
-/// @param decided the decisions, one line each; written as YAML comments
+/// Returns the text of the scenario file.
+/// @param decided lines that are written as YAML comments
 std::string WriteRanch(const RanchRequest& request, const RanchPlan& plan,
                        const std::vector<std::string>& decided);
 
+/// Formats as printf does and returns at most 399 characters.
 template <typename... Args>
 std::string Text(const char* format, Args... args) {
   char text[400];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Domains (valid values) of scenario keys. Each domain is declared once, in schema.h, and is used
-/// by the reader, the writer and the validation of scenarios created in code.
+/// Types of domains: the valid values of scenario keys. schema.h declares the domain of each key
+/// once, for the reader, the writer and the validation of scenarios created in code.
 
 #include <array>
 #include <cmath>
@@ -32,7 +32,7 @@ struct TextOf {
   std::size_t min_bytes{};
   std::size_t max_bytes{};
 };
-/// Text of many lines, written as a block of lines.
+/// Text of several lines, which the writer writes as a YAML block ("|").
 struct LinesOf : TextOf {};
 /// A cell of the largest possible farm. ValidateScenario checks that it is on the actual map.
 struct AnyCell {};

@@ -12,11 +12,11 @@
 namespace aquafarm {
 namespace {
 
-constexpr float kMinReach = 2.0F;           // of a disaster's largest ring [cells]
-constexpr float kMaxReachShare = 0.3F;      // of the map's shorter side
+constexpr float kMinReach = 2.0F;           // min radius of a disaster's largest ring [cells]
+constexpr float kMaxReachShare = 0.3F;      // max radius / shorter side of the map
 constexpr float kMaxSpeed = 0.8F;           // [cells/step]
-constexpr float kMaxTurns = 0.2F;           // turn_probability
-constexpr float kMaxGrowth = 0.02F;         // [cells/step], either sign
+constexpr float kMaxTurns = 0.2F;           // max turn_probability
+constexpr float kMaxGrowth = 0.02F;         // max |radius_growth| [cells/step]
 constexpr std::int32_t kMinDuration = 300;  // [steps]
 
 std::int32_t Whole(RandomStream& rng, Range<std::int32_t> range) {
@@ -97,7 +97,8 @@ DisasterSpec DrawDisaster(RandomStream& rng, std::int32_t shorter_side, std::int
   return disaster;
 }
 
-// Steps that suffice for one trip to each device, [kMinDuration, kMaxRanchSteps / 2].
+// Returns a rough estimate of the steps that one ship needs to fetch all devices, clamped to
+// [kMinDuration, kMaxRanchSteps / 2].
 std::int32_t WorkOf(const Scenario& ranch) {
   const std::int32_t trips =
       (ranch.devices.count + ranch.ships.capacity - 1) / ranch.ships.capacity;
@@ -138,7 +139,7 @@ Scenario DrawRanch(const Scenario& family, std::uint64_t seed, std::uint64_t epi
     }
   }
   ValidateScenario(ranch);
-  // Identifies the ranch in saved states; far cheaper than the hash of its text.
+  // Identifies the ranch in saved states. HashScenario would be much slower.
   ranch.hash = family.hash ^ ranch.layout_seed;
   return ranch;
 }

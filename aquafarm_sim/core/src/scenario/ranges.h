@@ -10,7 +10,7 @@ namespace aquafarm::internal {
 
 enum class Need : std::uint8_t { kOptional, kRequired };
 
-inline constexpr std::size_t kMaxListed = 100000;     ///< islands or rocks; no real farm has more
+inline constexpr std::size_t kMaxListed = 100000;     ///< max number of island blocks or rocks
 inline constexpr std::size_t kMaxSeaValues = 200000;  ///< limits a file to a few MB
 inline constexpr std::size_t kMaxLayers = 16;
 inline constexpr std::size_t kMaxWaypoints = 10000;

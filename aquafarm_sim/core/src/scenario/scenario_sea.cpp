@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sea of a scenario: converts fields of netCDF files to one value per cell.
+// Converts the sea of a scenario to one value per cell: fields of netCDF files, and expressions.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -37,7 +37,7 @@ std::vector<float> ByRule(const std::string& rule, const std::vector<SeaLayer>& 
   for (const SeaLayer& layer : layers) {
     const auto cells = static_cast<Eigen::Index>(layer.values.size());
     if (layer.values.size() != layers[0].values.size()) {
-      throw FieldError(path, "got layers of different sizes, expected one value a cell in each");
+      throw FieldError(path, "got layers of different sizes, expected one value per cell in each");
     }
     named.push_back({layer.name, Eigen::Map<const Layer>(layer.values.data(), 1, cells)});
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The storms of a scenario: reads archives and keeps the tracks in reach of the farm.
+// Reads the recorded storms of a scenario and keeps those in reach of the farm.
 #include <algorithm>
 #include <filesystem>
 
@@ -38,7 +38,7 @@ void CheckTimes(const StormsSpec& storms, double duration_h, const std::string& 
 }
 
 StormSite SiteOf(const StormsSpec& storms, const WorldFrame& frame, double duration_h) {
-  // A displacement along the track moves the closest approach in time.
+  // A displacement along the track changes the time of the closest approach.
   constexpr double kMargin_h = 12.0;
   StormSite site{*frame.grid, frame.cell_size_m, frame.step_duration_s, frame.x,
                  frame.y,     storms.within_km,  storms.approach_h};
@@ -75,10 +75,10 @@ void CheckFound(const std::vector<ArchivedStorm>& found, const char* key, Range<
   if (!found.empty()) return;
   throw FieldError(
       Join(path, key),
-      "got " + RangeText(years) + ", but of the archive's " + std::to_string(read) +
-          " storms none of these years comes within within_km = " + Format(storms.within_km) +
-          " km of the farm with a gale; expected at least one: check "
-          "the years, within_km and grid.origin");
+      "got " + RangeText(years) + ", but none of the archive's " + std::to_string(read) +
+          " storms is from these years and brings a gale within within_km = " +
+          Format(storms.within_km) +
+          " km of the farm; expected at least one: check the years, within_km and grid.origin");
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ namespace {
 
 constexpr std::size_t kMaxFileBytes = 4U << 20U;  // 10,000 waypoints or a sea need under 2 MiB
 
-// Puts a line for each key that has an old name into `notices`.
+// @param notices receives a line for each key that is given by its old name
 Scenario Parse(const std::string& text, const std::string& origin_name,
                std::vector<std::string>& notices) {
   if (text.size() > kMaxFileBytes) {
@@ -150,17 +150,18 @@ std::uint64_t HashScenario(const Scenario& scenario) {
       for (Waypoint& point : forecast.points) point.wind_mps.reset();
     }
   }
-  // By the names of version 0.1.0, so that bags and checkpoints of that version keep their hashes.
+  // Uses the key names of version 0.1.0, so that hashes in bags and checkpoints of that version
+  // remain valid.
   return HashBytes(ToYaml(rules, /*old_names=*/true));
 }
 
 std::int64_t ParseUtc(const std::string& name, const std::string& text) {
   const auto utc = internal::ParseDateTime(text, 0);
-  // A time without a zone depends on the zone that is assumed.
+  // Parses with two default zones. The results differ if the text contains no zone.
   if (utc && utc == internal::ParseDateTime(text, 3600)) return *utc;
   throw InputError(name + ": got '" + text +
-                   "', expected a UTC time as 2021-07-24T12:00Z, or a local one with its zone, as "
-                   "2021-07-24T20:00+08:00");
+                   "', expected a UTC time such as 2021-07-24T12:00Z, or a local one with its "
+                   "zone, such as 2021-07-24T20:00+08:00");
 }
 
 }  // namespace aquafarm

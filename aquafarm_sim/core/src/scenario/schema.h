@@ -7,7 +7,9 @@
 ///   YamlWriter    writes the structs and omits unused keys
 ///   FieldChecker  checks structs created in code or received in messages
 ///
-/// Archives provide Field, Struct, Optional, Structs, Has (key is given), When and Always (in use).
+/// Archives provide Field, Renamed (a key that has an old name), Struct, Optional, Structs (a list
+/// of blocks), and Has (whether a key is given). When(used, condition) sets whether the keys that
+/// follow are in use, until Always.
 
 #include "aquafarm/grid/geo_frame.h"
 #include "aquafarm/scenario/limits.h"
@@ -19,21 +21,22 @@
 
 namespace aquafarm::internal {
 
-/// Reference to a field of a netCDF file; converted to the values of a SeaLayer.
+/// Reference to a field of a netCDF file. Resolve converts it to the values of a SeaLayer.
 struct SeaSource {
   std::string file;
   std::string variable;
   double depth_m{};
-  std::optional<std::int64_t> time;  ///< UTC; if unset, the start of the episode or else the first
-                                     ///< time of the file
+  std::optional<std::int64_t> time;  ///< UTC [s since 1970]; if unset, the start of the episode; if
+                                     ///< that is unset too, the first time of the file
 };
 
 /// Reads a field and interpolates it at the cells of a farm.
-/// @throws FieldError when the scenario has no origin, or the file has no such field there
+/// @throws FieldError if the scenario has no origin, or if the file has no such field or no value
+///   of it on the farm
 void Resolve(const SeaSource& source, const WorldFrame& frame, const std::string& path,
              std::int32_t width, std::int32_t height, SeaLayer& layer);
-/// Evaluates an expression of the sea's layers at every cell.
-/// @throws FieldError if `rule` is not a valid expression
+/// Evaluates an expression of the sea's layers at every cell, [H · W].
+/// @throws FieldError if `rule` is not a valid expression, or if the layers differ in size
 std::vector<float> ByRule(const std::string& rule, const std::vector<SeaLayer>& layers,
                           const std::string& path);
 /// Checks one value per cell. @throws FieldError for a value that is not 0, NaN or in `range`
@@ -54,18 +57,18 @@ template <typename Archive, typename S>
 void VisitRocksAndPorts(Archive& a, S& s) {
   a.Struct("rocks", [&](auto& b) {
     const bool chosen = b.Has("cells", !s.rocks.cells.empty());
-    b.When(!chosen, "there are no cells");
+    b.When(!chosen, "'cells' is not set");
     b.Field("count", s.rocks.count, Interval<std::int32_t>{0, kMaxSide * kMaxSide});
-    b.When(chosen, "there are cells");
+    b.When(chosen, "'cells' is set");
     b.Field("cells", s.rocks.cells, ListOf<AnyCell>{{}, chosen ? 1U : 0U, kMaxListed});
     b.Always();
     b.Field("reward", s.rocks.reward, kPenalty);
   });
   a.Struct("ports", [&](auto& b) {
     const bool chosen = b.Has("cells", !s.ports.cells.empty());
-    b.When(!chosen, "there are no cells");
+    b.When(!chosen, "'cells' is not set");
     b.Field("count", s.ports.count, Interval<std::int32_t>{1, kMaxPorts});
-    b.When(chosen, "there are cells");
+    b.When(chosen, "'cells' is set");
     b.Field("cells", s.ports.cells, ListOf<AnyCell>{{}, chosen ? 1U : 0U, kMaxPorts});
     b.Always();
   });
@@ -77,14 +80,14 @@ void VisitDevices(Archive& a, S& s) {
     auto& devices = s.devices;
     b.Field("placement", devices.placement, OneOfNames{});
     const bool chosen = devices.placement == DevicePlacement::kExplicit;
-    b.When(!chosen, "placement is not explicit");
+    b.When(!chosen, "'placement' is not explicit");
     b.Field("count", devices.count, Interval<std::int32_t>{1, kMaxDevices});
     b.Field("kinds", devices.kinds, ListOf<OneOfNames>{{}, 1, kMaxDevices});
     b.Field("self_propelled", devices.self_propelled, Interval<std::int32_t>{0, kMaxDevices});
     b.Always();
     b.Field("value", devices.value, kDeviceValue);
     b.Field("health", devices.health, Interval<float>{0.0F, 1.0F, true});
-    b.When(chosen, "placement is explicit");
+    b.When(chosen, "'placement' is explicit");
     b.Structs("sites", devices.sites, {0, kMaxDevices}, [](auto& c, auto& site) {
       c.Field("cell", site.cell, AnyCell{}, Need::kRequired);
       c.Field("kind", site.kind, OneOfNames{}, Need::kRequired);
@@ -138,7 +141,7 @@ template <typename Archive, typename S>
 void VisitView(Archive& a, S& s) {
   a.Struct("view", [&](auto& b) {
     b.Field("mode", s.view.mode, OneOfNames{});
-    b.When(s.view.mode == ViewMode::kPartial, "mode is partial");
+    b.When(s.view.mode == ViewMode::kPartial, "'mode' is partial");
     b.Field("sensor_radius", s.view.sensor_radius, kRadius);
     b.Field("bulletin_period", s.view.bulletin_period, Interval<std::int32_t>{0, kMaxSteps});
     b.Field("bulletin_noise", s.view.bulletin_noise, Interval<float>{0.0F, 1000.0F});
@@ -152,15 +155,15 @@ void VisitView(Archive& a, S& s) {
     VisitViewKinds(b, s.view);
     b.When(Archive::kReads || s.view.disaster_slots > 0, "");
     b.Field("disaster_slots", s.view.disaster_slots, Interval<std::int32_t>{0, kMaxDisasters});
-    b.When(s.view.disaster_slots > 0, "disaster_slots is above 0");
+    b.When(s.view.disaster_slots > 0, "'disaster_slots' is above 0");
     b.Field("forecast_leads_h", s.view.forecast_leads_h,
             ListOf<Interval<float>>{{0.0F, 240.0F, true}, 0, kMaxLeads});
     b.Always();
   });
 }
 
-/// Visits one number per cell. Numbers are written as values and read as values or as an expression
-/// of the layers.
+/// Visits one number per cell. The writer writes the numbers under `key`. A file may give the
+/// numbers, or an expression of the layers under `rule_key`.
 template <typename Archive, typename Values>
 void VisitPerCell(Archive& a, const char* rule_key, const char* key, const char* condition,
                   const Scenario& scenario, Interval<float> range, Values& values) {
@@ -185,12 +188,12 @@ void VisitSeas(Archive& a, S& s, const WorldFrame& frame) {
     b.Structs("layers", sea.layers, {0, kMaxLayers}, [&](auto& c, auto& layer) {
       c.Field("name", layer.name, TextOf{1, 60}, Need::kRequired);
       const bool from_file = c.Has("file", false);
-      c.When(!from_file, "there is no file");
+      c.When(!from_file, "'file' is not set");
       c.Field("units", layer.units, TextOf{0, 60});
       c.Field("values", layer.values, ListOf<NumberOrNone>{{}, 1, kMaxSeaValues}, Need::kRequired);
       if constexpr (Archive::kReads) {
         SeaSource source;
-        c.When(from_file, "there is a file");
+        c.When(from_file, "'file' is set");
         c.Field("file", source.file, TextOf{1, 1000}, Need::kRequired);
         c.Field("variable", source.variable, TextOf{1, 200}, Need::kRequired);
         c.Field("depth_m", source.depth_m, Interval<double>{0.0, 12000.0});
@@ -199,8 +202,8 @@ void VisitSeas(Archive& a, S& s, const WorldFrame& frame) {
       }
       c.Always();
     });
-    VisitPerCell(b, "risk", "risk_values", "there is no risk", s, kRisk, sea.risk);
-    VisitPerCell(b, "device_value", "device_values", "there is no device_value", s, kDeviceValue,
+    VisitPerCell(b, "risk", "risk_values", "'risk' is not set", s, kRisk, sea.risk);
+    VisitPerCell(b, "device_value", "device_values", "'device_value' is not set", s, kDeviceValue,
                  sea.device_value);
   });
 }
@@ -246,7 +249,7 @@ void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
            (s.height - 1) / 2.0};
   a.Struct("layout", [&](auto& b) {
     b.Field("mode", s.layout, OneOfNames{});
-    b.When(s.layout == LayoutMode::kFixed, "mode is fixed");
+    b.When(s.layout == LayoutMode::kFixed, "'mode' is fixed");
     b.Field("seed", s.layout_seed, Interval<std::uint64_t>{0, UINT64_MAX});
     b.Always();
     VisitIslands(b, s);
@@ -267,7 +270,7 @@ void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
   VisitFamily(a, s);
 }
 
-/// Archive that checks values in memory, including unused ones.
+/// Archive that checks the values of structs, including unused ones.
 class FieldChecker {
  public:
   static constexpr bool kReads = false;

@@ -14,17 +14,17 @@
 
 namespace aquafarm::internal {
 
-/// A waypoint as published by an authority; converted to a Waypoint in grid units.
+/// A waypoint as published by an authority. Resolve converts it to a Waypoint in grid units.
 struct GeoFix {
   std::int64_t time{};  ///< UTC [s since 1970]
   GeoPoint point;
   std::vector<float> radii_km;
-  std::vector<QuadrantRadii> quadrants_km;  ///< instead of radii_km
-  std::optional<float> pressure_hpa;        ///< informative only; has no effect
+  std::vector<QuadrantRadii> quadrants_km;  ///< replaces radii_km if not empty
+  std::optional<float> pressure_hpa;        ///< has no effect
 };
 
-/// Parameters that convert a GeoFix to a Waypoint. Pointers to it are null if no file is read,
-/// because there is then no GeoFix.
+/// Parameters that convert a GeoFix to a Waypoint. Functions accept nullptr instead of a frame if
+/// no file is read, because only files contain GeoFixes.
 struct WorldFrame {
   std::optional<GeoFrame> grid;
   std::optional<std::int64_t> start_time;
@@ -35,9 +35,11 @@ struct WorldFrame {
   double y{};
 };
 
-/// Converts a UTC time to steps. @throws FieldError when the scenario has no start
+/// Converts a UTC time [s since 1970] to steps. @throws FieldError if the scenario has no start
 float ToStep(std::int64_t time, const WorldFrame* frame, const std::string& path);
-/// Converts a GeoFix to a Waypoint. @throws FieldError when the scenario has no origin or start
+/// Converts a GeoFix to step, position and rings of a Waypoint.
+/// @throws FieldError if the scenario has no origin or start, or if the fix is more than 60 degrees
+///   from the origin
 void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path,
              Waypoint& waypoint);
 
@@ -47,9 +49,11 @@ void VisitGeoPoint(Archive& a, Point& point) {
   a.Field("longitude", point.longitude, Interval<double>{-180.0, 180.0}, Need::kRequired);
 }
 
-/// Reads archives of storms and keeps those in reach of the farm.
-/// @param files empty if storms.tracks holds the text of an archive
-/// @throws FieldError for an unreadable file, or if no storm of the years comes in reach
+/// Reads recorded storms and stores those in reach of the farm in disaster.storms. Also sets the
+/// track of the disaster to that of the first storm for training.
+/// @param files files of tracks; if empty, storms.tracks contains the text of an archive
+/// @throws FieldError for an unreadable file, for times or years that contradict each other, or if
+///   no storm of the years for training or for evaluation comes in reach
 void Resolve(const std::vector<std::string>& files, const WorldFrame* frame,
              const std::string& path, DisasterSpec& disaster);
 
@@ -71,24 +75,24 @@ void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame, const Grade
   const bool real = a.Has("time", false);
   const ListOf<Interval<float>> quadrants{kRadius, 0, kMaxRings};
   const bool by_quadrant = a.Has("quadrants", !waypoint.quadrants.empty());
-  a.When(!real, "there is no time");
+  a.When(!real, "'time' is not set");
   a.Field("step", waypoint.step, kStep, Need::kRequired);
   a.Field("x", waypoint.x, kPlace, Need::kRequired);
   a.Field("y", waypoint.y, kPlace, Need::kRequired);
-  a.When(!real && !by_quadrant, real ? "there is no time" : "there are no quadrants");
+  a.When(!real && !by_quadrant, real ? "'time' is not set" : "'quadrants' is not set");
   a.Field("radii", waypoint.radii, radii, Need::kRequired);
-  a.When(!real && by_quadrant, real ? "there is no time" : "there are quadrants");
+  a.When(!real && by_quadrant, real ? "'time' is not set" : "'quadrants' is set");
   a.Field("quadrants", waypoint.quadrants, quadrants);
   if constexpr (Archive::kReads) {
     if (by_quadrant) waypoint.radii = Largest(waypoint.quadrants);
     GeoFix fix;
     const bool by_quadrant_km = a.Has("quadrants_km", false);
-    a.When(real, "there is a time");
+    a.When(real, "'time' is set");
     a.Field("time", fix.time, UtcTime{}, Need::kRequired);
     VisitGeoPoint(a, fix.point);
-    a.When(real && !by_quadrant_km, real ? "there are no quadrants_km" : "there is a time");
+    a.When(real && !by_quadrant_km, real ? "'quadrants_km' is not set" : "'time' is set");
     a.Field("radii_km", fix.radii_km, radii, Need::kRequired);
-    a.When(real, "there is a time");
+    a.When(real, "'time' is set");
     a.Field("quadrants_km", fix.quadrants_km, quadrants);
     a.Field("pressure_hpa", fix.pressure_hpa, Interval<float>{800.0F, 1100.0F});
     if (real) Resolve(fix, frame, a.path(), waypoint);
@@ -112,13 +116,13 @@ void VisitForecastPoint(Archive& a, P& point, const WorldFrame* frame, const Gra
   if (ringed) return VisitWaypoint(a, point, frame, by_grade);
   if constexpr (Archive::kReads) point.risks.clear();
   const bool real = a.Has("time", false);
-  a.When(!real, "there is no time");
+  a.When(!real, "'time' is not set");
   a.Field("step", point.step, kStep, Need::kRequired);
   a.Field("x", point.x, kPlace, Need::kRequired);
   a.Field("y", point.y, kPlace, Need::kRequired);
   if constexpr (Archive::kReads) {
     GeoFix fix;
-    a.When(real, "there is a time");
+    a.When(real, "'time' is set");
     a.Field("time", fix.time, UtcTime{}, Need::kRequired);
     VisitGeoPoint(a, fix.point);
     Waypoint there;
@@ -132,11 +136,11 @@ void VisitForecastPoint(Archive& a, P& point, const WorldFrame* frame, const Gra
 template <typename Archive, typename F>
 void VisitForecast(Archive& a, F& forecast, const WorldFrame* frame, const DisasterSpec& of) {
   const bool real = a.Has("time", false);
-  a.When(!real, "there is no time");
+  a.When(!real, "'time' is not set");
   a.Field("step", forecast.step, kStep, Need::kRequired);
   if constexpr (Archive::kReads) {
     std::int64_t time{};
-    a.When(real, "there is a time");
+    a.When(real, "'time' is set");
     a.Field("time", time, UtcTime{}, Need::kRequired);
     if (real) forecast.step = ToStep(time, frame, a.path());
   }
@@ -177,18 +181,18 @@ void VisitStorms(Archive& a, S& storms, std::vector<std::string>& files) {
   if constexpr (Archive::kReads) {
     const bool from_files = a.Has("archive", false);
     a.Field("archive", files, ListOf<TextOf>{{1, 1000}, 1, 100});
-    a.When(!from_files, "there is no archive");
+    a.When(!from_files, "'archive' is not set");
   }
   a.Field("tracks", storms.tracks, LinesOf{{0, kMaxArchiveBytes}}, Need::kRequired);
   a.Always();
 }
 
-/// Visits the storms of an archive, one of which the disaster is in each episode.
+/// Visits the recorded storms of a disaster. In each episode the disaster follows one of them.
 template <typename Archive, typename D>
 void VisitDrawnStorms(Archive& a, D& disaster, const WorldFrame* frame) {
   if constexpr (Archive::kReads) {
     if (a.Has("track", false)) {
-      throw FieldError(Join(a.path(), "track"), "is used only where there are no storms");
+      throw FieldError(Join(a.path(), "track"), "is used only if 'storms' is not set");
     }
   }
   std::vector<std::string> files;
@@ -210,35 +214,35 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   a.Field("kind", disaster.kind, OneOfNames{}, Need::kRequired);
   a.When(Archive::kReads || !disaster.name.empty(), "");
   a.Field("name", disaster.name, TextOf{0, 100});
-  a.When(!graded, "there are no grade_risks");
+  a.When(!graded, "'grade_risks' is not set");
   a.Field("risks", disaster.risks, risks);
-  a.When(tracked && graded, "there is a track or storms");
+  a.When(tracked && graded, "'track' or 'storms' is set");
   a.Field("grade_risks", disaster.grade_risks,
           ListOf<ListOf<Interval<float>>>{risks, graded ? 4U : 0U, 4});
   VisitGradeFactors(a, disaster, !graded && !drawn,
-                    graded ? "there are no grade_risks" : "there are no storms");
+                    graded ? "'grade_risks' is not set" : "'storms' is not set");
   a.When(Archive::kReads || !disaster.ring_winds_kt.empty(), "");
   a.Field("ring_winds_kt", disaster.ring_winds_kt,
           ListOf<Interval<std::int32_t>>{{1, 200}, 0, kMaxRings});
   a.Always();
   a.Field("duration", disaster.duration, Interval<std::int32_t>{1, kMaxSteps});
-  a.When(!tracked, "there is no track");
+  a.When(!tracked, "'track' is not set");
   a.Field("grade", disaster.grade, kGrade);
-  a.When(!tracked && !by_quadrant, tracked ? "there is no track" : "there are no quadrants");
+  a.When(!tracked && !by_quadrant, tracked ? "'track' is not set" : "'quadrants' is not set");
   a.Field("radii", disaster.radii, ListOf<Interval<float>>{kRadius, 1, kMaxRings});
-  a.When(!tracked && by_quadrant, tracked ? "there is no track" : "there are quadrants");
+  a.When(!tracked && by_quadrant, tracked ? "'track' is not set" : "'quadrants' is set");
   a.Field("quadrants", disaster.quadrants, ListOf<Interval<float>>{kRadius, 0, kMaxRings});
   if constexpr (Archive::kReads) {
     if (by_quadrant) disaster.radii = Largest(disaster.quadrants);
   }
-  a.When(!tracked, "there is no track");
+  a.When(!tracked, "'track' is not set");
   a.Field("speed", disaster.speed, Interval<float>{0.0F, 1000.0F});
   a.Field("heading_deg", disaster.heading_deg, Interval<std::int32_t>{0, 359});
   a.Field("turn_probability", disaster.turn_probability, kShare);
   a.Field("radius_growth", disaster.radius_growth, Interval<float>{-100.0F, 100.0F});
   a.Field("border", disaster.border, OneOfNames{});
   a.Field("start", disaster.start, kPlace);
-  a.When(Archive::kReads ? tracked && !drawn : !disaster.forecasts.empty(), "there is a track");
+  a.When(Archive::kReads ? tracked && !drawn : !disaster.forecasts.empty(), "'track' is set");
   a.Structs("forecasts", disaster.forecasts, {0, kMaxWaypoints},
             [&](auto& b, auto& forecast) { VisitForecast(b, forecast, frame, disaster); });
   a.Always();

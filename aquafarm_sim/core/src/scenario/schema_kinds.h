@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Keys of a scenario about kinds of devices and disasters, for the archives of schema.h. They are
-/// written only where they differ from the defaults, so that texts and hashes of scenarios without
-/// them stay the same.
+/// Keys of a scenario about kinds of devices and disasters; part of schema.h. They are written only
+/// where they differ from the defaults, so that these keys do not change the texts and hashes of
+/// scenarios without them.
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@
 
 namespace aquafarm::internal {
 
-/// Visits the factors of damage: a block by kind of device, each with kinds of disasters.
+/// Visits the damage factors: a block per kind of device, with one key per kind of disaster.
 template <typename Archive, typename D>
 void VisitDamageKinds(Archive& a, D& damage) {
   constexpr Interval<float> kFactor{0.0F, 100.0F};
@@ -34,7 +34,9 @@ void VisitDamageKinds(Archive& a, D& damage) {
   a.Always();
 }
 
-/// Visits the factors of risks by grade. @param used false next to keys that replace them
+/// Visits the factors of risks by grade.
+/// @param used false if grade_risks or storms are given, which exclude these factors
+/// @param condition end of the message for unused factors: "is used only if …"
 template <typename Archive, typename D>
 void VisitGradeFactors(Archive& a, D& disaster, bool used, const char* condition) {
   constexpr Interval<float> kFactor{0.0F, 10.0F, true};
@@ -45,12 +47,12 @@ void VisitGradeFactors(Archive& a, D& disaster, bool used, const char* condition
   a.Always();
 }
 
-/// Visits what kinds change in observations.
+/// Visits the keys of `view` about monitoring devices, entity tokens and kinds.
 template <typename Archive, typename V>
 void VisitViewKinds(Archive& a, V& view) {
   constexpr Interval<float> kReach{0.0F, 1.0e6F};
   const bool partial = view.mode == ViewMode::kPartial;
-  a.When(partial && (Archive::kReads || view.monitoring_radius != 0.0F), "mode is partial");
+  a.When(partial && (Archive::kReads || view.monitoring_radius != 0.0F), "'mode' is partial");
   a.Field("monitoring_radius", view.monitoring_radius, kReach);
   a.When(Archive::kReads || view.tokens, "");
   a.Field("tokens", view.tokens, AnyFlag{});

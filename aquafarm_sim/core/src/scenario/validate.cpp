@@ -49,36 +49,39 @@ void CheckRings(const std::string& path, const std::vector<float>& radii,
   }
 }
 
-// Checks rings by quadrants: either all rings of a disaster have them or none, radii hold the
-// largest of each ring, and no quadrant is larger in an inner ring than in an outer one.
+// Checks rings by quadrant: there is one entry per ring if `expected`, else none; radii hold the
+// largest quadrant of each ring; and no quadrant is larger in an inner ring than in an outer one.
 void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& quadrants,
                     const std::vector<float>& radii, bool expected) {
   const std::string here = internal::Join(path, "quadrants");
   if (quadrants.empty() == expected || (expected && quadrants.size() != radii.size())) {
-    throw FieldError(here, "got " + std::to_string(quadrants.size()) +
-                               " rings, expected as many as the disaster has, or none anywhere");
+    throw FieldError(here,
+                     "got " + std::to_string(quadrants.size()) +
+                         " rings, expected as many as the disaster has, or no quadrants at all");
   }
   for (std::size_t i = 0; i < quadrants.size(); ++i) {
     for (std::size_t q = 0; q < quadrants[i].size(); ++q) {
       if (i == 0 || quadrants[i][q] >= quadrants[i - 1][q]) continue;
-      throw FieldError(At(At(here, i), q), "got " + Format(quadrants[i][q]) +
-                                               ", expected at least that of the ring inside, " +
-                                               Format(quadrants[i - 1][q]));
+      throw FieldError(At(At(here, i), q),
+                       "got " + Format(quadrants[i][q]) +
+                           ", expected at least the radius of the inner ring, " +
+                           Format(quadrants[i - 1][q]));
     }
   }
   if (expected && internal::Largest(quadrants) != radii) {
-    throw FieldError(here, "got radii that are not the largest of each ring's quadrants");
+    throw FieldError(here, "got radii that differ from the largest quadrant of each ring");
   }
 }
 
-// Checks that forecasts are in order of issue, that the points of each are in order of time and
-// after its issue, and that all points have rings or none.
+// Checks that forecasts are in order of issue, that the points of each forecast are in order of
+// time and after its issue, and that either all or none of its points have rings.
 void CheckForecasts(const std::string& path, const DisasterSpec& disaster) {
   const std::vector<IssuedForecast>& forecasts = disaster.forecasts;
   const auto check = [](const std::string& here, float step, float last, const std::string& what) {
     if (step > last) return;
-    throw FieldError(internal::Join(here, "step"),
-                     "got " + Format(step) + ", expected more than that of " + what + Format(last));
+    throw FieldError(
+        internal::Join(here, "step"),
+        "got " + Format(step) + ", expected more than the step of " + what + Format(last));
   };
   for (std::size_t i = 0; i < forecasts.size(); ++i) {
     const std::string here = At(path, i);
@@ -87,9 +90,10 @@ void CheckForecasts(const std::string& path, const DisasterSpec& disaster) {
     for (std::size_t k = 0; k < points.size(); ++k) {
       const std::string point = At(internal::Join(here, "points"), k);
       if (points[k].radii.empty() != points[0].radii.empty()) {
-        throw FieldError(point + ".radii", points[k].radii.empty()
-                                               ? "missing, expected radii as at points[0]"
-                                               : "got radii, expected none as at points[0]");
+        throw FieldError(point + ".radii",
+                         points[k].radii.empty()
+                             ? "missing, expected radii because points[0] has radii"
+                             : "got radii, expected none because points[0] has none");
       }
       if (!points[k].radii.empty()) {
         CheckRings(point, points[k].radii, points[k].risks, disaster.risks.size(), true);
@@ -112,7 +116,7 @@ void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
     CheckQuadrants(here, waypoint.quadrants, waypoint.radii, !disaster.quadrants.empty());
     if (i == 0 || waypoint.step > disaster.track[i - 1].step) continue;
     throw FieldError(internal::Join(here, "step"),
-                     "got " + Format(waypoint.step) + ", expected more than that of " +
+                     "got " + Format(waypoint.step) + ", expected more than the step of " +
                          At("track", i - 1) + ", " + Format(disaster.track[i - 1].step));
   }
   const std::vector<std::int32_t>& winds = disaster.ring_winds_kt;
@@ -129,7 +133,7 @@ void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
   }
   const std::string forecasts = internal::Join(path, "forecasts");
   if (disaster.track.empty() && !disaster.forecasts.empty()) {
-    throw FieldError(forecasts, "is used only where there is a track");
+    throw FieldError(forecasts, "is used only if 'track' is set");
   }
   CheckForecasts(forecasts, disaster);
   CheckRings(path, disaster.radii, disaster.risks, rings, !disaster.track.empty());
@@ -148,10 +152,10 @@ void CheckCellCount(const std::string& path, std::size_t values, const Scenario&
   const auto cells = static_cast<std::size_t>(scenario.CellCount());
   if (values == cells) return;
   throw FieldError(path, "got " + std::to_string(values) +
-                             " values, expected one a cell: " + std::to_string(cells));
+                             " values, expected one per cell: " + std::to_string(cells));
 }
 
-// Checks values given directly. Values computed by a rule are checked when the rule is read.
+// Checks one value per cell. Values computed by a rule were also checked when the rule was read.
 void CheckValues(const char* path, const std::vector<float>& values, const Scenario& scenario,
                  internal::Interval<float> range) {
   if (values.empty()) return;
@@ -168,7 +172,7 @@ void CheckSeas(const Scenario& scenario) {
     const std::string path = At("seas.layers", i);
     if (!IsLayerName(layer.name)) {
       throw FieldError(path + ".name",
-                       "got '" + layer.name + "', expected a-z, 0-9 and _, a letter first");
+                       "got '" + layer.name + "', expected a-z, 0-9 and _, starting with a letter");
     }
     const auto same = [&layer](const SeaLayer& other) { return other.name == layer.name; };
     if (std::count_if(seas.layers.begin(), seas.layers.end(), same) > 1) {
@@ -244,7 +248,7 @@ void CheckFits(const char* path, std::int32_t wanted, std::int32_t& free, const 
 constexpr std::uint64_t kMaxRoutes = 16'777'216;  // 128 MiB per layout
 
 void CheckPlaces(const Scenario& scenario) {
-  constexpr std::int32_t kFewestCells = 4;  // so that a run fits in the planes (kRun)
+  constexpr std::int32_t kFewestCells = 4;  // the last six planes must hold a run (kRun bytes)
   if (scenario.CellCount() < kFewestCells) {
     throw FieldError("grid", "got " + Format(scenario.CellCount()) + " cells, expected at least " +
                                  Format(kFewestCells));
@@ -277,9 +281,9 @@ void CheckPlaces(const Scenario& scenario) {
   std::int32_t free = occupancy.FreeCells();
   const bool drawn_ports = scenario.ports.cells.empty();
   CheckFits("layout.ports.count", drawn_ports ? scenario.ports.count : 0, free, "");
-  CheckFits("layout.devices.count", chosen ? 0 : devices.count, free, " next to the ports");
+  CheckFits("layout.devices.count", chosen ? 0 : devices.count, free, " that the ports leave");
   CheckFits("layout.rocks.count[1]", scenario.rocks.cells.empty() ? scenario.rocks.count.max : 0,
-            free, " next to the ports and devices");
+            free, " that the ports and devices leave");
 }
 
 void CheckForecast(const Scenario& scenario) {
@@ -288,7 +292,7 @@ void CheckForecast(const Scenario& scenario) {
   const std::string path = "view.forecast_error_km";
   if (error_km.size() != 3) {
     throw FieldError(path, "got " + std::to_string(error_km.size()) +
-                               " numbers, expected those after 24, 48 and 72 hours");
+                               " numbers, expected 3: the errors after 24, 48 and 72 hours");
   }
   if (!std::is_sorted(error_km.begin(), error_km.end())) {
     throw FieldError(path, "got an error that shrinks with time, expected ascending numbers");
@@ -296,12 +300,12 @@ void CheckForecast(const Scenario& scenario) {
   if (scenario.view.disaster_slots == 0 &&
       std::none_of(scenario.disasters.begin(), scenario.disasters.end(),
                    [](const DisasterSpec& one) { return !one.track.empty(); })) {
-    throw FieldError(path, "is used only where a disaster has a track");
+    throw FieldError(path, "is used only if a disaster has a track");
   }
   for (std::size_t i = 0; i < scenario.disasters.size(); ++i) {
     if (scenario.disasters[i].forecasts.empty()) continue;
     throw FieldError(
-        path, "is used only where no disaster has forecasts, but " + At("disasters", i) + " has");
+        path, "is used only if no disaster has forecasts, but " + At("disasters", i) + " has");
   }
 }
 
@@ -316,7 +320,7 @@ void CheckMoney(const Scenario& scenario) {
   for (std::size_t i = 0; i < sites.size(); ++i) {
     if (!sites[i].insured_value) continue;
     const std::string path = At("layout.devices.sites", i) + ".insured_value";
-    if (!scenario.money) throw FieldError(path, "is used only where there is money");
+    if (!scenario.money) throw FieldError(path, "is used only if 'money' is set");
     CheckCents(path, *sites[i].insured_value);
   }
   if (!scenario.money) return;
@@ -339,9 +343,9 @@ void CheckSlots(const Scenario& scenario) {
   const std::vector<float>& leads = view.forecast_leads_h;
   for (std::size_t i = 1; i < leads.size(); ++i) {
     if (leads[i] > leads[i - 1]) continue;
-    throw FieldError(At("view.forecast_leads_h", i), "got " + Format(leads[i]) +
-                                                         ", expected more than the lead before, " +
-                                                         Format(leads[i - 1]));
+    throw FieldError(At("view.forecast_leads_h", i),
+                     "got " + Format(leads[i]) + ", expected more than the previous lead, " +
+                         Format(leads[i - 1]));
   }
 }
 

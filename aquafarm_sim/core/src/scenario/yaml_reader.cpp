@@ -72,8 +72,8 @@ class DocumentStarts : public YAML::EventHandler {
   int line_{};
 };
 
-// YAML::LoadAll does not terminate on a stray closing bracket, and YAML::Load ignores everything
-// after the first document.
+// Parses a text that must consist of one document. YAML::Load alone ignores all text after the
+// first document, and YAML::LoadAll does not terminate on a stray closing bracket.
 YAML::Node ParseDocument(const std::string& text, const std::string& origin_name,
                          const std::string& what) {
   try {
@@ -147,7 +147,7 @@ const YAML::Node* YamlReader::Take(const char* key) {
   const auto found = nodes_.find(key);
   if (!used_) {
     if (found == nodes_.end()) return nullptr;
-    throw FieldError(Join(path_, key), std::string("is used only where ") + condition_);
+    throw FieldError(Join(path_, key), std::string("is used only if ") + condition_);
   }
   allowed_.emplace_back(key);
   return found == nodes_.end() ? nullptr : &found->second;

@@ -10,13 +10,13 @@
 
 namespace aquafarm::internal {
 
-/// A key that was read by its old name.
+/// A key that a file gives by its old name.
 struct OldName {
   std::string path;
   std::string new_key;
 };
 
-/// Line numbers of the keys read so far, by path, and those with an old name.
+/// Line numbers of the keys read so far, by path, and the keys given by their old names.
 class LineMap {
  public:
   void Put(const std::string& path, const YAML::Node& node);
@@ -30,12 +30,13 @@ class LineMap {
   std::vector<OldName> old_names_;
 };
 
-/// Archive that fills structs from a block of keys. Finish rejects keys that were not visited.
+/// Archive that fills structs from a block of keys. Absent keys keep the value of the struct.
 class YamlReader {
  public:
   static constexpr bool kReads = true;
 
-  /// @throws FieldError if the node is not a block of keys or has a duplicate key
+  /// @throws FieldError if the node is not a block of keys, or if a key is not a name or occurs
+  ///   twice
   YamlReader(const YAML::Node& node, std::string path, LineMap& lines);
 
   bool Has(const char* key, bool) const { return nodes_.count(key) > 0; }
@@ -55,7 +56,7 @@ class YamlReader {
     }
   }
 
-  /// As Field, for a key that has an old name, which is still read.
+  /// Reads a key as Field does, by its present or its old name.
   template <typename T, typename Domain>
   void Renamed(const char* key, const char* old_key, T& value, const Domain& domain) {
     Field(IsOld(key, old_key) ? old_key : key, value, domain);
@@ -90,7 +91,8 @@ class YamlReader {
     }
   }
 
-  /// Rejects unknown keys. @throws FieldError with a key that was not visited and the valid keys
+  /// @throws FieldError if the block has a key that was not visited; the message lists the valid
+  ///   keys
   void Finish() const;
 
  private:
@@ -101,10 +103,11 @@ class YamlReader {
     child.Finish();
   }
 
-  /// Returns whether the block has a key by its old name, and remembers that.
-  /// @throws FieldError if it has both names
+  /// Returns whether the block has a key by its old name; if so, records it in the LineMap.
+  /// @throws FieldError if the block has both names
   bool IsOld(const char* key, const char* old_key);
-  /// Returns the node of a key, or nullptr if it is absent.
+  /// Returns the node of a key, or nullptr if the key is absent.
+  /// @throws FieldError if the key is given but not in use (When)
   const YAML::Node* Take(const char* key);
   static void CheckList(const std::string& path, const YAML::Node& node,
                         const std::array<std::size_t, 2>& sizes);
@@ -126,7 +129,7 @@ class YamlReader {
   static std::string Expected(const std::string&, LinesOf) { return "a text"; }
   static std::string Expected(float, NumberOrNone) { return "a number or .nan"; }
   static std::string Expected(std::int64_t, UtcTime) {
-    return "a UTC time as 2021-07-24T12:00:00Z";
+    return "a UTC time such as 2021-07-24T12:00:00Z";
   }
   template <typename T, typename Domain>
   static std::string Expected(const T&, const Domain&) {
@@ -205,11 +208,12 @@ class YamlReader {
   const char* condition_{""};
 };
 
-/// Reads a YAML text that consists of one block of keys. `visit` reads the keys, the remaining keys
-/// are rejected, and `check` then validates the result.
+/// Reads a YAML text that consists of one block of keys. `visit` reads the keys, and `check` then
+/// validates the result.
 /// @param what description of such a file for messages, for example "a scenario"
-/// @return a line for the user for each key that has an old name
-/// @throws InputError "file:line: key: …"
+/// @returns a notice for the user for each key that is given by its old name
+/// @throws InputError "file:line: key: …" for invalid YAML, for a key that `visit` does not read,
+///   and for the errors of `visit` and `check`
 std::vector<std::string> ReadYaml(const std::string& text, const std::string& origin_name,
                                   const std::string& what,
                                   const std::function<void(YamlReader&)>& visit,

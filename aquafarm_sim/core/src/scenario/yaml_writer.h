@@ -9,7 +9,7 @@ namespace aquafarm::internal {
 class YamlWriter {
  public:
   static constexpr bool kReads = false;
-  /// @param old_names  whether renamed keys get their old names
+  /// @param old_names whether renamed keys get their old names
   explicit YamlWriter(bool old_names = false) : old_names_(old_names) {}
 
   static bool Has(const char*, bool fallback) { return fallback; }

@@ -3,8 +3,10 @@
 
 #include <muParser.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "aquafarm/base/check.h"
 
@@ -22,12 +24,16 @@ Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& lay
       parser.DefineVar(layers[i].name, &values[i]);
     }
     parser.SetExpr(expression);
+    std::vector<const double*> used;  // a cell without a value in another layer is known
+    for (const auto& [name, value] : parser.GetUsedVar()) {
+      if (value != nullptr) used.push_back(value);  // null for an unknown name, refused below
+    }
     for (Eigen::Index cell = 0; cell < result.size(); ++cell) {
-      bool known = true;
       for (std::size_t i = 0; i < layers.size(); ++i) {
         values[i] = static_cast<double>(layers[i].layer.data()[cell]);
-        known = known && !std::isnan(values[i]);
       }
+      const bool known = std::none_of(used.begin(), used.end(),
+                                      [](const double* value) { return std::isnan(*value); });
       // Evaluated at NaN inputs too, so that an invalid expression is always rejected.
       const double value = parser.Eval();
       result.data()[cell] =

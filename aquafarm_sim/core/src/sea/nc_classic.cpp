@@ -13,9 +13,9 @@ namespace {
 // Size of a value by type, from NC_BYTE = 1 to NC_UINT64 = 11 [bytes].
 constexpr std::array<std::uint64_t, 12> kBytesOfType{0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
 
-constexpr std::uint64_t kLastOldType = 6;  // NC_DOUBLE, of the versions 1 and 2
+constexpr std::uint64_t kLastOldType = 6;  // NC_DOUBLE; versions 1 and 2 have no later type
 
-// Tags of lists.
+// Tags of the lists in a header.
 constexpr std::uint64_t kDimensions = 10;
 constexpr std::uint64_t kVariables = 11;
 constexpr std::uint64_t kAttributes = 12;

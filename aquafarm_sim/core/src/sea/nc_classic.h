@@ -8,9 +8,10 @@
 namespace aquafarm::internal {
 
 /// Returns the offset at which the values of a classic netCDF file (CDF-1, 2 or 5) end [bytes],
-/// according to its header. The padding of the last variable may be missing. Returns infinity if
-/// the file ends within its header, and nullopt if the header is invalid. (NetCDF classic format
-/// specification)
+/// according to its header, without the padding of the last variable. Returns infinity if the file
+/// ends within its header, and nullopt if the header is invalid. Source: NetCDF classic format
+/// specification.
+/// @param file at its first byte
 std::optional<double> EndOfClassicValues(std::istream& file);
 
 }  // namespace aquafarm::internal

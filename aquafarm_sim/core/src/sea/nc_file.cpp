@@ -50,9 +50,9 @@ void NcFile::Need(int status, const std::string& name) const {
   if (status != NC_NOERR) Fail(name + ": " + nc_strerror(status));
 }
 
-// In classic formats libnetcdf silently reads zeros after the end of a file, and reports "invalid
-// argument" for a file that ends within its header. It crashes while it reads some damaged headers
-// (version 4.9.0), so that it gets valid ones only. HDF5 detects truncated files itself.
+// Rejects truncated and damaged files of the classic formats. Without this check, libnetcdf 4.9.0
+// reads zeros after the end of such a file, reports "invalid argument" if the file ends within its
+// header, and crashes on some damaged headers. HDF5 detects truncated files itself.
 void NcFile::CheckLength() const {
   std::ifstream file(path_, std::ios::binary);
   std::array<char, 4> magic{};

@@ -8,7 +8,7 @@
 
 namespace aquafarm::internal {
 
-/// An open netCDF file. Errors of the library are reported with the file and the variable.
+/// An open netCDF file. Messages of errors contain the path.
 class NcFile {
  public:
   /// @throws InputError if the path is not a regular file or not netCDF, or if the file has a
@@ -19,20 +19,23 @@ class NcFile {
   NcFile& operator=(const NcFile&) = delete;
 
   int id() const { return id_; }
-  /// Always throws. @throws InputError "sea.nc: what"
+  /// Throws InputError "sea.nc: what".
   [[noreturn]] void Fail(const std::string& what) const;
-  /// @throws InputError "sea.nc: name: …" if `status` is an error
+  /// Throws InputError "sea.nc: name: …" if the `status` of a netCDF call is an error.
   void Need(int status, const std::string& name) const;
 
+  /// Returns the ids of all variables.
   std::vector<int> Variables() const;
   std::string Name(int variable) const;
-  /// Returns a text attribute; "" if it is absent.
+  /// Returns a text attribute; "" if it is absent, not a text, or longer than 10,000 characters.
   std::string Text(int variable, const char* key) const;
-  /// Returns an attribute with one number; nullopt if absent. @throws InputError for text
+  /// Returns an attribute with one number; nullopt if it is absent or has several numbers.
+  /// @throws InputError if it is a text
   std::optional<double> Number(int variable, const char* key) const;
-  /// Returns an attribute with two numbers; nullopt if absent.
+  /// Returns an attribute with two numbers; nullopt if there is no such attribute.
   std::optional<std::array<double, 2>> Pair(int variable, const char* key) const;
-  /// Returns netCDF's default fill value for the variable's type; nullopt if there is none (bytes).
+  /// Returns netCDF's default fill value for the variable's type; nullopt for bytes, characters,
+  /// texts and 64-bit integers.
   std::optional<double> DefaultFill(int variable) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands for sea_field.cpp in a build without netCDF (AQUAFARM_WITH_NETCDF=OFF).
+// Replaces sea_field.cpp in a build without netCDF (AQUAFARM_WITH_NETCDF=OFF).
 #include "aquafarm/base/check.h"
 #include "aquafarm/sea/sea_field.h"
 

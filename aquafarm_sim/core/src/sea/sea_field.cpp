@@ -17,8 +17,8 @@ namespace {
 
 using internal::NcFile;
 
-constexpr std::size_t kMaxAlong = 1'000'000;    // coordinates per axis
-constexpr std::size_t kMaxValues = 64'000'000;  // values per window
+constexpr std::size_t kMaxAlong = 1'000'000;    // max coordinates per axis
+constexpr std::size_t kMaxValues = 64'000'000;  // max values that are read
 
 enum class Axis { kTime, kDepth, kLatitude, kLongitude, kOther };
 
@@ -42,7 +42,7 @@ bool IsOneOf(const std::string& text, std::initializer_list<const char*> names) 
   return std::find(names.begin(), names.end(), text) != names.end();
 }
 
-// Returns "UP", "DOWN" or "".
+// Returns the attribute `positive` in capitals, usually "UP" or "DOWN"; "" if absent.
 std::string Positive(const NcFile& file, int coordinate) {
   return internal::Upper(file.Text(coordinate, "positive"));
 }
@@ -116,7 +116,7 @@ Dimension ReadDimension(const NcFile& file, int dimension, const std::string& va
   int dimension_of_coordinate = -1;
   file.Need(nc_inq_vardimid(file.id(), found.coordinate, &dimension_of_coordinate), found.name);
   if (dimension_of_coordinate != dimension)
-    file.Fail(found.name + ": has another dimension than its name");
+    file.Fail(found.name + ": got a coordinate of another dimension, expected one of its own");
   file.Need(nc_get_var_double(file.id(), found.coordinate, found.at.data()), found.name);
   const double scale = file.Number(found.coordinate, "scale_factor").value_or(1.0);
   const double offset = file.Number(found.coordinate, "add_offset").value_or(0.0);
@@ -161,7 +161,8 @@ std::vector<Dimension> ReadDimensions(const NcFile& file, int variable, const st
     }
     if (!along) continue;
     const bool is_latitude = d.axis == Axis::kLatitude;
-    // Packed values have rounding errors, and grids may continue beyond the date line.
+    // The bounds are wide: packed coordinates have rounding errors, and grids may continue beyond
+    // the date line.
     const double max = is_latitude ? 90.0 + 1.0e-3 : 720.0;
     for (const double degrees : d.at) {
       if (std::abs(degrees) <= max) continue;
@@ -234,7 +235,7 @@ struct Span {
   std::size_t count{1};
 };
 
-// Returns the values in [low, high] and one more on each side.
+// Returns the indices of the values in [low, high] and of one more value on each side.
 Span Window(const std::vector<double>& at, double low, double high) {
   std::size_t first = at.size();
   std::size_t last = 0;
@@ -243,7 +244,7 @@ Span Window(const std::vector<double>& at, double low, double high) {
     first = std::min(first, i);
     last = std::max(last, i);
   }
-  if (first > last) {  // the ranch lies between two values: uses those around it
+  if (first > last) {  // the ranch lies between two values or outside: uses the nearest ones
     first = last = Nearest(at, (low + high) / 2.0);
   }
   first = first == 0 ? 0 : first - 1;
@@ -270,7 +271,8 @@ Extent ExtentOf(const GeoFrame& frame, std::int32_t width, std::int32_t height) 
   return extent;
 }
 
-// Returns the offset (0, 360 or -360 degrees) that shifts the file's longitudes to the ranch's.
+// Returns the offset (0, 360 or -360 degrees) after which the file's longitudes include the ranch's
+// longitude `near`; 0 if there is no such offset.
 double TurnOf(const std::vector<double>& longitude, double near) {
   const auto [west, east] = std::minmax_element(longitude.begin(), longitude.end());
   for (const double turn : {0.0, 360.0, -360.0}) {
@@ -301,12 +303,12 @@ void Unpack(const NcFile& file, int variable, std::vector<float>& values) {
   }
 }
 
-// Part of a variable that is read.
+// The part of a variable that is read.
 struct Block {
   std::vector<std::size_t> first;  // by dimension
   std::vector<std::size_t> count;
-  std::size_t along_latitude{};  // index of the dimension
-  std::size_t along_longitude{};
+  std::size_t along_latitude{};   // index of the latitude's dimension
+  std::size_t along_longitude{};  // index of the longitude's dimension
 };
 
 Span ChooseTime(const NcFile& file, std::optional<std::int64_t> time, Dimension& d,
@@ -335,8 +337,8 @@ Span ChooseDepth(const NcFile& file, double depth_m, Dimension& d, SeaField& fie
   return span;
 }
 
-// Chooses time, depth and the cells of the ranch. Converts the coordinates of the dimensions and
-// fills time, depth and extent of the field.
+// Chooses the time, the depth, and the window around the ranch. Converts the coordinates of the
+// dimensions, and sets time, depth and extent of the field.
 Block ChooseBlock(const NcFile& file, const SeaFieldChoice& choice, const Extent& extent,
                   std::vector<Dimension>& dimensions, SeaField& field) {
   Block block;
@@ -368,7 +370,7 @@ Block ChooseBlock(const NcFile& file, const SeaFieldChoice& choice, const Extent
   return block;
 }
 
-// Fills the field with values in the order of the file, so that it leads from south to north and
+// Copies values in the order of the file to the field, which is ordered from south to north and
 // from west to east.
 void Arrange(const std::vector<Dimension>& dimensions, const Block& block,
              const std::vector<float>& values, SeaField& field) {
@@ -409,7 +411,9 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
   const Block block = ChooseBlock(file, choice, ExtentOf(frame, width, height), dimensions, field);
   const std::size_t size = block.count[block.along_latitude] * block.count[block.along_longitude];
   if (size > kMaxValues) {
-    file.Fail(field.name + ": its resolution is too fine for this ranch");
+    file.Fail(field.name + ": got " + std::to_string(size) +
+              " values on this ranch, expected at most " + std::to_string(kMaxValues) +
+              "; use a coarser field");
   }
   std::vector<float> values(size);
   file.Need(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fields of the sea on the cells of a ranch; reads no file.
+// Interpolates fields of the sea on the cells of a ranch. A build without netCDF contains it, too.
 #include <algorithm>
 #include <array>
 #include <cmath>

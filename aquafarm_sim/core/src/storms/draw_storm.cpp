@@ -16,7 +16,7 @@ const std::vector<ArchivedStorm>& StormsOf(const StormsSpec& storms, std::uint64
 
 DrawnStorm DrawStorm(const StormsSpec& storms, std::uint64_t seed, std::uint64_t episode,
                      std::int32_t disaster, double x, double y) {
-  constexpr double kWeakest = 0.3;  // of the recorded wind
+  constexpr double kWeakest = 0.3;  // min factor of the recorded wind
   constexpr double kHour_s = 3600.0;
   const std::vector<ArchivedStorm>& among = StormsOf(storms, seed);
   const StormPerturbation& by = storms.perturbation;

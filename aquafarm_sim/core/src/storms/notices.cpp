@@ -58,10 +58,10 @@ std::vector<Notice> ReadWarnings(const JsonObject& answer, ParseContext& place) 
     CheckSpan(notice, warning, "endTime");
     notices.push_back(std::move(notice));
   }
-  return notices;  // may be empty: no warning is in force
+  return notices;  // empty if no warning is in force
 }
 
-// Returns the upper end of "<0.5m" or "1.0-1.5m".
+// Returns the upper end of a range such as "<0.5m" or "1.0-1.5m"; nullopt for other texts.
 std::optional<double> WaveMax(const std::string& text) {
   if (text.size() < 2 || text.back() != 'm') return std::nullopt;
   const std::size_t from = text.find_first_of("-<");
@@ -70,7 +70,8 @@ std::optional<double> WaveMax(const std::string& text) {
   return value && *value >= 0.0 && *value <= 40.0 ? value : std::nullopt;
 }
 
-// Removes a number and the following word from the front of a text.
+// Removes a number of one or two digits and the following word from the front of a text, and
+// returns the number; nullopt if the text does not begin with them.
 std::optional<int> TakeNumber(std::string& text, const std::string& word) {
   const std::size_t at = text.find(word);
   if (at == 0 || at == std::string::npos || at > 2) return std::nullopt;
@@ -82,8 +83,8 @@ std::optional<int> TakeNumber(std::string& text, const std::string& word) {
   return value;
 }
 
-// Converts a day of the month and an hour to a time. The month is that of the publication, the
-// previous one or the next one: the one in which the day is nearest to the publication.
+// Converts a day of the month and an hour to a time. Of the month of the publication, the previous
+// one and the next one, it selects the month in which the day is nearest to the publication.
 class Calendar {
  public:
   /// @param published "2026050411", Beijing time
@@ -103,7 +104,8 @@ class Calendar {
     }
     answer.Here().FailValue("publishCode", "got " + Quoted(published) + ", expected YYYYMMDDHH");
   }
-  /// Returns UTC; nullopt if there is no such day. Hour 24 is the first hour of the next day.
+  /// Returns UTC [s since 1970]; nullopt if there is no such day or hour.
+  /// @param hour [0, 24] in Beijing time; 24 is the end of the day
   std::optional<std::int64_t> At(int day, int hour) const {
     if (hour < 0 || hour > 24) return std::nullopt;
     std::optional<std::int64_t> nearest;
@@ -124,7 +126,8 @@ class Calendar {
   std::int64_t published_{};  // Beijing time, computed as if it were UTC
 };
 
-// Parses "04日23时-05日02时"; the second day may be missing if it equals the first.
+// Parses "04日23时-05日02时" to notice.start and notice.end. The second day may be missing if it
+// equals the first. Returns false if the text has another form.
 bool ReadPeriod(std::string text, const Calendar& calendar, Notice& notice) {
   const auto day = TakeNumber(text, "日");
   const auto from = TakeNumber(text, "时-");
@@ -140,7 +143,7 @@ bool ReadPeriod(std::string text, const Calendar& calendar, Notice& notice) {
   return true;
 }
 
-// Returns the worst of the ratings in "4 4 3 3".
+// Returns the worst (smallest) of the ratings in a text such as "4 4 3 3"; 0 for an empty text.
 std::int32_t Worst(const JsonObject& period, const std::string& ratings) {
   std::int32_t worst = 0;
   for (const std::string_view word : internal::SplitWords(ratings)) {
@@ -165,7 +168,7 @@ std::vector<Notice> ReadAnchorages(const JsonObject& answer, ParseContext& place
     const JsonObject anchor(value, path, place);
     const Json* periods = anchor.List({"PreciseForecast"});
     if (periods == nullptr || periods->empty()) {
-      place.WarnValue(path, "got no PreciseForecast, the anchorage is left out");
+      place.WarnValue(path, "got no PreciseForecast; the anchorage is left out");
     }
     for (std::size_t i = 0; periods != nullptr && i < periods->size(); ++i) {
       const JsonObject period((*periods)[i],
@@ -174,8 +177,9 @@ std::vector<Notice> ReadAnchorages(const JsonObject& answer, ParseContext& place
       notice.place = name;
       const std::string time = period.Text({"Time"});
       if (!ReadPeriod(time, calendar, notice)) {
-        period.Here().FailValue(internal::Join(period.path(), "Time"),
-                                "got " + Quoted(time) + ", expected such as '04日08时-11时'");
+        period.Here().FailValue(
+            internal::Join(period.path(), "Time"),
+            "got " + Quoted(time) + ", expected a period such as '04日08时-11时'");
       }
       CheckSpan(notice, period, "Time");
       notice.wind_mps = period.Number({"WindSpeedAvg"}, 0.0, 150.0);
@@ -184,7 +188,7 @@ std::vector<Notice> ReadAnchorages(const JsonObject& answer, ParseContext& place
       notice.wave_max_m = WaveMax(wave);
       if (!wave.empty() && !notice.wave_max_m) {
         period.Here().FailValue(internal::Join(period.path(), "WindWave"),
-                                "got " + Quoted(wave) + ", expected such as '0.5-1.0m'");
+                                "got " + Quoted(wave) + ", expected a range such as '0.5-1.0m'");
       }
       notice.suitability = Worst(period, period.Text({"Riskrating"}));
       notices.push_back(std::move(notice));

@@ -16,7 +16,7 @@ namespace {
 
 using internal::Interval;
 
-// The keys of one preset. Each may be queried once.
+// The keys and numbers of one description. Finish rejects keys that were not queried.
 class Keys {
  public:
   Keys(const std::string& text, const std::string& where) : where_(where) {
@@ -32,7 +32,8 @@ class Keys {
         throw InputError(where_ + "got " + internal::Quoted(entry) + ", expected KEY=NUMBER");
       }
       if (!given_.emplace(entry.substr(0, equals), *number).second) {
-        throw InputError(where_ + "got " + internal::Quoted(entry.substr(0, equals)) + " twice");
+        throw InputError(where_ + "got " + internal::Quoted(entry.substr(0, equals)) +
+                         " twice, expected it once");
       }
     }
   }
@@ -77,7 +78,7 @@ class Keys {
   std::vector<std::string> known_;
 };
 
-// Returns grade 1 from the first threshold on, 2 from the second, and so on.
+// Returns the number of thresholds that `value` reaches.
 std::int32_t GradeFrom(double value, const std::array<double, 4>& thresholds) {
   const auto above = std::upper_bound(thresholds.begin(), thresholds.end(), value);
   return static_cast<std::int32_t>(above - thresholds.begin());
@@ -112,7 +113,7 @@ void SetDrift(const Flow& flow, const GridScale& scale, DisasterSpec& disaster) 
   disaster.speed = static_cast<float>(speed_mps * scale.step_duration_s / scale.cell_size_m);
   const double bearing = std::atan2(flow.east, flow.north) * 180.0 / kPi;
   disaster.heading_deg = static_cast<std::int32_t>(std::lround(bearing + 360.0)) % 360;
-  // A drifting disaster leaves the map. The heading of a stationary one has no effect.
+  // A drifting disaster leaves the map. For a stationary disaster, heading and border are unused.
   disaster.border = speed_mps > 0.0 ? Border::kLeave : Border::kReflect;
   disaster.turn_probability = 0.0F;
 }
@@ -127,7 +128,7 @@ void SetRings(double radius_km, double growth_m_h, const GridScale& scale, Disas
   disaster.risks = kRisks[static_cast<std::size_t>(disaster.grade - 1)];
 }
 
-// Grade, size and drift of each kind.
+// A kind of preset: `fill` reads its keys and sets the grade, the radius and the drift.
 struct Preset {
   const char* name;
   DisasterKind kind;

@@ -16,7 +16,7 @@ std::int32_t StepsToCover(double span_s, double step_duration_s) {
   const double steps = std::ceil(span_s / step_duration_s);
   if (steps <= 1.0e7) return std::max(1, static_cast<std::int32_t>(std::max(steps, 1.0)));
   throw InputError("duration: got " + internal::Format(steps) +
-                   " steps, expected at most 10000000; the storm is too long for such steps");
+                   " steps, expected at most 10000000; use longer steps");
 }
 
 const GradeRisks& DefaultGradeRisks() {

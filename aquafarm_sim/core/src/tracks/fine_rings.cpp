@@ -56,7 +56,8 @@ bool IsKnown(const StormFix& from, const StormFix& to) {
   return from.wind_mps && to.wind_mps && from.averaging_min == to.averaging_min;
 }
 
-// Returns the times between two points, at most kFineTrack_s apart.
+// Returns times that divide the interval between two points into equal parts of at most
+// kFineTrack_s.
 std::vector<std::int64_t> TimesBetween(std::int64_t from, std::int64_t to) {
   const std::int64_t parts = (to - from + kFineTrack_s - 1) / kFineTrack_s;
   std::vector<std::int64_t> times;
@@ -66,16 +67,16 @@ std::vector<std::int64_t> TimesBetween(std::int64_t from, std::int64_t to) {
   return times;
 }
 
-// Returns the wind, or the lowest one of the grade; 0 if both are unknown.
+// Returns the wind, or the lower limit of the grade if the wind is unknown; 0 if both are unknown.
 double WindOf(const StormWaypoint& at) { return at.wind_mps.value_or(LowestWindOf(at.grade)); }
 
-// Returns the estimate of a ring from the wind; 0 if the storm does not reach its wind.
+// Returns the estimated radius of a ring [km]; 0 if the storm does not reach the ring's wind.
 double MedianOf(const StormRings& storm, const StormWaypoint& at, std::size_t ring) {
   return EstimateRadius(storm.wind_kt[ring], WindOf(at), at.position.latitude, at.averaging_min)
       .median_km;
 }
 
-// Returns the quadrants of a ring; those of a circle have one radius.
+// Returns the radii of a ring by quadrant; they are equal for a circle.
 Quadrants EdgeOf(const StormWaypoint& at, std::size_t ring) {
   if (!at.quadrants_km.empty()) return at.quadrants_km[ring];
   Quadrants edge{};
@@ -88,7 +89,7 @@ void SetEdge(const Quadrants& edge, std::size_t ring, StormWaypoint& at) {
   at.radii_km[ring] = *std::max_element(edge.begin(), edge.end());
 }
 
-// Returns the ratio of a ring to its estimate from the wind; 0 if one of them is unknown.
+// Returns the ratio of a ring's radius to its estimated radius; 0 if one of them is 0.
 double SizeOf(const StormRings& storm, const StormWaypoint& at, std::size_t ring) {
   const double median_km = MedianOf(storm, at, ring);
   if (at.radii_km[ring] <= 0.0 || median_km <= 0.0) return 0.0;
@@ -104,9 +105,10 @@ bool IsReported(const StormFix& fix, const StormWaypoint& at, std::int32_t wind_
   return ring != nullptr && !ring->estimated;
 }
 
-// Sets the estimated rings of a fix to their estimates times the size of the last report, to the
-// power of what is left of it. The size also holds for winds that the storm does not reach there.
-// Reported rings are kept: an estimated one never ends within a stronger one that is reported.
+// Sets each estimated ring of a point to its estimate times size^kept, where `size` is the ring's
+// ratio to its estimate at the last report. Rings of winds that the storm did not reach at the
+// report use the ratio of the outermost ring. Reported rings do not change. An estimated ring is
+// never smaller than a reported ring of a stronger wind, and never larger than the ring outside it.
 void Resize(const StormWaypoint& report, double kept, const StormFix& fix, StormRings& storm,
             StormWaypoint& at) {
   const std::size_t rings = storm.wind_kt.size();
@@ -114,7 +116,7 @@ void Resize(const StormWaypoint& report, double kept, const StormFix& fix, Storm
   const double outermost = SizeOf(storm, has_own ? at : report, rings - 1);
   at.size = outermost > 0.0 ? std::pow(outermost, has_own ? 1.0 : kept) : 1.0;
   std::vector<Quadrants> reported(rings,
-                                  Quadrants{});  // the largest of this ring and stronger ones
+                                  Quadrants{});  // largest reported radii of this and inner rings
   for (std::size_t ring = 0; ring < rings; ++ring) {
     if (ring > 0) reported[ring] = reported[ring - 1];
     if (!IsReported(fix, at, storm.wind_kt[ring])) continue;
@@ -143,7 +145,7 @@ void Resize(const StormWaypoint& report, double kept, const StormFix& fix, Storm
 // Returns a point between two others with the larger radii of both.
 StormWaypoint Larger(const StormRings& storm, const StormWaypoint& from, const StormWaypoint& to,
                      std::int64_t time) {
-  StormWaypoint held = *storm.At(time);  // position
+  StormWaypoint held = *storm.At(time);  // for the position
   held.grade = std::max(from.grade, to.grade);
   held.estimated = true;
   held.is_reported = false;
@@ -161,7 +163,7 @@ StormWaypoint Larger(const StormRings& storm, const StormWaypoint& from, const S
   return held;
 }
 
-// Adds points to the legs that FineTrack left as they are. @returns the number of these legs
+// Adds points to the long intervals that FineTrack did not divide. Returns their number.
 std::int32_t HoldLarger(std::int64_t from, StormRings& storm) {
   std::vector<StormWaypoint> all;
   std::int32_t held = 0;

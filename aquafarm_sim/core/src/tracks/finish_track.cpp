@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Completes a track after reading: order of time, jumps, motion.
+// Completes a track after reading: checks the order of time and jumps, and computes the motion.
 #include <GeographicLib/Geodesic.hpp>
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 // Returns the indices of the longest ascending subsequence of fix times (patience sorting).
 std::vector<std::size_t> LongestAscending(const std::vector<StormFix>& fixes) {
   constexpr std::size_t kNoIndex = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> ends;  // by length of the subsequence, the index of the earliest end
+  std::vector<std::size_t> ends;  // by length - 1: index of the earliest last fix of a subsequence
   std::vector<std::size_t> before(fixes.size(), kNoIndex);
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     const auto at = std::lower_bound(
@@ -43,9 +43,9 @@ void KeepAscending(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext
       std::adjacent_find(fixes.begin(), fixes.end(),
                          [](const StormFix& a, const StormFix& b) { return b.time <= a.time; });
   const std::string order =
-      ", expected one after " + FormatTime(broken->time) + " of the point before";
+      ", expected a time after that of the point before, " + FormatTime(broken->time);
   const auto at_line = [&place](std::int32_t line) {
-    if (line > 0) place.line = line;  // points in JSON have no line: keep that of the storm
+    if (line > 0) place.line = line;  // points in JSON have no line; that of the storm remains
   };
   if (run.size() * 2 <= fixes.size()) {
     at_line((broken + 1)->line);
@@ -62,14 +62,14 @@ void KeepAscending(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext
     ++left_out.count;
     at_line(fixes[i].line);
     place.WarnOnce("order", "time: got " + FormatTime(fixes[i].time) +
-                                ", expected the order of the other points" +
+                                ", expected a time in the order of the other points" +
                                 "; the point is left out");
   }
   fixes = std::move(kept);
 }
 
-// Warns about a speed that no storm reaches. Positions are rounded to a tenth of a degree, up to 16
-// km for two positions.
+// Warns about a speed that no storm reaches. It allows for the rounding of both positions to a
+// tenth of a degree, which changes their distance by up to 16 km.
 void WarnOfJumps(const std::vector<StormFix>& fixes, const std::string& storm,
                  ParseContext& place) {
   constexpr double kMax_kmh = 150.0;
@@ -91,7 +91,8 @@ void WarnOfJumps(const std::vector<StormFix>& fixes, const std::string& storm,
   }
 }
 
-// Drops a few fixes that are months away from the others: their year or month is wrong.
+// Drops fixes that are more than 30 days from the others, if they are fewer than half: their month
+// or year is wrong.
 void KeepTogether(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext& place) {
   constexpr std::int64_t kLongestGap_s = 30 * 86400;
   std::size_t best = 0;
@@ -122,7 +123,7 @@ void KeepTogether(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext&
 void FinishTrack(StormTrack& track, LeftOut left_out, ParseContext& place) {
   if (track.fixes.size() < left_out.count) throw InputError(left_out.first);
   if (track.fixes.empty()) place.Fail("points: got none, expected at least one");
-  const std::int32_t line = place.line;  // line at which the reader continues
+  const std::int32_t line = place.line;  // restored at the end, for the reader
   KeepAscending(track.fixes, left_out, place);
   KeepTogether(track.fixes, left_out, place);
   constexpr std::int64_t kDay_s = 86400;
@@ -138,8 +139,9 @@ void FinishTrack(StormTrack& track, LeftOut left_out, ParseContext& place) {
       KeepAscending(forecast.fixes, unused, place);
       return forecast.fixes.back().time <= forecast.issued;
     } catch (const InputError&) {
-      place.WarnOnce("forecast", "forecast of " + FormatTime(forecast.issued) +
-                                     ": its points are not in order of time; it is left out");
+      place.WarnOnce("forecast",
+                     "forecast of " + FormatTime(forecast.issued) +
+                         ": its points are not in order of time; the forecast is left out");
       return true;
     }
   };

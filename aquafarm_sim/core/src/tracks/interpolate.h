@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What the readers of tracks use between two points of a track.
+/// Linear interpolation between two points of a track.
 
 namespace aquafarm::internal {
 

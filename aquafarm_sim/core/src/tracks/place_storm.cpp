@@ -9,7 +9,7 @@
 namespace aquafarm {
 namespace {
 
-constexpr double kMinGap_steps = 0.25;  // between waypoints; the order of time stays strict
+constexpr double kMinGap_steps = 0.25;  // min time between displaced waypoints
 
 struct PlacedWind {
   double mps{};
@@ -23,10 +23,10 @@ PlacedWind WindOf(const StormPoint& point, const StormErrors& error) {
   return {std::max(0.0, point.wind_mps * error.wind_factor + error.wind_add_mps), true};
 }
 
-// Factor of a ring, and the radius to use instead of the point's own one [cells].
+// The placed radius of a ring is the radius of the point times `factor`, plus `added`.
 struct PlacedRing {
   double factor{1.0};
-  double added{};  // radius of a ring that the point does not have
+  double added{};  // radius of a ring that the point does not have [cells]
 };
 
 class RingScale {
@@ -50,8 +50,8 @@ class RingScale {
     return EstimateRadius(path_.wind_kt[k], wind_.mps, point_.latitude, point_.averaging_min)
         .median_km;
   }
-  // Ratio of the recorded to the estimated radius of the next weaker wind that has both; else that
-  // of the storm.
+  // Returns the ratio of recorded to estimated radius of the next weaker wind that has both, else
+  // StormPoint::size.
   double AnomalyOutside(std::size_t k) const {
     for (std::size_t outer = k + 1; outer < path_.rings; ++outer) {
       if (point_.median_km[outer] <= 0.0 || point_.radius[outer] <= 0.0) continue;

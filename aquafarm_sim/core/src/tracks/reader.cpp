@@ -19,7 +19,7 @@
 namespace aquafarm {
 namespace {
 
-// Makes the ids of storms unique: in files of several years, storms may share an id.
+// Makes the ids of storms unique. In files of several years, storms may share an id.
 void DistinguishFormats(StormFile& file, internal::ParseContext& place) {
   std::map<std::string, int> times;
   std::set<std::string> seen;
@@ -38,7 +38,7 @@ void DistinguishFormats(StormFile& file, internal::ParseContext& place) {
     do {
       id = track.id + "-" + std::to_string(++last[shared]);
     } while (!seen.insert(internal::Upper(id)).second);
-    const std::string what = "storm " + track.id + " is there " + std::to_string(storms) +
+    const std::string what = "storm " + track.id + " occurs " + std::to_string(storms) +
                              " times; this one is called " + id;
     place.line = track.line;
     if (place.locate) {
@@ -119,10 +119,10 @@ const StormTrack& FindTrack(const StormFile& file, const std::string& storm) {
     where += (where.empty() ? "" : ", ") + track->id + " from " +
              internal::FormatTime(track->fixes.front().time);
   }
-  throw InputError(
-      "storm: got '" + storm + "'" + (found.empty() ? DidYouMean(wanted, words) : "") +
-      ", expected " +
-      (found.empty() ? "one of: " + internal::List(names) : "an id, as there are " + where));
+  throw InputError("storm: got '" + storm + "'" + (found.empty() ? DidYouMean(wanted, words) : "") +
+                   ", expected " +
+                   (found.empty() ? "one of: " + internal::List(names)
+                                  : "an id, because several storms match: " + where));
 }
 
 }  // namespace aquafarm

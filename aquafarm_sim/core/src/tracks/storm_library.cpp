@@ -16,17 +16,18 @@ namespace {
 
 using internal::kHour_s;
 
-// Winds of the rings of every archived storm, whatever its source.
+// Winds of the rings of every archived storm, independent of its source.
 const std::vector<std::int32_t> kWinds_kt{64, 50, 34};
 
-// Steps are counted from 1970, so that they do not depend on the fixes that are kept.
+// Converts a track to a path whose steps are counted from 1970, so that they do not depend on the
+// fixes that are kept.
 StormPath PathOf(const StormTrack& track, const StormSite& site) {
   return ToPath(ToRings(track, RingReduction::kEqualArea, kWinds_kt), site.frame, site.cell_size_m,
                 site.step_duration_s, 0);
 }
 
-// Returns whether a track may come within reach: legs between fixes are shorter than the margin. It
-// saves the projection of the others.
+// Returns whether a track may come within reach. Successive fixes are closer than the margin. This
+// fast test avoids the projection of most tracks.
 bool MayComeNear(const StormTrack& track, const GeoPoint& middle, double within_km) {
   constexpr double kMargin_km = 2000.0;
   constexpr double kKmPerDegree = 111.2;
@@ -39,7 +40,8 @@ bool MayComeNear(const StormTrack& track, const GeoPoint& middle, double within_
   });
 }
 
-// Returns the part of a track on the farm's side of the globe, which ToPath needs in one piece.
+// Returns the first uninterrupted part of a track on the farm's side of the globe, as ToPath
+// requires; nullopt if it has fewer than two fixes.
 std::optional<StormTrack> Near(const StormTrack& track, const StormSite& site) {
   const auto faces = [&site](const StormFix& fix) { return site.frame.Faces(fix.position); };
   const auto first = std::find_if(track.fixes.begin(), track.fixes.end(), faces);
@@ -61,7 +63,7 @@ void Trim(const StormSite& site, double approach_s, std::vector<StormFix>& fixes
            fixes.begin() + static_cast<std::ptrdiff_t>(to)};
 }
 
-// A storm that never has winds of 34 kt has no ring.
+// Returns whether the storm has a ring. A storm whose winds never reach 34 kt has none.
 bool HasRing(const StormPath& path) {
   return std::any_of(path.points.begin(), path.points.end(), [](const StormPoint& point) {
     return *std::max_element(point.radius.begin(), point.radius.end()) > 0.0;

@@ -11,7 +11,7 @@
 namespace aquafarm {
 namespace {
 
-// Returns the waypoints on the ranch's side of the globe, from the first to the last.
+// Returns the waypoints within 60 degrees of the frame's origin, which must be consecutive.
 std::vector<StormWaypoint> Facing(const StormRings& storm, const GeoFrame& frame) {
   const auto faces = [&frame](const StormWaypoint& at) { return frame.Faces(at.position); };
   const auto& all = storm.waypoints;
@@ -55,7 +55,7 @@ StormPoint ToPoint(const StormWaypoint& from, const StormPath& path, const GeoFr
   return point;
 }
 
-// Sets the direction of motion at each fix: from the previous fix to the next one.
+// Sets the direction of motion at each fix to that from the previous fix to the next one.
 void SetDirections(std::vector<StormPoint>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const StormPoint& from = points[i == 0 ? 0 : i - 1];

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<double, kStormGradeCount - 1> kLowestWind_mps{10.8, 17.2, 24.5,
                                                                    32.7, 41.5, 51.0};
 
-// Bearing [0, 360) and speed from one fix to a later one.
+// Sets the missing heading [0, 360) and speed of `fix` to those from one fix to a later one.
 void SetMotion(const StormFix& from, const StormFix& to, StormFix& fix) {
   double distance_m = 0.0;
   double azimuth_deg = 0.0;

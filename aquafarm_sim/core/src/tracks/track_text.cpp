@@ -11,9 +11,9 @@
 namespace aquafarm::internal {
 namespace {
 
-// The directions in bulletins. With three characters, the first two or the last two name the main
-// direction towards which the third one leans (北西北 equals 北北西). The motion between fixes
-// agrees with this reading.
+// The directions in bulletins. A name of three characters stands for the bearing between the main
+// direction that it names twice and the diagonal: 北西北 and 北北西 both mean NNW. The recorded
+// motion of storms agrees with this reading.
 constexpr std::pair<std::string_view, double> kDirections[]{
     {"N", 0.0},          {"NNE", 22.5},       {"NE", 45.0},        {"ENE", 67.5},
     {"E", 90.0},         {"ESE", 112.5},      {"SE", 135.0},       {"SSE", 157.5},
@@ -83,7 +83,7 @@ std::vector<StormTrack> ReadBestTracks(std::string_view text, ParseContext& plac
     if (Trim(line).empty()) continue;
     if (!is_header(line)) {
       place.Fail("got " + Quoted(SplitWords(line)[0]) +
-                 ", expected a header, 66666 …, as the storm before has all its points");
+                 ", expected a header, 66666 …, because the storm before has all its points");
     }
     BestTrackHeader header = read_header(line, place);
     header.track.line = place.line;

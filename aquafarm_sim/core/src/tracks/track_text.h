@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Shared by the readers of tracks: fixes, rings, directions and line-based best tracks.
+/// Functions that the readers of tracks share.
 
 #include <optional>
 #include <string>
@@ -25,22 +25,27 @@ double ReadLatitudeTenths(std::string_view text, const ParseContext& place);
 /// Parses tenths of a degree in [-1800, 3600], normalized to (-180, 180]. @throws FixError
 double ReadLongitudeTenths(std::string_view text, const ParseContext& place);
 
-/// Returns the pressure of a storm; nullopt for 0 or less, which mean unknown. Values below 800 hPa
-/// are ignored with a warning.
+/// Returns the pressure of a storm; nullopt if it is 0 or less, which means unknown. Also returns
+/// nullopt, with a warning, for other values below 800 hPa.
+/// @param value_path path of the value, for messages
 std::optional<double> CheckedPressure(std::optional<double> pressure_hpa,
                                       const std::string& value_path, ParseContext& place);
 
-/// Appends a fix. A fix with the time of the last one is left out with a warning.
-/// @throws InputError for too many fixes
+/// Appends a fix. If its time equals that of the last fix, leaves it out with a warning.
+/// @throws InputError for more than kMaxFixes fixes
 void AppendFix(StormFix fix, std::vector<StormFix>& fixes, ParseContext& place);
 
-/// Completes a track: leaves out points that break the order of time, warns about jumps, and
-/// computes the motion if the source does not give it.
-/// @throws InputError if there are no points, if more points were left out than kept, or if they
-///   span more than 366 days
+/// Completes a track and its forecasts. Leaves out points that break the order of time or are more
+/// than 30 days from the others, warns about jumps, and computes motions that the source does not
+/// give. Leaves out forecasts without a point after their time of issue.
+/// @param left_out points that the reader has left out
+/// @throws InputError if there are no points, if the reader has left out more points than it has
+///   kept, if at least half of the points break the order of time, or if the points span more than
+///   366 days
 void FinishTrack(StormTrack& track, LeftOut left_out, ParseContext& place);
 
-/// Returns "NE", "ENE", "西北", … as a compass bearing; nullopt if it is not a direction.
+/// Converts a direction such as "NE", "ENE" or "西北" to a compass bearing [degrees]; nullopt if
+/// the text is not a direction.
 std::optional<double> ParseDirection(std::string_view text);
 
 /// Header of a storm in the best tracks of CMA and JMA.
@@ -49,8 +54,9 @@ struct BestTrackHeader {
   std::int32_t points{};  ///< number of lines that follow
 };
 
-/// Reads storms that consist of a header, 66666 …, and the number of points given there, one per
-/// line.
+/// Reads best tracks. Each storm consists of a header line, which starts with 66666 and contains
+/// the number of points, and of one line per point.
+/// @throws InputError if the lines do not follow this structure
 std::vector<StormTrack> ReadBestTracks(std::string_view text, ParseContext& place,
                                        BestTrackHeader (*read_header)(std::string_view line,
                                                                       ParseContext& place),

@@ -14,12 +14,12 @@ namespace {
 // Coefficients of one wind; tools/fit_wind_radii.py prints them.
 struct Relation {
   std::int32_t wind_kt{};
-  double cma{};  // a of each authority
+  double cma{};  // a, one value per authority
   double jma{};
   double jtwc{};
   double by_wind{};                   // b
   double by_latitude{};               // c [1/degree]
-  std::array<double, 3> log_sigma{};  // of storms below 48 kt, below 64 kt, and others
+  std::array<double, 3> log_sigma{};  // for storms below 48 kt, below 64 kt, and from 64 kt
 };
 
 constexpr std::array<Relation, 4> kRelations{{
@@ -45,8 +45,8 @@ RadiusEstimate EstimateRadius(std::int32_t wind_kt, double storm_wind_mps, doubl
   constexpr std::int32_t kJmaAveraging_min = 10;
   constexpr std::int32_t kJtwcAveraging_min = 1;
   const Relation& relation = RelationOf(wind_kt);
-  // Rounded to 0.01 kt: the root below is steep at V = w, where a wind that passed through a
-  // message in single precision would differ visibly.
+  // Rounded to 0.01 kt, because the square root is steep at V = w: the rounding error of a wind
+  // that a message stores in single precision would change the radius visibly.
   const double storm_kt = std::round(storm_wind_mps / kMpsPerKnot * 100.0) / 100.0;
   const double ratio = storm_kt / wind_kt;
   if (!(ratio >= kReaches)) return {};
@@ -64,7 +64,7 @@ double SizeSigma(std::int32_t wind_kt, double storm_wind_mps, double latitude,
   // The bound comes first: std::max(bound, NaN) is the bound, std::max(NaN, bound) is NaN.
   const double at_least_mps = std::max(wind_kt * kMpsPerKnot, storm_wind_mps);
   const double sigma = EstimateRadius(wind_kt, at_least_mps, latitude, averaging_min).log_sigma;
-  AQUAFARM_CHECK_LT(0.0, sigma);  // it is divided by; radii of NaN would never arrive
+  AQUAFARM_CHECK_LT(0.0, sigma);  // callers divide by it, and a ring with radius NaN has no risk
   return sigma;
 }
 

@@ -123,8 +123,8 @@ TEST(Coast, WarnsOfARingThatCrossesItself) {
   const Coast coast = ParseCoast(
       "{\"type\": \"Polygon\",\n\"coordinates\": [[[0,0],[2,2],[2,0],[0,2],[0,0]]]}", "x");
   EXPECT_EQ(coast.warnings,
-            std::vector<std::string>{"x:2: coordinates[0]: the ring crosses itself; what it goes "
-                                     "round an odd number of times is land"});
+            std::vector<std::string>{"x:2: coordinates[0]: the ring crosses itself; an area that "
+                                     "it encloses an odd number of times is land"});
 }
 
 TEST(Coast, WarnsOfARingThatRunsAlongItself) {
@@ -136,8 +136,8 @@ TEST(Coast, WarnsOfARingThatRunsAlongItself) {
     return coast.warnings.empty() ? "" : coast.warnings[0];
   };
   const std::string along =
-      "x:2: geometry.coordinates[0]: the ring overlaps itself; what it goes round an odd number "
-      "of times is land";
+      "x:2: geometry.coordinates[0]: the ring overlaps itself; an area that it encloses an odd "
+      "number of times is land";
   EXPECT_EQ(said("[[0,0],[2,0],[2,2],[3,3],[2,2],[0,2],[0,0]]"), along) << "out and back";
   EXPECT_EQ(said("[[0,0],[4,0],[4,1],[4,-1],[4,2],[0,2],[0,0]]"), along) << "upright";
   EXPECT_EQ(said("[[0,0],[3,0],[3,1],[2,1],[2,0],[1,0],[1,2],[0,2],[0,0]]"), along)
@@ -159,12 +159,12 @@ TEST(Coast, SaysWhenARingHasTooManyLinesToLookThrough) {
     return coast.warnings.size() == 1 ? coast.warnings[0] : "";
   };
   EXPECT_EQ(
-      said("").substr(0, 100),
-      "x:1: coordinates[0]: the ring of 11002 lines was not looked through for crossings after "
-      "50000000 com");
-  EXPECT_EQ(said("[-2,1],[-1,1],").substr(0, 87),
-            "x:1: coordinates[0]: the ring of 11004 lines overlaps itself and was not looked "
-            "through")
+      said("").substr(0, 143),
+      "x:1: coordinates[0]: the ring of 11002 lines was not fully checked for crossings, nor are "
+      "the rings after it: the limit of 50000000 comparisons");
+  EXPECT_EQ(said("[-2,1],[-1,1],").substr(0, 90),
+            "x:1: coordinates[0]: the ring of 11004 lines overlaps itself and was not fully "
+            "checked for")
       << "out and back before there were too many";
 }
 
@@ -181,9 +181,9 @@ TEST(Coast, SpendsItsComparisonsOnTheWholeFile) {
   EXPECT_EQ(coast.polygons.size(), 12U);
   ASSERT_EQ(coast.warnings.size(), 1U);
   EXPECT_EQ(coast.warnings[0],
-            "x:4: coordinates[2][0]: the ring of 6116 lines was not looked through for crossings "
-            "after 50000000 comparisons of the file, nor are those behind it; what it goes round "
-            "an odd number of times is land");
+            "x:4: coordinates[2][0]: the ring of 6116 lines was not fully checked for crossings, "
+            "nor are the rings after it: the limit of 50000000 comparisons per file is reached; "
+            "an area that it encloses an odd number of times is land");
 }
 
 TEST(Coast, RefusesOtherDataThanCoasts) {
@@ -201,8 +201,8 @@ TEST(Coast, RefusesOtherDataThanCoasts) {
   EXPECT_EQ(refused(polygon("[[0,0],[1,0],[1,1],[0,1]]")),
             "x:2: coordinates[0]: the ring is open, expected its last point to be its first");
   EXPECT_EQ(refused(polygon("[[0,0],[1,0],[0,0]]")),
-            "x:2: coordinates[0]: got 3 points, expected a ring of at least 4, the last as the "
-            "first");
+            "x:2: coordinates[0]: got 3 points, expected a ring of at least 4, the last equal "
+            "to the first");
   EXPECT_EQ(refused(polygon("[[0,0],\n[1,95],[1,1],[0,0]]")),
             "x:3: coordinates[0][1]: got '[1,95]', expected [longitude, latitude] in degrees");
   EXPECT_EQ(refused(polygon("[[0,0],[1,\"a\"],[1,1],[0,0]]")),

@@ -152,7 +152,7 @@ TEST_F(MapFiles, RefusePicturesThatAreNot) {
   Write("m.pgm", std::string("P5 2 1 9\n") + '\1' + '\x0b');
   EXPECT_EQ(Refused(), "m.pgm:1: pixel: got 11, expected one from 0 to 9");
   Write("m.pgm", "P2 2 1 255\n1 2 3\n");
-  EXPECT_EQ(Refused(), "m.pgm:2: got more pixels than its size states");
+  EXPECT_EQ(Refused(), "m.pgm:2: got more pixels than the stated size has");
   Write("m.pgm", "P5\n65536 65536\n255\n1234");
   EXPECT_EQ(Refused(), "m.pgm:2: width: got '65536', expected a whole number in [1, 16384]");
   Write("m.pgm", "P5\n16384 16384\n255\n1234");
@@ -323,8 +323,9 @@ TEST(AsciiGrids, AreRefusedWithTheirLine) {
     }
     return std::string("was read");
   };
-  EXPECT_EQ(refused("-5\n-6\n", "-5\n"), "x:8: got 5 values, expected the 6 of the header");
-  EXPECT_EQ(refused("-6\n", "-6 7\n"), "x:9: got more than the 6 values of the header");
+  EXPECT_EQ(refused("-5\n-6\n", "-5\n"),
+            "x:8: got 5 values, expected the 6 that the header states");
+  EXPECT_EQ(refused("-6\n", "-6 7\n"), "x:9: got more values than the 6 that the header states");
   EXPECT_EQ(refused("-5", "five"),
             "x:8: value: got 'five', expected a number in [-1000000000, 1000000000]");
   EXPECT_EQ(refused("ncols 3", "ncols 16384").substr(0, 15), "x:7: got 103 by");
@@ -332,7 +333,7 @@ TEST(AsciiGrids, AreRefusedWithTheirLine) {
   EXPECT_EQ(refused(kGrid, "").substr(0, 23), "x:1: NCOLS: got nothing");
   EXPECT_EQ(refused("cellsize", "cellsise").substr(0, 39),
             "x:5: 'cellsise': unknown key, expected ");
-  EXPECT_EQ(refused("nrows 2", "ncols 2"), "x:2: NCOLS: is there twice");
+  EXPECT_EQ(refused("nrows 2", "ncols 2"), "x:2: NCOLS: got the key twice, expected it once");
   EXPECT_EQ(refused("ncols 3", "ncols 3.9"), "x:1: NCOLS: got 3.9, expected a whole number");
   EXPECT_EQ(refused("ncols 3", "ncols 0"), "x:1: NCOLS: got 0, expected a number in [1, 16384]");
   EXPECT_EQ(refused("cellsize 0.01", "cellsize -1"),
@@ -367,22 +368,22 @@ TEST(AsciiGrids, InDegreesLieOnTheGlobe) {
       return error.what();
     }
   };
-  const std::string latitude = ", expected degrees in [-90, 90], as CELLSIZE is below 1";
-  const std::string longitude = ", expected degrees in [-360, 360], as CELLSIZE is below 1";
+  const std::string latitude = ", expected degrees in [-90, 90], because CELLSIZE is below 1";
+  const std::string longitude = ", expected degrees in [-360, 360], because CELLSIZE is below 1";
   const std::vector<std::array<std::string, 3>> cases{
       {"yllcorner 30.0", "yllcorner 89.98", "in degrees"},
       {"yllcorner 30.0", "yllcorner 89.99", "in degrees"},  // the last node lies on the pole
       {"yllcorner 30.0", "yllcorner -90.005", "in degrees"},
       {"yllcorner 30.0", "yllcorner 95",
-       "x:4: YLLCORNER: got 95, cells from 95.005 to 95.015" + latitude},
+       "x:4: YLLCORNER: got 95, so that the cells reach from 95.005 to 95.015" + latitude},
       {"yllcorner 30.0", "yllcorner -90.5",
-       "x:4: YLLCORNER: got -90.5, cells from -90.495 to -90.485" + latitude},
+       "x:4: YLLCORNER: got -90.5, so that the cells reach from -90.495 to -90.485" + latitude},
       {"yllcorner 30.0", "yllcenter 91",
-       "x:4: YLLCENTER: got 91, cells from 91 to 91.01" + latitude},
+       "x:4: YLLCENTER: got 91, so that the cells reach from 91 to 91.01" + latitude},
       {"yllcorner 30.0", "yllcorner 3400000", "in metres"},
       {"xllcorner 122.0", "xllcorner -180", "in degrees"},
       {"xllcorner 122.0", "xllcorner 361",
-       "x:3: XLLCORNER: got 361, cells from 361.005 to 361.025" + longitude},
+       "x:3: XLLCORNER: got 361, so that the cells reach from 361.005 to 361.025" + longitude},
       {"cellsize 0.01", "cellsize 1", "in metres"},
   };
   for (const auto& [from, to, words] : cases) EXPECT_EQ(read(from, to), words) << to;

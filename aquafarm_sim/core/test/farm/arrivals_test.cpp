@@ -290,9 +290,9 @@ TEST(IssueForecast, IsRefusedInWords) {
   EXPECT_EQ(refused([](IssuedForecast& f) { f.points.clear(); }),
             "forecasts[0].points: got 0 entries, expected [1, 10000]");
   EXPECT_EQ(refused([](IssuedForecast& f) { f.points[1].step = 40.0F; }),
-            "forecasts[0].points[1].step: got 40, expected more than that of points[0], 40");
+            "forecasts[0].points[1].step: got 40, expected more than the step of points[0], 40");
   EXPECT_EQ(refused([](IssuedForecast& f) { f.points[1].radii.clear(); }),
-            "forecasts[0].points[1].radii: missing, expected radii as at points[0]");
+            "forecasts[0].points[1].radii: missing, expected radii because points[0] has radii");
   EXPECT_EQ(refused([](IssuedForecast& f) { f.points[0].radii = {3.0F}; }),
             "forecasts[0].points[0].radii: got 1 entries, expected as many as risks: 2");
   EXPECT_EQ(refused([](IssuedForecast& f) { f.points[0].x = 1e9F; }),
@@ -327,8 +327,8 @@ TEST(ScenarioForecasts, MayHaveRings) {
             "x.yaml:7: disasters[0].forecasts[0].points[0].grade: missing, expected a whole number "
             "in [1, 4]");
   EXPECT_EQ(refused("{step: 6, x: 1, y: 2}, {step: 9, x: 1, y: 2, grade: 3, radii: [5, 9]}"),
-            "x.yaml:7: disasters[0].forecasts[0].points[1].radii: got radii, expected none as at "
-            "points[0]");
+            "x.yaml:7: disasters[0].forecasts[0].points[1].radii: got radii, expected none "
+            "because points[0] has none");
 }
 
 }  // namespace

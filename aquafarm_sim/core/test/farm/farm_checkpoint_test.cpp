@@ -278,8 +278,8 @@ TEST(SaveLoad, AStateOfBeforeBulletinsKeptRingsIsRefused) {
   ASSERT_EQ(Refused(farm, [](json&) {}), "was loaded");
   EXPECT_EQ(
       Refused(farm, [](json& s) { s["disasters"][1].erase("bulletin_rings"); }),
-      "state: disaster: bulletin_rings: missing, expected the rings as the last bulletin gave "
-      "them, which states saved by older versions lack");
+      "state: disaster: bulletin_rings: missing, expected the rings of the last bulletin; states "
+      "saved by older versions lack them: use another saved state");
 }
 
 TEST(Hash, DependsOnTheBulletinRingsOfAGrowingDisaster) {

@@ -194,7 +194,7 @@ TEST(Forecasts, AreAskedForInWords) {
             "view.forecast_error_km: got an error that shrinks with time, expected ascending "
             "numbers");
   EXPECT_EQ(Refused("[69, 121, 175]", false),
-            "view.forecast_error_km: is used only where a disaster has a track");
+            "view.forecast_error_km: is used only if a disaster has a track");
 }
 
 TEST(Forecasts, AreWrittenBackAndPartOfTheHash) {
@@ -313,7 +313,7 @@ TEST(IssuedForecasts, AreOnlyOfATrackOfTheScenario) {
   Scenario scenario = ReportedFarm();
   scenario.disasters[0].track.clear();
   EXPECT_EQ(refused([&] { ValidateScenario(scenario); }),
-            "disasters[0].forecasts: is used only where there is a track");
+            "disasters[0].forecasts: is used only if 'track' is set");
 }
 
 // Returns the error of reading a file with these forecasts, or "was taken".
@@ -335,11 +335,11 @@ std::string RefusalOfReported(const std::string& forecasts, const std::string& e
 TEST(IssuedForecasts, AreRefusedWithALine) {
   EXPECT_EQ(RefusalOfReported("[{step: 0, points: [{step: 6, x: 1, y: 2}]}]"), "was taken");
   EXPECT_EQ(RefusalOfReported("[{step: 6, points: [{step: 6, x: 1, y: 2}]}]"),
-            "x.yaml:9: disasters[0].forecasts[0].points[0].step: got 6, expected more than that of "
-            "its issue, 6");
+            "x.yaml:9: disasters[0].forecasts[0].points[0].step: got 6, expected more than the "
+            "step of its issue, 6");
   EXPECT_EQ(RefusalOfReported("[{step: 6, points: [{step: 9, x: 1, y: 2}]}, "
                               "{step: 6, points: [{step: 9, x: 1, y: 2}]}]"),
-            "x.yaml:9: disasters[0].forecasts[1].step: got 6, expected more than that of "
+            "x.yaml:9: disasters[0].forecasts[1].step: got 6, expected more than the step of "
             "forecasts[0], 6");
   EXPECT_EQ(RefusalOfReported("[{step: 6}]"),
             "x.yaml:9: disasters[0].forecasts[0].points: got 0 entries, expected [1, 10000]");
@@ -348,7 +348,7 @@ TEST(IssuedForecasts, AreRefusedWithALine) {
             "[-1e+06, 1e+06]");
   EXPECT_EQ(RefusalOfReported("[{step: 0, points: [{step: 6, x: 1, y: 2}]}]",
                               "view: {forecast_error_km: [1, 2, 3]}\n"),
-            "x.yaml:10: view.forecast_error_km: is used only where no disaster has forecasts, but "
+            "x.yaml:10: view.forecast_error_km: is used only if no disaster has forecasts, but "
             "disasters[0] has");
 }
 

@@ -174,17 +174,17 @@ TEST(Quadrants, ThatDoNotFitAreRefused) {
   scenario.disasters[0].track[1].quadrants.clear();
   EXPECT_EQ(Refused(scenario),
             "disasters[0].track[1].quadrants: got 0 rings, expected as many as the disaster has, "
-            "or none anywhere");
+            "or no quadrants at all");
   scenario = Crossed();
   scenario.disasters[0].track[1].quadrants[1][0] = 0.5F;
   EXPECT_EQ(Refused(scenario),
-            "disasters[0].track[1].quadrants[1][0]: got 0.5, expected at least that of the ring "
-            "inside, 1");
+            "disasters[0].track[1].quadrants[1][0]: got 0.5, expected at least the radius of "
+            "the inner ring, 1");
   scenario = Crossed();
   scenario.disasters[0].track[1].radii[1] = 9.0F;
   EXPECT_EQ(Refused(scenario),
-            "disasters[0].track[1].quadrants: got radii that are not the largest of each ring's "
-            "quadrants");
+            "disasters[0].track[1].quadrants: got radii that differ from the largest quadrant of "
+            "each ring");
 }
 
 }  // namespace

@@ -204,12 +204,12 @@ std::string Refused(const std::string& keys) {
 TEST(DisasterSlots, AreRefusedInWords) {
   EXPECT_EQ(Refused("disaster_slots: 2, forecast_leads_h: [6, 24]"), "was taken");
   EXPECT_EQ(Refused("forecast_leads_h: [6]"),
-            "x.yaml:4: view.forecast_leads_h: is used only where disaster_slots is above 0");
+            "x.yaml:4: view.forecast_leads_h: is used only if 'disaster_slots' is above 0");
   EXPECT_EQ(Refused("disaster_slots: 64"),
             "x.yaml:4: view.disaster_slots: got 64, expected at most 63 next to the 1 disasters of "
             "the scenario");
   EXPECT_EQ(Refused("disaster_slots: 1, forecast_leads_h: [6, 6]"),
-            "x.yaml:4: view.forecast_leads_h[1]: got 6, expected more than the lead before, 6");
+            "x.yaml:4: view.forecast_leads_h[1]: got 6, expected more than the previous lead, 6");
   EXPECT_EQ(Refused("disaster_slots: -1"),
             "x.yaml:4: view.disaster_slots: got -1, expected [0, 64]");
 }

@@ -133,9 +133,10 @@ TEST_F(ForecastRanch, HoldsTheLargerRadiiWhereTheWindIsUnknownBetweenTwoPoints) 
   const BuiltRanch ranch = Make(
       R"(, "forecast": [{"points": [{"time": "2021-07-25T20:00:00", "lat": 30.2, "lng": 122.0,
           "radius7": 100}]}])");
-  EXPECT_TRUE(Says(ranch.warnings,
-                   "storm: stretches of the track without a known wind at both ends: 1; the larger "
-                   "radii of both ends hold there; give a track with a wind at each point"));
+  EXPECT_TRUE(
+      Says(ranch.warnings,
+           "storm: stretches of the track in which the wind cannot be interpolated: 1; they "
+           "have the larger radii of both ends; give a track with a wind at each point"));
   const std::vector<Waypoint>& track = ranch.scenario.disasters.at(0).track;
   EXPECT_EQ(track.back().radii.back(), 200.0F) << "100 km";
   EXPECT_EQ(track[track.size() - 2].radii.back(), 600.0F) << "300 km";
@@ -166,7 +167,7 @@ TEST_F(ForecastRanch, NamesAStormThatIsFarAwayAndAStartBeforeIt) {
   request_.start = kMidnight - 48 * kHour_s;
   EXPECT_TRUE(Says(Make(kForecast).warnings,
                    "start: got 2021-07-23T00:00:00Z, expected a time from the storm's first known "
-                   "position at 2021-07-24T00:00:00Z on; the storm stands there until then"));
+                   "position at 2021-07-24T00:00:00Z on; the storm stays there until then"));
 }
 
 // A bulletin that ends before the storm arrives.

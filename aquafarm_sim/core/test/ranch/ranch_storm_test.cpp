@@ -127,8 +127,8 @@ TEST(Ranch, HasTheStormAsItsFileSays) {
   EXPECT_EQ(storm.track[0].grade, 3);
   EXPECT_EQ(storm.track[0].risks, DefaultGradeRisks()[2]);
   EXPECT_EQ(storm.duration, 89) << "to the last fix";
-  EXPECT_TRUE(Says(ranch.decided, "In-fa (2106), CMA best track cma.txt, 3 fixes, winds of 2 min"));
-  EXPECT_TRUE(Says(ranch.decided, "radii estimated at 3, unknown at 0"));
+  EXPECT_TRUE(Says(ranch.decided, "In-fa (2106), CMA best track cma.txt, 3 fixes, 2-minute winds"));
+  EXPECT_TRUE(Says(ranch.decided, "radii estimated at 3 points, unknown at 0"));
   EXPECT_TRUE(Says(ranch.decided, "34 kt over the ranch for 6."));
   EXPECT_TRUE(Says(ranch.warnings, "cma.txt:9: time: 2021-07-25T06:00:00Z occurs twice"));
   Farm farm(std::make_shared<const Scenario>(ranch.scenario));
@@ -163,7 +163,7 @@ TEST(Ranch, SaysThatRadiiAreEstimatedWhereQuadrantsAreBlank) {
   request.chart.clear();
   request.center = GeoPoint{-9.0, 50.0};
   EXPECT_TRUE(Says(BuildRanch(request).decided,
-                   "radii estimated at 2, where quadrants are blank, unknown at 0"));
+                   "radii estimated at 2 points, where quadrants are blank, unknown at 0"));
 }
 
 TEST(Ranch, BorrowsRadiiAndHasItsOwnStart) {

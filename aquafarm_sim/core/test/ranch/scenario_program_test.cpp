@@ -79,9 +79,9 @@ TEST(Program, MakesARanchWithAStormOfAnArchiveInEveryEpisode) {
   EXPECT_NE(storms.tracks.find("storm 2106 2 CMA | In-fa"), std::string::npos);
   fs::remove(path);
   EXPECT_EQ(RunApp(place + " --years 1990").second,
-            "years: got '1990', expected FIRST:LAST as 1979:2009\n");
+            "years: got '1990', expected FIRST:LAST such as 1979:2009\n");
   EXPECT_NE(
-      RunApp(place + " --years 1990:1990 --within 10").second.find("storms none of these years"),
+      RunApp(place + " --years 1990:1990 --within 10").second.find("storms is from these years"),
       std::string::npos);
   EXPECT_NE(RunApp("--archive " + archive + " --years 1990:2009").second.find("center: got none"),
             std::string::npos);
@@ -106,8 +106,8 @@ TEST(Program, RefusesWrongArguments) {
       {"--sea-risk 1", "--sea-risk requires --sea"},
       {"--sea-level nan", "sea_level: got nan, expected [-100000, 100000]"},
       {"--start noon",
-       "start: got 'noon', expected a UTC time as 2021-07-24T12:00Z, or a local one with its zone, "
-       "as 2021-07-24T20:00+08:00"},
+       "start: got 'noon', expected a UTC time such as 2021-07-24T12:00Z, or a local one with its "
+       "zone, such as 2021-07-24T20:00+08:00"},
       {"--chart /nowhere.json --center 30,122", "/nowhere.json: cannot read: No such file"},
       {"--devices 0", "--devices: Value 0 not in range"},
       {"--frob", "The following argument was not expected: --frob"},

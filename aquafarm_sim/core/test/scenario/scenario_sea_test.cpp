@@ -150,11 +150,11 @@ TEST(Seas, ThatAreWrongAreRefused) {
   EXPECT_EQ(Refused(WithRules("  risk: '2 * '\n")).substr(0, 52),
             "seas.risk: got '2 * ', expected an expression: Unexp");
   EXPECT_EQ(Refused(WithRules("  risk: '-8'\n  risk_values: [0]\n")),
-            "seas.risk_values: is used only where there is no risk");
+            "seas.risk_values: is used only if 'risk' is not set");
   EXPECT_EQ(Refused(WithRules("  risk_values: [0, -8]\n")),
-            "seas.risk_values: got 2 values, expected one a cell: 25");
+            "seas.risk_values: got 2 values, expected one per cell: 25");
   EXPECT_EQ(Refused(WithRules("  device_values: [0, 8]\n")),
-            "seas.device_values: got 2 values, expected one a cell: 25");
+            "seas.device_values: got 2 values, expected one per cell: 25");
   Scenario wrong = Warm();
   wrong.seas->risk.assign(25, 0.0F);
   wrong.seas->risk[7] = -3.0F;
@@ -168,13 +168,13 @@ TEST(Seas, ThatAreWrongAreRefused) {
     return Refused(text.replace(text.find(from), from.size(), to));
   };
   EXPECT_EQ(changed("name: \"warmth\"", "name: \"Warm th\""),
-            "seas.layers[0].name: got 'Warm th', expected a-z, 0-9 and _, a letter first");
+            "seas.layers[0].name: got 'Warm th', expected a-z, 0-9 and _, starting with a letter");
   EXPECT_EQ(changed(".nan]", ".nan, 7]"),
-            "seas.layers[0].values: got 26 values, expected one a cell: 25");
+            "seas.layers[0].values: got 26 values, expected one per cell: 25");
   EXPECT_EQ(changed(".nan]", "nothing]"),
             "seas.layers[0].values[24]: got 'nothing', expected a number or .nan");
   EXPECT_EQ(changed("units: \"degC\"", "file: sea.nc"),
-            "seas.layers[0].values: is used only where there is no file");
+            "seas.layers[0].values: is used only if 'file' is not set");
   Scenario twice = Warm();
   twice.seas->layers.push_back(twice.seas->layers[0]);
   EXPECT_EQ(Refused(ToYaml(twice)), "seas.layers[0].name: got 'warmth' twice, expected it once");

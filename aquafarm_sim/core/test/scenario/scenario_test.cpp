@@ -79,7 +79,7 @@ TEST(ValidateDisaster, NamesWhatIsWrong) {
   EXPECT_EQ(AfterChange([](DisasterSpec& d) { d.border = static_cast<Border>(3); }),
             "border: got code 3, expected [0, 2]");
   EXPECT_EQ(AfterChange([](DisasterSpec& d) { d.track[1].step = 0.0F; }),
-            "track[1].step: got 0, expected more than that of track[0], 0");
+            "track[1].step: got 0, expected more than the step of track[0], 0");
   EXPECT_EQ(AfterChange([](DisasterSpec& d) {
               d.track[1].radii = {2.0F, 1.0F};
             }),

@@ -409,6 +409,7 @@ TEST(Expressions, AreEvaluatedAtEveryCell) {
   EXPECT_EQ(value(0, 0), 50.0F);
   EXPECT_EQ(value(0, 1), 56.0F);
   EXPECT_TRUE(std::isnan(value(0, 2)));
+  EXPECT_EQ(Evaluate("2 * warmth", layers)(0, 2), 40.0F) << "salinity is not used";
 }
 
 TEST(Expressions, AreRefusedInOneLine) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Steps farms for a long time and checks after each step what must always hold: every device is
-/// accounted for, every reward is the sum of its terms, the mask of legal actions is right. A farm
-/// that was saved and loaded has the same hash and continues alike.
+/// Steps farms for a long time and checks invariants after each step: every device is accounted
+/// for, every reward is the sum of its terms, and the mask of legal actions is correct. Also checks
+/// that a farm that was saved and loaded has the same hash and continues identically.
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@
 namespace aquafarm::soak {
 
 inline constexpr std::int64_t kSavePeriod = 1'000'000;  // steps between saves
-inline constexpr int kStepsAfterLoad = 200;             // that both farms then take alike
+inline constexpr int kStepsAfterLoad = 200;             // steps for which both farms are compared
 
 class Fault : public std::runtime_error {
  public:
@@ -36,7 +36,7 @@ inline void Must(bool holds, const char* what) {
   if (!holds) throw Fault(what);
 }
 
-/// What the checks need to know of the state before a step.
+/// The state before a step, as far as the checks need it.
 struct Before {
   std::vector<ActionMask> legal;
   std::vector<bool> active;
@@ -125,8 +125,9 @@ inline void CheckRewards(const Farm& farm, const Before& before) {
   Must(farm.step() <= farm.scenario().step_limit, "the episode is longer than its limit");
 }
 
-/// Chooses the joint action of the next step. @param legal legal actions by ship
-/// @param actions output, one per ship; may contain illegal actions and numbers that are none
+/// Chooses the actions of all ships for the next step.
+/// @param legal legal actions by ship
+/// @param actions result, one Action per ship; illegal actions are allowed
 using Chooser = std::function<void(const Farm& farm, const std::vector<ActionMask>& legal,
                                    std::mt19937_64& rng, std::vector<std::uint8_t>& actions)>;
 
@@ -142,7 +143,7 @@ inline void Step(Farm& farm, const Chooser& choose, std::mt19937_64& rng,
   CheckRewards(farm, before);
 }
 
-/// Loads the saved farm into another one; both must then continue alike.
+/// Saves a farm, loads it into another one, and checks that both continue identically.
 inline void CheckLoad(Farm& farm, Farm& other, const Chooser& choose, std::mt19937_64& rng,
                       std::vector<std::uint8_t>& actions) {
   other.Load(farm.Save());
@@ -154,11 +155,12 @@ inline void CheckLoad(Farm& farm, Farm& other, const Chooser& choose, std::mt199
   }
 }
 
-/// Makes the chooser of a scenario, which outlives it. @throws InputError if there is none for it;
-/// the scenario is then left out
+/// Creates the chooser for a scenario. The scenario outlives the chooser.
+/// @throws InputError if the chooser does not support the scenario, which is then left out
 using MakeChooser = std::function<Chooser(const std::shared_ptr<const Scenario>& scenario)>;
 
-/// Takes `steps` checked steps in a scenario and prints a line.
+/// Takes `steps` checked steps in a scenario and prints a summary line.
+/// @throws Fault if a check fails; the message contains scenario, seed, episode and step
 inline void Soak(const std::string& path, std::int64_t steps, std::uint64_t seed,
                  const MakeChooser& make) {
   const auto scenario = std::make_shared<const Scenario>(LoadScenario(path));
@@ -214,8 +216,10 @@ inline std::vector<std::string> Scenarios(const std::vector<std::string>& places
   return paths;
 }
 
-/// usage: PROGRAM STEPS SEED SCENARIO.yaml|FOLDER... Takes STEPS in each scenario.
-/// @returns the exit code: 1 after the first fault, which is printed with what reproduces it
+/// Runs a program with the usage PROGRAM STEPS SEED SCENARIO.yaml|FOLDER... It takes STEPS steps in
+/// each scenario.
+/// @returns the exit code: 0 without a fault, 1 after the first fault, which is printed, or 2 for
+///   invalid arguments
 inline int Main(int argc, char** argv, const char* name, const MakeChooser& make) {
   if (argc < 4 || std::atoll(argv[1]) < 1) {
     std::fprintf(stderr, "usage: %s STEPS SEED SCENARIO.yaml|FOLDER...\n", name);

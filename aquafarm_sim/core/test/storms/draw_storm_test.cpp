@@ -270,17 +270,17 @@ TEST(StormsKey, IsRefusedInOneLine) {
       "ranch.yaml:9: disasters[0].storms.evaluation_years: got [2009, 2023], expected no year "
       "of years, [2000, 2009]: training must not see them");
   EXPECT_EQ(Refused("[2000, 2009]", "[2003, 2009]"),
-            "ranch.yaml:8: disasters[0].storms.years: got [2003, 2009], but of the archive's 3 "
-            "storms none of these years comes within within_km = 300 km of the farm with a gale; "
-            "expected at least one: check the years, within_km and grid.origin");
-  EXPECT_NE(Refused("latitude: 30.1", "latitude: -30.1").find("storms none of these years comes"),
+            "ranch.yaml:8: disasters[0].storms.years: got [2003, 2009], but none of the "
+            "archive's 3 storms is from these years and brings a gale within within_km = 300 km of "
+            "the farm; expected at least one: check the years, within_km and grid.origin");
+  EXPECT_NE(Refused("latitude: 30.1", "latitude: -30.1").find("storms is from these years"),
             std::string::npos);
   EXPECT_EQ(
       Refused("[2000, 2009]", "[2009, 2000]"),
       "ranch.yaml:8: disasters[0].storms.years: got [2009, 2000], expected the smaller number "
       "first");
   EXPECT_EQ(Refused("      tracks: |", "      archive: [nowhere.txt]\n      tracks: |"),
-            "ranch.yaml:11: disasters[0].storms.tracks: is used only where there is no archive");
+            "ranch.yaml:11: disasters[0].storms.tracks: is used only if 'archive' is not set");
   EXPECT_EQ(Refused("duration: 360", "duration: 100"),
             "ranch.yaml:7: disasters[0].storms.approach_h: got 24 +- perturbation.start_h 0, "
             "expected a closest approach in the episode, [0, 13.333333333333334] hours; change "
@@ -291,9 +291,9 @@ TEST(StormsKey, IsRefusedInOneLine) {
                 .find("ranch.yaml:10: disasters[0].storms.tracks: tracks:4: grade: got 'XY'"),
             0U);
   EXPECT_EQ(Refused("    duration: 360\n", "    duration: 360\n    track: []\n"),
-            "ranch.yaml:7: disasters[0].track: is used only where there are no storms");
+            "ranch.yaml:7: disasters[0].track: is used only if 'storms' is not set");
   EXPECT_EQ(Refused("    duration: 360\n", "    duration: 360\n    speed: 1\n"),
-            "ranch.yaml:7: disasters[0].speed: is used only where there is no track");
+            "ranch.yaml:7: disasters[0].speed: is used only if 'track' is not set");
 }
 
 TEST(StormsKey, NamesAnArchiveThatIsNotThere) {

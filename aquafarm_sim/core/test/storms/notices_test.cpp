@@ -66,7 +66,7 @@ TEST(Anchorages, WithoutForecastsAreSaid) {
   for (const std::string none : {R"("Time": "2026043011")", R"("PreciseForecast": [])",
                                  R"("PreciseForecast": null)", R"("preciseForecast": [{}])"}) {
     EXPECT_EQ(said("\n\"东锚地\": {" + none + "}"),
-              Words{"x.json:3: anchors.东锚地: got no PreciseForecast, the anchorage is left out"})
+              Words{"x.json:3: anchors.东锚地: got no PreciseForecast; the anchorage is left out"})
         << none;
   }
 }
@@ -106,7 +106,7 @@ TEST(Notices, ThatAreWrongAreRefusedWithTheirLine) {
   EXPECT_EQ(Refused("warning.json", "Yellow", "Pink"),
             "x.json:5: warning[0].severityColor: got 'Pink', expected Blue, Yellow, Orange or Red");
   EXPECT_EQ(Refused("warning.json", "2026-05-05T10:30", "2026-05-32T10:30"),
-            "x.json:4: warning[0].endTime: got '2026-05-32T10:30+08:00', expected a time as "
+            "x.json:4: warning[0].endTime: got '2026-05-32T10:30+08:00', expected a time such as "
             "2021-07-25T14:00:00");
   EXPECT_EQ(Refused("warning.json", "2026-05-05T10:30", "2026-05-04T10:30"),
             "x.json:4: warning[0].endTime: got an end that is not after the start");
@@ -114,13 +114,14 @@ TEST(Notices, ThatAreWrongAreRefusedWithTheirLine) {
             "x.json:1: code: got '401', expected '200'");
   EXPECT_EQ(Refused("anchorage.json", "2026043011", "20260430"),
             "x.json:1: publishCode: got '20260430', expected YYYYMMDDHH");
+  EXPECT_EQ(Refused("anchorage.json", "30日08时-11时", "32日08时-11时"),
+            "x.json:3: anchors.东锚地.PreciseForecast[0].Time: got '32日08时-11时', expected a "
+            "period such as "
+            "'04日08时-11时'");
   EXPECT_EQ(
-      Refused("anchorage.json", "30日08时-11时", "32日08时-11时"),
-      "x.json:3: anchors.东锚地.PreciseForecast[0].Time: got '32日08时-11时', expected such as "
-      "'04日08时-11时'");
-  EXPECT_EQ(Refused("anchorage.json", "<0.5m", "calm"),
-            "x.json:3: anchors.东锚地.PreciseForecast[0].WindWave: got 'calm', expected such as "
-            "'0.5-1.0m'");
+      Refused("anchorage.json", "<0.5m", "calm"),
+      "x.json:3: anchors.东锚地.PreciseForecast[0].WindWave: got 'calm', expected a range such as "
+      "'0.5-1.0m'");
   EXPECT_EQ(
       Refused("anchorage.json", "4 4 4 4", "4 4 7 4"),
       "x.json:3: anchors.东锚地.PreciseForecast[0].Riskrating: got '4 4 7 4', expected numbers "

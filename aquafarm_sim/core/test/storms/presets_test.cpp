@@ -82,7 +82,7 @@ TEST(Presets, AreRefusedWithTheKey) {
       {"wave:height_m=4,radius_km=2,area_km2=3",
        "disaster: wave: got 'area_km2', expected one of height_m, radius_km, current_mps, "
        "current_to_deg, growth_m_h, duration_h"},
-      {"wave:height_m=4,height_m=5", "disaster: wave: got 'height_m' twice"},
+      {"wave:height_m=4,height_m=5", "disaster: wave: got 'height_m' twice, expected it once"},
       {"wave:height_m", "disaster: wave: got 'height_m', expected KEY=NUMBER"},
       {"wave:height_m=nan,radius_km=2", "disaster: wave: height_m: got nan, expected [2.5, 30]"},
       {"storm_surge:level=2.7,radius_km=9",

@@ -231,10 +231,8 @@ TEST(Steps, AreBounded) {
     StepsToCover(3.0e8, 0.001);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "duration: got 300000000000 steps, expected at most 10000000; the storm is too long for "
-        "such steps");
+    EXPECT_STREQ(error.what(),
+                 "duration: got 300000000000 steps, expected at most 10000000; use longer steps");
   }
 }
 

@@ -40,7 +40,7 @@ TEST(Bulletin, OfZhejiangIsRefusedWithItsLine) {
     return Warnings(With(Sample("zhejiang.js"), from, to));
   };
   const std::string four =
-      "', expected four numbers in [0, 3000] as 250|220|200|180; the value is "
+      "', expected four numbers in [0, 3000] such as 250|220|200|180; the value is "
       "ignored\n";
   EXPECT_EQ(warned("300|200|190|250", "300|200|190"),
             "x:9: [0].points[0].radius7: got '300|200|190" + four);
@@ -49,7 +49,7 @@ TEST(Bulletin, OfZhejiangIsRefusedWithItsLine) {
   EXPECT_EQ(warned("\"30.4\"", "\"95\""),
             "x:16: [0].points[0].forecast[1].forecastpoints[0].lat: got '95', expected a number in "
             "[-90, 90]; the point is left out\n"
-            "x:15: [0].points[0].forecast[1]: got no points after its issue, the forecast is left "
+            "x:15: [0].points[0].forecast[1]: got no points after its issue; the forecast is left "
             "out\n");
   EXPECT_EQ(warned("radius7\": \"300|200|190|250\"", "r7\": \"300|200|190\""),
             "x:9: [0].points[0].r7: got '300|200|190" + four);
@@ -108,7 +108,7 @@ TEST(Bulletin, SaysWhichForecastsHaveNoPoints) {
         forecasts + "]}]}]");
   };
   const std::string point = R"([{"time": "2021-07-25T20:00:00", "lat": 30, "lng": 121}])";
-  const std::string left_out = ": got no points after its issue, the forecast is left out\n";
+  const std::string left_out = ": got no points after its issue; the forecast is left out\n";
   EXPECT_EQ(said(""), "");
   EXPECT_EQ(said("{\"sets\": \"中国\", \"points\": " + point + "}"), "");
   for (const std::string none :
@@ -125,8 +125,8 @@ TEST(Bulletin, LeavesOutWhatAForecastSaysOfBefore) {
   const std::string late = With(Sample("bulletin.json"), "\"time\": \"2021-07-25T20:00:00\"",
                                 "\"time\": \"2021-07-25T07:00:00\"");
   EXPECT_NE(Warnings(late).find("x:13: [0].points[0].forecast[0].points[0].time: got "
-                                "2021-07-24T23:00:00Z, before 2021-07-25T00:00:00Z, whose "
-                                "forecast it is; left out\n"),
+                                "2021-07-24T23:00:00Z, expected a time after "
+                                "2021-07-25T00:00:00Z, the issue; the point is left out\n"),
             std::string::npos)
       << Warnings(late);
 }
@@ -137,10 +137,10 @@ TEST(Bulletin, LeavesOutForecastPointsOfAnotherTime) {
   };
   EXPECT_EQ(Warnings(with("2021-08-09T08:00:00")).find("15 days"), std::string::npos);
   const std::string late = with("2021-08-09T08:01:00");
-  EXPECT_EQ(
-      Warnings(late).substr(0, 171),
-      "x:15: [0].points[0].forecast[0].points[1].time: got 2021-08-09T00:01:00Z, expected a "
-      "forecast's within 15 days after 2021-07-25T00:00:00Z; the point is left out\nx:18: [0].");
+  EXPECT_EQ(Warnings(late).substr(0, 182),
+            "x:15: [0].points[0].forecast[0].points[1].time: got 2021-08-09T00:01:00Z, expected "
+            "the time of a forecast, within 15 days after 2021-07-25T00:00:00Z; the point is left "
+            "out\nx:18: [0].");
   EXPECT_EQ(ParseStormFile(late, "x").tracks[0].forecasts.at(0).fixes.size(), 1U);
 }
 

@@ -37,7 +37,7 @@ const std::vector<Typo> kFields{
     {"RadiusAsAList", R"("lat": 30, "lng": 122, "radius7": [1])",
      "radius7: got a list, expected a number in [0, 3000]; the value is ignored"},
     {"Quadrants", R"("lat": 30, "lng": 122, "radius7_quad": [1])",
-     "radius7_quad: got no object, expected radii as {\"ne\": 250, …}; the value is ignored"},
+     "radius7_quad: got no object, expected radii such as {\"ne\": 250, …}; the value is ignored"},
     {"Wind", R"("lat": 30, "lng": 122, "speed": 380)",
      "speed: got 380, expected a number in [0, 150]; the value is ignored"},
     {"Direction", R"("lat": 30, "lng": 122, "move_dir": ["W"])",
@@ -82,7 +82,7 @@ TEST(Typos, OfATimeOrAPositionLeaveOutThePoint) {
            {PointAt("25T14", R"("lat": 30, "lng": "12z")"),
             "lng: got '12z', expected a number in [-180, 360]"},
            {PointAt("32T14", R"("lat": 30, "lng": 122)"),
-            "time: got '2021-07-32T14:00:00', expected a time as 2021-07-25T14:00:00"}}) {
+            "time: got '2021-07-32T14:00:00', expected a time such as 2021-07-25T14:00:00"}}) {
     const StormFile file = ParseStormFile(Bulletin(point), "x");
     EXPECT_EQ(file.warnings,
               std::vector<std::string>{"x:3: [0].points[1]." + words + "; the point is left out"});
@@ -110,12 +110,14 @@ TEST(Typos, InATimeDoNotLoseThePointsBehindIt) {
   };
   const std::string left_out = "; the point is left out";
   EXPECT_EQ(kept({"2021-07-25T08", "2022-07-25T14", "2021-07-25T20", "2021-07-26T02"},
-                 "x:1: [0].time: got 2022-07-25T06:00:00Z, expected the order of the other points" +
+                 "x:1: [0].time: got 2022-07-25T06:00:00Z, expected a time in the order of the "
+                 "other points" +
                      left_out)
                 .size(),
             3U);
   EXPECT_EQ(kept({"2021-07-25T08", "2021-07-25T14", "2020-07-25T20", "2021-07-26T02"},
-                 "x:1: [0].time: got 2020-07-25T12:00:00Z, expected the order of the other points" +
+                 "x:1: [0].time: got 2020-07-25T12:00:00Z, expected a time in the order of the "
+                 "other points" +
                      left_out)
                 .size(),
             3U);
@@ -161,10 +163,11 @@ TEST(Bulletin, ReadsLandfallsThatNameTheirTimeAsPointsDo) {
   ASSERT_EQ(file.tracks.at(0).landfalls.size(), 1U);
   EXPECT_EQ(file.tracks[0].landfalls[0].time, kInFaNoon - 90 * 60);
   EXPECT_EQ(file.tracks[0].landfalls[0].place, "Putuo");
-  EXPECT_EQ(file.warnings,
-            std::vector<std::string>{
-                "x:2: [0].land[1].land_time: got nothing, expected a time as 2021-07-25T14:00:00; "
-                "the landfall is left out (and 1 more of this kind in the file)"});
+  EXPECT_EQ(
+      file.warnings,
+      std::vector<std::string>{
+          "x:2: [0].land[1].land_time: got nothing, expected a time such as 2021-07-25T14:00:00; "
+          "the landfall is left out (and 1 more of this kind in the file)"});
 }
 
 TEST(Cma, OneWrongValueLeavesTheStorm) {
@@ -188,8 +191,8 @@ TEST(Cma, OneWrongValueLeavesTheStorm) {
             "x:7: latitude in tenths of a degree: got '999', expected a whole number in [-900, "
             "900]; the point is left out");
   const std::string nameless = With(text, "In-fa ", "      ");
-  EXPECT_EQ(Warnings(nameless).substr(0, 88),
-            "x:5: name: got nothing, expected a name or (nameless); the storm is 2106 without a "
+  EXPECT_EQ(Warnings(nameless).substr(0, 89),
+            "x:5: name: got nothing, expected a name or (nameless); the storm is 2106 and has no "
             "name\n");
   EXPECT_EQ(ParseStormFile(nameless, "x").tracks.size(), 3U);
   EXPECT_EQ(ParseStormFile(nameless, "x").tracks[1].fixes.size(), 3U);
@@ -223,7 +226,8 @@ TEST(Jma, OneWrongValueLeavesTheStorm) {
 TEST(Atcf, OneWrongValueLeavesTheStorm) {
   const std::string text = Sample("atcf.dat");
   EXPECT_EQ(Warnings(With(text, "NEQ,  110,", "XYQ,  110,")),
-            "x:2: radius code: got 'XYQ', expected AAA, a quadrant as NEQ or a semicircle as NES; "
+            "x:2: radius code: got 'XYQ', expected AAA, a quadrant such as NEQ or a semicircle "
+            "such as NES; "
             "the radii are ignored\n");
   EXPECT_EQ(
       Warnings(With(text, "NEQ,  110,", "NEQ, 9110,")),

@@ -44,8 +44,8 @@ TEST(StormFile, DistinguishesStormsOfOneId) {
       "66666 0000 01 0012 0000 0 6 (nameless) 20220101\n"
       "2021072500 1 297 1230 1000 12\n";
   EXPECT_EQ(Warnings(years),
-            "x:1: storm CMA12 is there 2 times; this one is called CMA12-1\n"
-            "x:3: storm CMA12 is there 2 times; this one is called CMA12-2\n");
+            "x:1: storm CMA12 occurs 2 times; this one is called CMA12-1\n"
+            "x:3: storm CMA12 occurs 2 times; this one is called CMA12-2\n");
   const StormFile file = ParseStormFile(years, "x");
   EXPECT_EQ(FindTrack(file, "cma12-1").line, 1);
   EXPECT_EQ(FindTrack(file, "cma12-2").line, 3);
@@ -54,7 +54,7 @@ TEST(StormFile, DistinguishesStormsOfOneId) {
     FAIL() << "took one of two";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "storm: got 'CMA12', expected an id, as there are CMA12-1 from "
+                 "storm: got 'CMA12', expected an id, because several storms match: CMA12-1 from "
                  "2019-07-25T00:00:00Z, CMA12-2 from 2021-07-25T00:00:00Z");
   }
   try {
@@ -70,8 +70,8 @@ TEST(StormFile, DistinguishesStormsOfOneId) {
     {"time": "2021-07-25T14:00:00", "lat": 30, "lng": 122}]})";
   const std::string twice = storm + ",\n" + storm;
   EXPECT_EQ(Warnings("[" + twice + "]"),
-            "x:1: [0]: storm 202106 is there 2 times; this one is called 202106-1\n"
-            "x:3: [1]: storm 202106 is there 2 times; this one is called 202106-2\n");
+            "x:1: [0]: storm 202106 occurs 2 times; this one is called 202106-1\n"
+            "x:3: [1]: storm 202106 occurs 2 times; this one is called 202106-2\n");
   const std::string taken = With(storm, "202106", "202106-2");
   EXPECT_EQ(ParseStormFile("[" + twice + "," + taken + "]", "x").tracks[1].id, "202106-3");
 }

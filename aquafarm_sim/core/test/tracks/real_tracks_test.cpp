@@ -62,7 +62,7 @@ TEST_F(RealFiles, OfCmaWithABlankNameHaveEveryStorm) {
   EXPECT_EQ(year.tracks.size(), 30U);
   EXPECT_EQ(year.warnings.at(0), path.string() +
                                      ":849: name: got nothing, expected a name or (nameless); the "
-                                     "storm is 9725 without a name");
+                                     "storm is 9725 and has no name");
 }
 
 TEST_F(RealFiles, OfCmaTakeAtMostTwentyMillisecondsAYear) {

@@ -47,7 +47,7 @@ const std::vector<WrongText> kWrongTexts{
     {"CmaLongitude", CMA_ONE "2021072500 4 297 4000  968 35\n",
      "longitude in tenths of a degree: got '4000', expected a whole number in [-1800, 3600]"},
     {"CmaBackwards", CMA_HEAD CMA_POINT "2021072418 4 300 1222  970 33\n",
-     "x:3: time: got 2021-07-24T18:00:00Z, expected one after 2021-07-25T00:00:00Z of the point"},
+     "x:3: time: got 2021-07-24T18:00:00Z, expected a time after that of the point"},
     {"JmaTruncated",
      "66666 2106  002 0011 2106 0 6                IN-FA              20220101\n"
      "21072500 002 2 297 1230  998     000\n",
@@ -68,7 +68,8 @@ const std::vector<WrongText> kWrongTexts{
     {"AtcfSide", "WP, 08, 2014070312,   , BEST,   0, 109, 1440E,  30, 1000, TD\n",
      "x:1: latitude: got '109', expected tenths of a degree and N or S"},
     {"AtcfBackwards", ATCF_ROW "WP, 08, 2014070306,   , BEST,   0, 102N, 1451E,  30, 1000, TD\n",
-     "x:2: time: got 2014-07-03T06:00:00Z, expected one after 2014-07-03T12:00:00Z"},
+     "x:2: time: got 2014-07-03T06:00:00Z, expected a time after that of the point before, "
+     "2014-07-03T12:00:00Z"},
     {"IbtracsColumn", "SID,NAME,LAT\n", "x:1: got no column ISO_TIME, expected those of IBTrACS"},
     {"BulletinPoints", R"([{"tfbh": "1", "points": []}])",
      "x:1: [0].points: got none, expected at least one"},
@@ -85,7 +86,7 @@ const std::vector<WrongText> kWrongTexts{
      "\"lng\": 1}]}]",
      "x:2: [0].points[0].lat: got nothing, expected a number in [-90, 90]"},
     {"BulletinTime", R"([{"tfbh": "1", "points": [{"time": "2021-02-30T00:00:00"}]}])",
-     "x:1: [0].points[0].time: got '2021-02-30T00:00:00', expected a time as"},
+     "x:1: [0].points[0].time: got '2021-02-30T00:00:00', expected a time such as"},
     {"BulletinPointsMissing",
      "[\n{\"tfbh\": \"1\",\n\"points\": [\n{\"time\": \"2021-07-25T14:00:00\", "
      "\"lat\": 30, \"lng\": 1}]},\n{\"tfbh\": \"2\",\n\"name\": \"a\"}]",

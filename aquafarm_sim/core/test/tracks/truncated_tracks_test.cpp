@@ -30,13 +30,14 @@ TEST(Jma, ALineThatEndsWithinAPointIsRefused) {
     }
   }
   EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 35))),
-            "x:3: got a line of 35 columns, expected 36 or more of a point, to its wind");
+            "x:3: got a line of 35 columns, expected at least 36 of a point, up to its wind");
   EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 60))),
             "x:3: got a line of 60 columns, expected 62 or more where there are radii of 30 kt");
   EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 52))),
             "x:3: got radii of 50 kt alone, expected those of 30 kt as well");
   EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 36))),
-            "x:3: got a line of 36 columns, expected 62 or more of a storm, to its radii");
+            "x:3: got a line of 36 columns, expected at least 62 at the grade of a storm, up to "
+            "its radii");
 }
 
 // Points below a padded header are padded; points below a header that ends with its date are not.
@@ -69,8 +70,8 @@ TEST(Jma, APointThatIsShorterThanItsHeaderIsSaid) {
     const std::string size = std::to_string(one.columns);
     EXPECT_EQ(said(head + (one.filled ? rest : ""), point),
               !one.said ? ""
-                        : "x:3: got a point of " + size + " columns, its header has " +
-                              (one.filled ? "80" : "72") + ": was it cut off?\n")
+                        : "x:3: got a point of " + size + " columns under a header of " +
+                              (one.filled ? "80" : "72") + ": was the line cut off?\n")
         << size;
   }
 }
@@ -101,7 +102,7 @@ TEST(Atcf, ARowThatEndsWithinItsRadiiIsRefused) {
   EXPECT_EQ(Refusal(cut("NES,  110")).substr(0, 19), "x:2: radius: got ''");
   EXPECT_EQ(Refusal(cut("AAA,  110,     ,    ,     ,")), "was read") << "a circle has one";
   const std::string words =
-      " fields, expected 18 or more, to a comma after the radii, as other rows";
+      " fields, expected at least 18, up to the comma after the radii, as in other rows";
   EXPECT_NE(Refusal(cut("NEQ,  110,   90,    0,  10")).find("x:2: got 17" + words),
             std::string::npos);
   EXPECT_NE(Refusal(cut("AAA,  110")).find("x:2: got 14" + words), std::string::npos);
@@ -117,7 +118,7 @@ TEST(Atcf, ARowThatEndsBeforeTheRadiusOfItsGreatestWindIsSaid) {
   EXPECT_EQ(Warnings(row + "\n" + next + "\n"), "") << "all end there";
   EXPECT_EQ(Warnings(row + rest + "\n" + next + "\n"), "") << "some rows are so by right";
   EXPECT_EQ(Warnings(row + rest + "\n" + next + "1006,  200,  4\n"),
-            "x:2: got 20 fields, the file's others have up to 21: was it cut off?\n");
+            "x:2: got 20 fields, but other rows have up to 21: was the row cut off?\n");
 }
 
 TEST(Atcf, ATimeThatIsThereTwiceWithAnotherPlaceIsSaid) {
@@ -135,9 +136,10 @@ TEST(Cma, APointThatIsShorterThanTheOthersIsSaid) {
   const std::string head = "66666 2106   02 0011 2106 0 3 In-fa   20220410\n";
   const std::string whole = "2021072500 4 297 1230  968      35\n";
   EXPECT_EQ(Warnings(head + whole + "2021072506 4 300 1222  970      33\n"), "");
-  EXPECT_NE(Warnings(head + whole + "2021072506 4 300 1222  970      3\n")
-                .find("x:3: got a point of 33 columns, the file's others have 34: was it cut off?"),
-            std::string::npos);
+  EXPECT_NE(
+      Warnings(head + whole + "2021072506 4 300 1222  970      3\n")
+          .find("x:3: got a point of 33 columns, but other points have 34: was the line cut off?"),
+      std::string::npos);
 }
 
 TEST(Bulletin, AQuadrantThatIsNotSaidHasTheRadiusOfAll) {

@@ -7,8 +7,8 @@
 ///   state k ---> actions of its ships -----> step --> compare every field and the hash
 ///   episode ---> compare the summary
 ///
-/// Values that depend only on the recording are copied from it: stamps, pace, rate, frames, number
-/// of farms.
+/// Values that the simulation does not determine are copied from the recording and not compared:
+/// stamps, pace, rate, pauses, frames, number of farms.
 
 #include <cstdint>
 #include <string>
@@ -20,18 +20,20 @@ namespace aquafarm_sim {
 struct BagCheck {
   std::uint64_t episodes{};
   std::uint64_t steps{};
-  std::uint64_t unfinished{};             ///< episodes that the bag does not contain to the end
+  std::uint64_t unfinished{};             ///< episodes whose end the bag does not contain
   std::vector<std::uint64_t> changed_at;  ///< steps with an external change, such as a bulletin
   std::string difference;  ///< first difference, "episode 3 step 17: …"; empty if identical
-  std::vector<std::string> episodes_in_words;  ///< "episode 3: 321 steps, return 102.4, …"
+  /// By episode: "episode 3 of seed 1: 321 steps, return 102.4, all_retrieved".
+  std::vector<std::string> episodes_in_words;
 };
 
-/// ", changed from outside at step 20, 31"; empty if there was no external change.
+/// Returns ", changed from outside at step 20, 31"; empty if there was no external change.
 std::string ChangesInWords(const BagCheck& check);
 
 /// Checks every episode of the bag at `path`.
 /// @param ns namespace of the ranch; empty if the bag contains only one ranch
-/// @throws InputError if the bag cannot be checked: not a bag, no spec, another version
+/// @throws InputError if the bag cannot be checked, for example because it is damaged, contains no
+///         spec, or was recorded by another version
 BagCheck CheckBag(const std::string& path, const std::string& ns);
 
 }  // namespace aquafarm_sim

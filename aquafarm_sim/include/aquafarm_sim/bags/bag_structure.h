@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Checks the parts of a bag that rosbag's reader does not validate: lengths, offsets, the index.
+/// Checks the parts of a bag that rosbag's reader does not check: lengths, offsets and the index.
 
 #include <stdexcept>
 #include <string>
 
 namespace aquafarm_sim::internal {
 
-/// Thrown when a bag is damaged; the message names the damage.
+/// Thrown if a bag is damaged; the message describes the damage.
 struct Damage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// Checks that the index of a bag agrees with its content. A bag without an index passes, because
-/// rosbag reports it.
+/// rosbag reports the missing index when it opens the bag.
 /// @throws Damage or rosbag::BagException if the bag is damaged or not a bag of version 2.0
 /// @throws aquafarm::InputError if the bag is encrypted or the file does not exist
 void CheckStructure(const std::string& path);

@@ -2,8 +2,8 @@
 #pragma once
 
 /// Writes a bag of format 2.0 (http://wiki.ros.org/Bags/Format/2.0) with lz4 compression. Each
-/// chunk is assembled in memory and written at once. docs/decisions/chunked_bag.md gives the
-/// reasons for not using rosbag::Bag.
+/// chunk is assembled in memory and written when it is complete. docs/decisions/chunked_bag.md
+/// gives the reasons for not using rosbag::Bag.
 
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
@@ -26,7 +26,8 @@ class ChunkedBag {
   /// @throws std::system_error if the file cannot be written
   explicit ChunkedBag(const std::string& path);
 
-  /// Adds a message to the current chunk. A chunk of at least 256 KiB is compressed and written.
+  /// Adds a message to the current chunk. Once the chunk has at least 256 KiB, it is compressed and
+  /// written.
   /// @param time must not be earlier than the time of the previous message
   /// @throws std::invalid_argument if `time` is earlier
   /// @throws std::length_error if the chunk would exceed 256 MiB
@@ -46,25 +47,26 @@ class ChunkedBag {
     if (chunk_.size() >= kChunkBytes) EndChunk();
   }
 
-  /// Writes the last chunk and the index. Without Close, `rosbag reindex` recovers complete chunks.
+  /// Writes the last chunk and the index. If Close was not called, `rosbag reindex` can recover the
+  /// chunks that were written.
   /// @throws std::system_error if the file cannot be written
   void Close();
 
  private:
   using Bytes = std::vector<std::uint8_t>;
 
-  static constexpr std::size_t kChunkBytes = 256 * 1024;  // min size at which a chunk is written
+  static constexpr std::size_t kChunkBytes = 256 * 1024;  // min size of all chunks but the last
 
   struct Connection {
     std::uint32_t number{};
     Bytes record;           // the connection record; the index repeats it
-    std::uint32_t count{};  // number of its messages in the current chunk
-    Bytes index;            // time and offset of each of its messages in the current chunk
+    std::uint32_t count{};  // number of messages in the current chunk
+    Bytes index;            // time and offset of each message in the current chunk
   };
 
   Connection& Connect(const std::string& topic, const std::string& type, const std::string& md5sum,
                       const std::string& definition);
-  /// @returns buffer of `length` bytes for the message
+  /// Adds a message without its content. @returns the `length` bytes for the content
   std::uint8_t* AddMessage(Connection& connection, const ros::Time& time, std::uint32_t length);
   void EndChunk();
   void WriteBagHeader(std::uint64_t index_position);
@@ -73,10 +75,10 @@ class ChunkedBag {
   std::ofstream file_;
   std::map<std::string, Connection> connections_;  // by topic
   Bytes chunk_;
-  std::optional<ros::Time> chunk_start_;  // time of its first message
-  ros::Time latest_;
-  Bytes compressed_;
-  Bytes chunk_infos_;  // records
+  std::optional<ros::Time> chunk_start_;  // time of the current chunk's first message
+  ros::Time latest_;                      // time of the last message
+  Bytes compressed_;                      // scratch
+  Bytes chunk_infos_;                     // chunk-info records of the written chunks
   std::uint32_t chunks_{};
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Compact log of an episode: seed, index, actions and external changes, a few bytes per step. The
-/// episode is simulated again from this log, bit-identically, and written as a bag.
+/// Compact log of an episode: seed, index, actions and external changes, with one byte per agent
+/// and step. From this log the episode is simulated again, bit-identically, and written as a bag.
 
 #include <cstdint>
 #include <memory>
@@ -31,10 +31,10 @@ struct EpisodeLog {
   std::uint64_t seed{};
   std::uint64_t episode{};
   bool paced{};                       ///< pace at the start of the episode
-  double rate_hz{};                   ///< rate at the start; 0: the rate of BagFormat
-  std::int32_t first_step{};          ///< steps before the log starts; above 0 if it was loaded
+  double rate_hz{};                   ///< rate at the start of the episode; 0: that of BagFormat
+  std::int32_t first_step{};          ///< steps before the log starts; > 0 if a state was loaded
   std::vector<std::uint8_t> actions;  ///< [steps, agents]
-  std::vector<Change> changes;        ///< by step
+  std::vector<Change> changes;        ///< by ascending step; includes a loaded state
   aquafarm::EpisodeRecord record;     ///< valid after the end of the episode
 };
 
@@ -46,23 +46,23 @@ struct BagFormat {
   std::int32_t farms{1};
 };
 
-/// File name of the bag: "episode_00000012_seed_1_return_+102.4.bag".
+/// Returns the file name of the bag: "episode_00000012_seed_1_return_+102.4.bag".
 std::string BagName(const EpisodeLog& log);
 
-/// Removes the partial bags (episode_….bag.partial) that killed processes left in a folder. A bag
-/// that a process is still writing stays, as do those of rosbag record (….bag.active). @returns the
-/// number of removed bags
+/// Removes the partial bags (episode_….bag.partial) that killed processes left in a folder. It does
+/// not remove a bag that a process is still writing, nor bags of rosbag record (….bag.active).
+/// @returns the number of removed bags
 int RemoveAbandonedBags(const std::string& folder);
 
-/// Simulates logs again and writes them as bags. Reuse one writer for many logs: it creates its
+/// Simulates logs again and writes them as bags. One writer can write many logs and creates its
 /// farm only once.
 class EpisodeBagWriter {
  public:
   EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> scenario, BagFormat format);
 
-  /// Writes spec, chart, risk (every tenth step), every state, the external changes and the summary
-  /// into an lz4 bag. The bag is written to path.partial and then renamed to `path`.
-  /// @throws ReplayError if the simulation does not reproduce the log's record
+  /// Writes spec, chart, risk (of every tenth and the last step), all states, the external changes
+  /// and the summary to a bag. The bag is written to path.partial and then renamed to `path`.
+  /// @throws ReplayError if number of steps, return or end reason differ from the log's record
   /// @throws std::runtime_error if the bag cannot be written; a partial file is removed
   void Write(const EpisodeLog& log, const std::string& path);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Writes complete episodes as bags while the ranch runs, without slowing it down. The ranch
-/// appends actions to a log. A separate thread simulates the kept logs again and writes the bags.
+/// Writes complete episodes as bags while the farms run. Each step only appends its actions to a
+/// log. A separate thread simulates the kept logs again and writes the bags.
 
 #include <chrono>
 #include <condition_variable>
@@ -20,11 +20,12 @@
 
 namespace aquafarm_sim {
 
-/// Selects the episodes to keep.
+/// Selects the episodes to keep. kBest and kWorst keep one bag, which each better or worse episode
+/// replaces. kFailures keeps episodes in which not every device was delivered.
 struct Keep {
   enum class Which : std::uint8_t { kNone, kAll, kEvery, kBest, kWorst, kFailures };
   Which which{};
-  std::uint64_t every{};  ///< kEvery: keeps episodes whose index is a multiple of it
+  std::uint64_t every{};  ///< kEvery: keeps the episodes whose index is a multiple of `every`
 };
 
 /// Parses "none", "all", "every:10", "best", "worst" or "failures".
@@ -33,14 +34,17 @@ Keep ParseKeep(const std::string& text);
 
 /// Limits of the backlog of unwritten episodes.
 struct RecorderLimits {
-  // About 300,000 steps are written per second, so this is the work of one second.
-  std::size_t waiting_bytes{300'000};      ///< max unwritten actions [bytes]; above it farms wait
-  std::chrono::milliseconds wait{10'000};  ///< max wait of the farms; after it recording stops
+  /// Max size of the unwritten actions [bytes]; the farms wait while it is reached. The default is
+  /// the work of about one second: the thread writes about 300,000 steps per second.
+  std::size_t waiting_bytes{300'000};
+  std::chrono::milliseconds wait{10'000};  ///< max wait of the farms; recording stops after it
 };
 
+/// Records the episodes of all farms of a FarmServer.
 class EpisodeRecorder final : public FarmRecorder {
  public:
-  /// @throws InputError if the folder cannot be created
+  /// Removes partial bags that killed processes left in the folder.
+  /// @throws InputError if the folder cannot be created or written
   EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scenario, Keep keep, std::string folder,
                   BagFormat format, RecorderLimits limits = {});
   /// Writes the queued episodes, then stops the thread.
@@ -48,7 +52,8 @@ class EpisodeRecorder final : public FarmRecorder {
 
   void OnStart(const aquafarm::Farm& farm, std::int32_t number,
                const MessageContext& context) override;
-  /// Appends a step. Blocks while the backlog exceeds the limits, at most for `limits.wait`.
+  /// Appends a step. After the last step of a kept episode it waits while the backlog reaches
+  /// limits.waiting_bytes. After limits.wait it stops recording.
   void OnStep(const aquafarm::Farm& farm, std::int32_t number,
               const std::uint8_t* actions) override;
   void OnIntervention(const aquafarm::Farm& farm, std::int32_t number) override;
@@ -67,7 +72,7 @@ class EpisodeRecorder final : public FarmRecorder {
   EpisodeBagWriter writer_;  // used only by the writing thread
   const RecorderLimits limits_;
   std::vector<EpisodeLog> logs_;  // by farm; used only by the ranch's thread
-  std::optional<float> extreme_;  // best or worst return so far
+  std::optional<float> extreme_;  // kBest, kWorst: best or worst return so far
   std::string extreme_path_;      // bag of that episode; used only by the writing thread
 
   mutable aquafarm::Mutex mutex_;

@@ -11,7 +11,8 @@
 
 namespace aquafarm_sim {
 
-/// Returns the first difference of two printed messages: "ships[0].reward: got -1, simulated -6".
+/// Returns the first difference between two printed messages: "ships[0].reward: got -1, simulated
+/// -6".
 std::string FirstDifferentLine(const std::string& got, const std::string& simulated);
 
 /// Returns the first field in which a message differs from a simulated one; empty if both are

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Opens bags and reports the errors of unreadable ones.
+/// Opens bags and reads their messages. Damaged bags cause an InputError.
 
 #include <ros/exception.h>
 #include <ros/message_traits.h>
@@ -25,11 +25,12 @@
 
 namespace aquafarm_sim {
 
-/// Returns the error message for a bag without a spec, to append to its path: there is no such
-/// topic, or it has another type.
+/// Returns the error message for a bag without a FarmSpec, to append to the bag's path. It states
+/// whether the bag has no topic spec, or the topic has another type.
 std::string NoSpec(const rosbag::Bag& bag);
 
-/// Describes the version that recorded a bag. `version` is FarmSpec.version; it may be empty.
+/// Returns "recorded by version X" or, if `version` is empty, "recorded by an unnamed version".
+/// @param version FarmSpec.version of the bag
 std::string RecordedBy(const std::string& version);
 
 /// Calls `work` and prepends the path of the bag to the message of an InputError.
@@ -43,7 +44,7 @@ auto NamingBag(const std::string& path, const Work& work) -> decltype(work()) {
   }
 }
 
-/// A message type as this version defines it.
+/// A message type as this version of aquafarm defines it.
 struct MessageType {
   const char* name;
   const char* md5sum;
@@ -58,8 +59,8 @@ MessageType TypeOf() {
 
 namespace internal {
 
-/// Limits the memory of this process during its lifetime, because a damaged array length can
-/// request any amount of memory.
+/// Limits the memory of this process while the object exists, because a damaged array length can
+/// request any amount of memory. Has no effect if the system refuses the limit.
 class MemoryLimit {
  public:
   /// @param more max additional memory [bytes]
@@ -73,9 +74,9 @@ class MemoryLimit {
   bool is_set_{};
 };
 
-/// Calls `work`, which allocates memory as requested by a bag.
+/// Calls `work`, which allocates the memory that a bag requests.
 /// @param size size of the bag [bytes]
-/// @throws Damage if `work` requests more memory than a valid bag of this size needs
+/// @throws Damage if `work` requests more than 2 GiB plus 4 times `size`, which no valid bag needs
 template <typename Work>
 auto Bounded(std::uintmax_t size, const Work& work) -> decltype(work()) {
   constexpr std::uintmax_t kSpareBytes = std::uintmax_t{2} << 30U;
@@ -89,12 +90,14 @@ auto Bounded(std::uintmax_t size, const Work& work) -> decltype(work()) {
   }
 }
 
-/// Opens a bag after checking its lengths and offsets.
+/// Opens a bag after checking its lengths and offsets. @throws aquafarm::InputError as OpenBag
 void OpenChecked(rosbag::Bag& bag, const std::string& path);
 
-/// Translates a serialized message from a definition of an earlier version to that of this one, or
-/// back. @throws Damage if the definition is not one of an earlier version, or if the bytes do not
-/// fit it
+/// Translates a serialized message from the definition of an earlier version to that of this
+/// version, or in the opposite direction if `is_back`.
+/// @param type the definition of this version @param definition that of the earlier version
+/// @throws Damage if `definition` cannot be parsed or a field has another type, or if the bytes do
+///         not fit their definition
 std::vector<std::uint8_t> Translated(const MessageType& type, const std::string& definition,
                                      bool is_back, const std::vector<std::uint8_t>& bytes);
 
@@ -114,7 +117,7 @@ void Deserialize(std::vector<std::uint8_t>& bytes, Message& message) {
 
 }  // namespace internal
 
-/// Compares the definition of a message type in a bag with that of this version.
+/// Returns whether the text of a message definition in a bag is accepted for this version.
 using SameText = bool(const std::string& type, const std::string& in_bag,
                       const std::string& in_this_version);
 
@@ -126,9 +129,9 @@ using SameText = bool(const std::string& type, const std::string& in_bag,
 void CheckMessages(const rosbag::Bag& bag, const std::string& path,
                    std::initializer_list<MessageType> types, SameText* is_same_text = nullptr);
 
-/// Opens a bag after checking its lengths and offsets, on which rosbag's reader would crash.
-/// @tparam Messages message types to read; their definitions must be those of this version or of
-///         an earlier one that it can read
+/// Opens a bag after checking its lengths and offsets: rosbag's reader crashes if they are wrong.
+/// @tparam Messages message types to read; their definitions in the bag must be those of this
+///         version, or of an earlier version that can be translated (translate_message.h)
 /// @throws aquafarm::InputError with a message of one line that contains the bag's path
 template <typename... Messages>
 void OpenBag(rosbag::Bag& bag, const std::string& path) {
@@ -136,8 +139,8 @@ void OpenBag(rosbag::Bag& bag, const std::string& path) {
   CheckMessages(bag, path, {TypeOf<Messages>()...});
 }
 
-/// Returns a message of a bag, of this version's definition or of an earlier one; null if it has
-/// another type. Fields that the earlier definition lacks are zero.
+/// Returns a message of a bag; null if it has another type or an unknown definition. A message of
+/// an earlier version is translated; fields that its definition lacks are zero.
 /// @throws an exception that ReadingBag converts to InputError
 template <typename Message>
 boost::shared_ptr<Message> Instantiate(const rosbag::MessageInstance& message) {
@@ -160,8 +163,10 @@ boost::shared_ptr<Message> Instantiate(const rosbag::MessageInstance& message) {
   });
 }
 
-/// Sets the fields that a definition of an earlier version lacks to zero, as Instantiate does.
-/// @param definition of the type in a bag; empty: nothing changes
+/// Sets the fields of a message to zero that the definition of an earlier version lacks, as
+/// Instantiate does.
+/// @param definition definition of the type in a bag; empty or that of this version: nothing
+/// changes
 /// @throws an exception that ReadingBag converts to InputError
 template <typename Message>
 void DropAddedFields(const std::string& definition, Message& message) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Reads messages of bags whose definitions are older than those of this version. A definition may
-/// gain fields, never lose or change one. The fields that an old message lacks are zero: numbers 0,
-/// strings and arrays empty.
+/// Translates messages of earlier versions in bags to the definitions of this version. A new
+/// version may add fields to a message, but not remove or change one. Fields that an old message
+/// lacks become zero: numbers 0, strings and arrays empty.
 ///
-/// When fields are added to a message that bags contain: the md5 sums that a release had are in
-/// kOlderMessages. Nothing else is needed, since both definitions are parsed.
+/// If you add fields to a message that bags contain, add the md5 sum that it had in the last
+/// release to kOlderMessages. No other change is needed, because both definitions are parsed.
 
 #include <array>
 #include <cstdint>
@@ -51,16 +51,17 @@ class MessageDefinition {
     std::string name;
     std::string type_name;
     const Type* type;
-    std::int64_t count;  ///< of a fixed array; kScalar or kAnyLength
+    std::int64_t count;  ///< length of an array of fixed length; else kScalar or kAnyLength
   };
   struct Type {
-    std::size_t bytes{};  ///< of a number; 0: a string or a message
+    std::size_t bytes{};  ///< size of a number; 0: a string or a message
     bool is_string{};
-    std::vector<Field> fields;  ///< of a message, in order
+    std::vector<Field> fields;  ///< fields of a message, in order
   };
 
-  /// @param type with its package @param text the definition with those of the types it contains
-  /// @throws TranslationError
+  /// @param type name with package, for example aquafarm_msgs/FarmState
+  /// @param text definition of the type, followed by those of the types that it contains
+  /// @throws TranslationError if the text cannot be parsed
   MessageDefinition(const std::string& type, const std::string& text);
 
   const Type& root() const { return *root_; }
@@ -75,7 +76,7 @@ class MessageDefinition {
   const Type* root_{};
 };
 
-/// Converts serialized messages of one definition to another by the names of their fields.
+/// Converts serialized messages from one definition to another. Fields are matched by name.
 class MessageTranslator {
  public:
   using Bytes = std::vector<std::uint8_t>;
@@ -84,8 +85,9 @@ class MessageTranslator {
   ///         type
   MessageTranslator(const std::string& type, const std::string& from, const std::string& to);
 
-  /// Fields that only the new definition has are zero; those that only the old one has are dropped.
-  /// @throws TranslationError if the message is not one of the old definition
+  /// Converts a message. Fields that only the new definition has become zero; fields that only the
+  /// old definition has are dropped.
+  /// @throws TranslationError if the message does not fit the old definition
   Bytes Translate(const Bytes& message) const;
 
  private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Converts the core's types to messages and back. The functions do not depend on nodes. A function
-/// with a message as last argument fills it and reuses its memory.
+/// Converts the core's types to messages and back. The functions need no ROS node. A function whose
+/// last argument is a message overwrites all its fields.
 
 #include <aquafarm_msgs/Cell.h>
 #include <aquafarm_msgs/DeviceState.h>
@@ -31,27 +31,29 @@
 
 namespace aquafarm_sim {
 
-/// Values of a message that are not part of the farm.
+/// Values that messages contain and that the farm does not know.
 struct MessageContext {
   ros::Time stamp;  ///< time of /clock
   std::string map_frame{"map"};
   bool paced{};
-  double rate_hz{10.0};
+  double rate_hz{10.0};  ///< steps per second of /clock
   bool paused{};
 };
 
 aquafarm_msgs::Cell ToMsg(aquafarm::Cell cell);
 aquafarm_msgs::RewardTerms ToMsg(const aquafarm::RewardTerms& terms);
-/// Converts the true health and position, not an observation of them.
+/// Converts the true state of a device, including its health and position.
 aquafarm_msgs::DeviceState ToMsg(const aquafarm::Farm& farm, std::int32_t device);
-/// Converts the true state: known, visible and of age 0.
+/// Converts a disaster. Sets `known` and `visible` to true and `age` to 0, as for the true state.
 void ToMsg(const aquafarm::ObservableDisaster& disaster, std::int32_t id,
            aquafarm_msgs::DisasterState& message);
 /// Converts the whole state.
 void ToMsg(const aquafarm::Farm& farm, const MessageContext& context,
            aquafarm_msgs::FarmState& message);
-/// Converts the observation of `view.ship`; in full view the whole state. Reward and return are
-/// those of this ship.
+/// Converts the observation of `view.ship`; in full view the whole state with the forecast motion
+/// of disasters. The joint and total fields contain the values of this ship; reward and return are
+/// those after sharing.
+/// @param view as filled by Observe for the current state of `farm`
 void ToMsg(const aquafarm::Farm& farm, const aquafarm::View& view, const MessageContext& context,
            aquafarm_msgs::FarmState& message);
 /// Converts the constants of an episode.
@@ -60,7 +62,8 @@ void ToMsg(const aquafarm::Farm& farm, const aquafarm::View& view, const Message
 void ToMsg(const aquafarm::Farm& farm, const aquafarm::Encoder& encoder, std::int32_t farms,
            const std::string& yaml, const MessageContext& context,
            aquafarm_msgs::FarmSpec& message);
-/// @param accounts of the episode; nullopt without money
+/// Converts the summary of an episode that the farm with index `farm` has played.
+/// @param accounts accounts of the episode; nullopt if the scenario has no money
 aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record,
                                     const std::optional<aquafarm::Accounts>& accounts,
                                     std::int32_t farm, const MessageContext& context);
@@ -68,16 +71,18 @@ aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record,
 /// Converts islands and rocks to a grid: 100 blocked, 0 water. The grid's origin is the south-west
 /// corner of cell (0, 0), whose centre is the origin of the map frame.
 nav_msgs::OccupancyGrid ChartToMsg(const aquafarm::Farm& farm, const MessageContext& context);
-/// Converts risk to a grid: 0 no risk … 100 the worst possible risk (-20), rounded.
+/// Converts the risk of disasters and sea to a grid: 0 no risk … 100 the worst possible risk (-20),
+/// rounded.
 void RiskToMsg(const std::vector<aquafarm::Disaster>& disasters, const aquafarm::Scenario& scenario,
                const MessageContext& context, nav_msgs::OccupancyGrid& message);
 
-/// Transform map → `frame` at a point [cells], oriented along a compass bearing.
+/// Returns the transform map → `frame`. Its origin is a point [cells], and its x axis points along
+/// a compass bearing.
 geometry_msgs::TransformStamped PoseToMsg(const std::string& frame, double x, double y,
                                           std::int32_t bearing_deg,
                                           const aquafarm::Scenario& scenario,
                                           const MessageContext& context);
-/// Transform earth (ECEF of WGS 84) → map (east, north, up at the origin).
+/// Returns the transform earth (ECEF, WGS 84) → map (east, north and up at the origin, height 0).
 geometry_msgs::TransformStamped EarthToMsg(const aquafarm::GeoPoint& origin,
                                            const std::string& earth_frame,
                                            const MessageContext& context);
@@ -97,18 +102,20 @@ inline constexpr std::size_t kMaxForecasts = 1000;
 std::vector<aquafarm::IssuedForecast> FromMsg(
     const std::vector<aquafarm_msgs::DisasterForecast>& messages);
 
-/// Converts a storm bulletin, for use with ToDisaster (storms/to_disaster.h).
-/// @throws InputError "storm.fixes[0].latitude_deg: got 95, expected a number in [-90, 90]"
+/// Converts a storm bulletin to the input of ToDisaster (storms/to_disaster.h).
+/// @throws InputError "storm.fixes[0].latitude_deg: got 95, expected a number in [-90, 90]"; also
+///         if there is no fix, or the times of the fixes are not ascending
 aquafarm::StormTrack FromMsg(const aquafarm_msgs::Storm& message);
 
-/// Converts a track with its forecast, if it has one.
+/// Converts a track, and the positions of its newest forecast that are later than its last fix.
+/// @param track with at least one fix
 aquafarm_msgs::Storm ToMsg(const aquafarm::StormTrack& track);
 
-/// Converts a sea layer to a grid: 0 its min value … 100 its max value, -1 unknown.
+/// Converts a sea layer to a grid: 0 its min value … 100 its max value, -1 unknown (NaN).
 void SeaToMsg(const aquafarm::SeaLayer& layer, const aquafarm::Scenario& scenario,
               const MessageContext& context, nav_msgs::OccupancyGrid& message);
-/// Converts a sea layer to an array [1, H, W] in its own unit. The label of the first dimension is
-/// name and unit, for example "warmth [degC]".
+/// Converts a sea layer to an array [1, H, W] of its values. The label of the first dimension
+/// contains name and unit, for example "warmth [degC]".
 std_msgs::Float32MultiArray SeaToMsg(const aquafarm::SeaLayer& layer,
                                      const aquafarm::Scenario& scenario);
 

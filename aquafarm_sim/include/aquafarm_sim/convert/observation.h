@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Converts the observation message of a ship for agents.
+/// Converts the observation message of a ship to the core's View, the input of agents.
 
 #include <aquafarm_msgs/FarmState.h>
 
@@ -9,11 +9,12 @@
 
 namespace aquafarm_sim {
 
-/// Converts what a ship knows of a disaster.
+/// Converts a ship's information about a disaster.
 aquafarm::KnownDisaster FromMsg(const aquafarm_msgs::DisasterState& message);
 
-/// Restores the View of a ship from its observation message, as filled by Observe. It does not
-/// restore `sensors` and the disaster fields that a view does not contain.
+/// Restores the View that Observe filled for a ship from the observation message. The message does
+/// not contain `sensors` and some fields of disasters (border, turns, growth), which keep default
+/// values. Forecast positions are computed from the motion in the message.
 /// @param layout layout of the observation's episode; scenario and layout must outlive the view
 /// @throws InputError if the message is not a ship's observation of a farm of `scenario`
 void FromMsg(const aquafarm_msgs::FarmState& message, const aquafarm::Scenario& scenario,

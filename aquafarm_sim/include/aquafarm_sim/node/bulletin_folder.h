@@ -15,12 +15,13 @@ class BulletinFolder {
  public:
   explicit BulletinFolder(std::string path) : path_(std::move(path)) {}
 
-  /// Returns the files that are new or changed since they were marked, the oldest first. Hidden
-  /// files and files that end in ".part" are incomplete and skipped, as are files whose state
-  /// cannot be read.
+  /// Returns the paths of the files that are not marked, or have changed since they were marked,
+  /// the oldest first. Hidden files and files that end in ".part" are incomplete and skipped. Files
+  /// whose time or size cannot be read are skipped too.
   /// @throws InputError if the folder does not exist or cannot be read completely
   std::vector<std::string> New();
-  /// Marks a file of the last New(). It is returned again only if it changes after that call.
+  /// Marks a file that the last New() returned. Later calls of New() return it only if it has
+  /// changed since then.
   void Mark(const std::string& path);
 
  private:

@@ -12,8 +12,8 @@
 
 namespace aquafarm_sim {
 
-/// Serves calls by a function, which gets the request, the response and the name of the calling
-/// node, and returns whether it succeeded.
+/// Serves calls with a function, which receives the request, the response and the name of the
+/// calling node. It returns whether the call succeeded.
 template <typename Service>
 class CheckedService : public ros::ServiceCallbackHelper {
  public:

@@ -13,7 +13,8 @@ namespace aquafarm_sim {
 /// Publishes the state of a farm server to /diagnostics every second.
 class FarmDiagnostics {
  public:
-  /// @param recorder null if no episodes are kept; like server and publisher, it must outlive this
+  /// @param recorder null if no episodes are kept. Server, publisher and recorder must outlive this
+  ///        object.
   FarmDiagnostics(ros::NodeHandle& node, const ros::NodeHandle& private_node, FarmServer& server,
                   const FarmPublisher& publisher, const EpisodeRecorder* recorder);
   FarmDiagnostics(const FarmDiagnostics&) = delete;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Publishes the topics of a ranch: state, observations, risk, tf and clock at a limited wall rate,
-/// or at every step when recording; spec, chart and tf_static at each start of an episode. Stepping
-/// only sets a flag, so that publishing never slows it down.
+/// Publishes the topics of a ranch: state, risk, tf and clock at a limited wall rate, or after
+/// every step if SimParams::record is set; spec, chart, sea layers and tf_static at each start of
+/// an episode; observations after every step, or with the state after joint steps. A separate
+/// thread publishes, so that a step only sets a flag. Observations that have subscribers, and all
+/// topics with SimParams::record, are published by the thread that steps.
 
 #include <aquafarm_msgs/EpisodeSummary.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -32,21 +34,24 @@
 
 namespace aquafarm_sim {
 
+/// The listener of a FarmServer that publishes its state.
 class FarmPublisher : public FarmListener {
  public:
-  /// @param ranch must outlive the publisher, which is its listener until it is destroyed
+  /// @param ranch must outlive the publisher, which sets itself as the listener of the ranch
   FarmPublisher(const ros::NodeHandle& node, const SimParams& params, FarmServer& ranch);
   ~FarmPublisher() override;
   FarmPublisher(const FarmPublisher&) = delete;
   FarmPublisher& operator=(const FarmPublisher&) = delete;
 
-  /// Waits for a subscriber of `episode`. Only recorders subscribe to it before the first step.
-  /// @returns false if there is no subscriber within the limit
+  /// Waits for a recorder: until `episode` and `state` have subscribers, and no subscriber has been
+  /// added to any topic for half a second. Only recorders subscribe to `episode` before the first
+  /// step.
+  /// @returns false if this takes longer than `limit_s`
   bool WaitForRecorder(double limit_s);
 
   void OnChange(const ServerView& view) override;
   void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) override;
-  /// Logs at once which ships are absent or back; diagnostics repeat it at their own rate.
+  /// Logs which ships are absent or back. Diagnostics report the absent ships periodically.
   void OnPresence(const std::vector<std::int32_t>& ships, bool is_present) override;
 
   /// Number of episode summaries that were dropped because the queue was full.

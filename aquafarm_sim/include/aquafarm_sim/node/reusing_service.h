@@ -14,7 +14,8 @@
 namespace aquafarm_sim {
 
 /// Serves calls one at a time. Every request is deserialized into the same object, and the response
-/// is serialized without a copy. In the steady state the codec allocates only the wire buffer.
+/// is serialized without a copy. If requests have constant sizes, a call allocates only the buffer
+/// of the serialized response.
 template <typename Service>
 class ReusingService : public ros::ServiceCallbackHelper {
  public:

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// roscpp queues published messages. Its poll thread hands them to the connections of subscribers.
-/// A message to one subscriber (SingleSubscriberPublisher) does not take this queue, so it arrives
-/// before messages that were published earlier and are still in it.
+/// Waits for roscpp's queue of published messages. Publishing adds a message to this queue, and the
+/// poll thread of roscpp takes it from there to the connections of the subscribers. A message to
+/// one subscriber (SingleSubscriberPublisher) bypasses the queue, and would arrive before messages
+/// that were published earlier and are still in the queue.
 
 #include <boost/signals2/connection.hpp>
 #include <chrono>
@@ -14,23 +15,24 @@
 
 namespace aquafarm_sim {
 
+/// Waits until published messages have left the queue.
 class SentMessages {
  public:
-  /// A node handle must exist.
+  /// A ros::NodeHandle must exist.
   SentMessages();
   ~SentMessages();
   SentMessages(const SentMessages&) = delete;
   SentMessages& operator=(const SentMessages&) = delete;
 
-  /// Waits until everything that was published before the call has left the queue. Must not be
+  /// Waits until all messages that were published before the call have left the queue. Must not be
   /// called by the poll thread.
-  /// @returns false after the limit, for example if the process gets no processor
+  /// @returns false if this takes longer than `limit`
   bool Wait(std::chrono::milliseconds limit);
 
  private:
   aquafarm::Mutex mutex_;
   std::condition_variable emptied_;
-  std::uint64_t rounds_ AQUAFARM_GUARDED_BY(mutex_){};  // of the poll thread
+  std::uint64_t rounds_ AQUAFARM_GUARDED_BY(mutex_){};  // completed rounds of the poll thread
   boost::signals2::connection listener_;
 };
 

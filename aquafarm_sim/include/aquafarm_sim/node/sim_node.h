@@ -29,7 +29,8 @@ class SimNode {
   SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   ~SimNode();
 
-  /// Keeps serving for a limited time if a trainer is running, until the trainer has saved.
+  /// If a trainer is running, waits a limited time until the trainer has saved the farms' state.
+  /// Services continue meanwhile.
   void LetClientsSave();
   SimNode(const SimNode&) = delete;
   SimNode& operator=(const SimNode&) = delete;
@@ -44,7 +45,7 @@ class SimNode {
   FarmServer ranch_;
   FarmPublisher publisher_;
   std::unique_ptr<EpisodeRecorder> recorder_;  // null if no episodes are kept
-  // Commands may wait for other ships. They run on separate threads and block no other call.
+  // Commands may wait for other ships, so their services have a separate queue and threads.
   ros::CallbackQueue ship_queue_;
   ros::NodeHandle ship_node_;
   std::vector<ros::ServiceServer> services_;
@@ -53,7 +54,8 @@ class SimNode {
   std::thread pacer_;
 };
 
-/// Runs the node until ROS shuts down. @return the exit code: 0, or 2 if the input was refused
+/// Runs the node until ROS shuts down or SIGINT or SIGTERM arrives.
+/// @returns the exit code: 0; 2 if a parameter or the scenario is invalid; 1 for other errors
 int RunSimNode();
 
 }  // namespace aquafarm_sim

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The private parameters of sim_node. They name the scenario, rates and frames. The farm's numbers
-/// come only from the scenario file. Every parameter is either used or refused.
+/// The private parameters of sim_node, such as the scenario, rates and frames. The numbers of the
+/// farm come only from the scenario file. An unknown parameter is an error.
 
 #include <ros/node_handle.h>
 
@@ -19,22 +19,23 @@ struct SimParams {
   /// ~farms, ~threads, ~seed (-1: from the wall clock), ~pace, ~rate_hz, ~barrier_timeout_s,
   /// ~late_ships_hold, ~claim_timeout_s
   ServerOptions ranch;
-  double publish_hz{10.0};           ///< max states published per second; 0: no states
+  double publish_hz{10.0};           ///< max states published per second; 0: none unless `record`
   bool record{};                     ///< publish every step of farm 0
   std::string keep{"none"};          ///< episodes to write as bags, in the syntax of ParseKeep
   std::string keep_dir{"episodes"};  ///< folder of these bags
-  double recorder_wait_s{};          ///< max time to wait for a recorder at the start
+  double recorder_wait_s{};          ///< max time to wait for a recorder at the start; 0: no wait
   bool publish_clock{true};          ///< false if another node publishes /clock
   std::string map_frame{names::kMapFrame};
   std::string earth_frame{names::kEarthFrame};
   std::string frame_prefix;  ///< prefix of the frames ship_<id> and disaster_<id>
 };
 
+/// Reads the parameters and checks all except scenario, keep and keep_dir.
 /// @throws InputError "~rate_hz: got -1, expected [0.001, 1000]"; for an unknown parameter the
 ///         message lists the known ones
 SimParams ReadSimParams(const ros::NodeHandle& private_node);
 
-/// Names of the scenarios in a folder, sorted.
+/// Returns the names of the scenarios in a folder, sorted.
 std::vector<std::string> ShippedScenarios(const std::string& folder);
 
 /// Returns the path of a scenario file.

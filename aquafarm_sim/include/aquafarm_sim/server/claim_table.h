@@ -8,18 +8,19 @@
 
 namespace aquafarm_sim {
 
-/// Which node has claimed which ship. A claim expires after a time without a command of its holder.
-/// Not thread-safe.
+/// Records which node has claimed which ship. A claim expires if its holder is not present for
+/// `timeout_s`. Every ship id must be in [0, ships - 1]. Not thread-safe.
 class ClaimTable {
  public:
   ClaimTable(std::int32_t ships, double timeout_s);
 
-  /// Returns true if another node than `caller` holds the ship. An expired claim is removed.
-  /// @param is_waiting true if a command of the holder waits for other ships: it is present
+  /// Returns true if a node other than `caller` holds the ship. Removes an expired claim.
+  /// @param is_waiting true if a command of the ship waits for other ships: the claim then does not
+  ///        expire
   bool IsHeldByAnother(std::int32_t ship, const std::string& caller, bool is_waiting);
-  /// Makes `holder` the holder of the ship; an empty name releases it.
+  /// Sets the node that holds the ship, and marks it as present. An empty name releases the ship.
   void SetHolder(std::int32_t ship, const std::string& holder);
-  /// Restarts the ship's time without a command.
+  /// Marks the ship's holder as present now.
   void MarkPresent(std::int32_t ship);
   /// @return name of the node that holds the ship; empty if no node does
   const std::string& holder(std::int32_t ship) const;

@@ -6,23 +6,25 @@
 
 namespace aquafarm_sim {
 
-/// The command of one ship: an action and its target step.
+/// The command of one ship: an action and its target step. Two commands are equal if all fields
+/// except the caller are equal.
 struct ShipCommand {
   std::int32_t ship{};
-  std::uint8_t action{};
-  std::uint64_t episode{};
-  std::uint64_t step{};
-  std::uint64_t token{};
-  std::string caller{};  ///< name of the calling node; empty if unknown
+  std::uint8_t action{};    ///< as aquafarm::Action
+  std::uint64_t episode{};  ///< target episode; if episode and step are both 0: the current step
+  std::uint64_t step{};     ///< number of steps taken before the command's step
+  std::uint64_t token{};    ///< id of the command, equal in a retry; 0: none
+  std::string caller{};     ///< name of the calling node; empty if unknown
   friend bool operator==(const ShipCommand& a, const ShipCommand& b) {
     return a.ship == b.ship && a.action == b.action && a.episode == b.episode && a.step == b.step &&
            a.token == b.token;
   }
-  /// False if the command names neither a step nor a token: a retry looks like a new command.
+  /// Returns false if the command contains neither a step nor a token: its retry cannot be
+  /// distinguished from a new command.
   bool IsIdentified() const { return episode != 0 || step != 0 || token != 0; }
 };
 
-/// Identifies a request of a client. Sequence numbers are per client; 0: not numbered.
+/// Identifies a request of a client. Each client has its own sequence numbers; 0: not numbered.
 struct RequestKey {
   std::uint64_t sequence{};
   std::string caller;

@@ -18,9 +18,9 @@
 
 namespace aquafarm_sim {
 
-/// Collects the ships' commands for the next step of a farm: at most one per ship, the newest. In
-/// lockstep each call waits until all ships have a command. The owner holds one mutex during every
-/// call. Wait releases it while it waits.
+/// Collects the commands of the ships for the next step of a farm. It keeps only the newest command
+/// of each ship. In lockstep the caller of each command waits until all ships have a command. The
+/// owner must hold one mutex during every call; Wait releases it while it waits.
 class CommandBarrier {
  public:
   using Clock = std::chrono::steady_clock;
@@ -35,39 +35,45 @@ class CommandBarrier {
 
   explicit CommandBarrier(std::int32_t ships);
 
-  /// Returns the answer of the ship's last executed or accepted command if `command` repeats it;
-  /// null otherwise.
+  /// Returns the answer to the ship's last executed or accepted command if `command` is a retry of
+  /// it; null if it is not.
   const aquafarm_msgs::CommandResult* FindAnswer(const ShipCommand& command) const;
-  /// Stores a command for the next step. It supersedes an earlier command of the ship.
-  /// @param call receives the answer and must stay valid until it is answered, superseded or
-  /// withdrawn; null: no call waits
+  /// Stores a command for the next step. It replaces an earlier command of the ship, whose call
+  /// ends with kSuperseded.
+  /// @param call receives the answer; it must stay valid until Wait returns and, after kTimedOut,
+  ///        until Withdraw; null: no call waits
   void Add(const ShipCommand& command, Call* call);
-  /// Waits until the call is answered, superseded or dropped, until `deadline`, or until `ending`
-  /// is true (kTimedOut).
+  /// Waits until the call is answered, superseded or dropped. Returns kTimedOut at `deadline`, or
+  /// if `ending` is true; the command then stays until Withdraw.
+  /// @param lock lock of the owner's mutex
   WaitEnd Wait(aquafarm::MutexLock& lock, const Call& call, Clock::time_point deadline,
                const bool& ending);
-  /// Removes the command of a call that waits no longer.
+  /// Removes the command of a call whose Wait has returned.
   void Withdraw(const Call& call);
   /// Removes all commands. Their calls end with kDropped.
   void Drop();
-  /// Also forgets the last answers, because step numbers may repeat.
+  /// Forgets the last answers of all ships. Must be called if step numbers may repeat.
   void ForgetAnswers();
-  /// Makes all waiting calls look whether they are over.
+  /// Wakes the waiting calls, which then check whether they have ended.
   void Wake();
 
   bool HasCommand(std::int32_t ship) const { return slots_[Index(ship)]->pending.has_value(); }
   /// Writes the action of each ship; a ship without a command holds. @param actions [ships]
   void WriteActions(std::uint8_t* actions) const;
-  /// Stores the answer of the ship's command, which is over. Call Wake when all ships are answered.
+  /// Stores the answer to the ship's command and removes the command, which must exist. The caller
+  /// must call Wake after the last answer.
   void Answer(std::int32_t ship, const aquafarm_msgs::CommandResult& answer);
-  /// Stores the answer with which the ship's command was accepted; the command stays.
+  /// Stores the answer that accepts a command. The command stays until it is executed.
   void Accept(const ShipCommand& command, const aquafarm_msgs::CommandResult& answer);
 
-  /// Returns true if the farm waits for a command of the ship.
+  /// Returns true if the farm waits for a command of the ship: the ship is active, is not absent
+  /// and has no command.
   bool IsMissing(const aquafarm::Farm& farm, std::int32_t ship) const;
+  /// Returns true if no ship is missing.
   bool IsComplete(const aquafarm::Farm& farm) const;
   std::vector<std::int32_t> MissingShips(const aquafarm::Farm& farm) const;
-  /// The farm does not wait for an absent ship. @returns whether this changes anything
+  /// Sets whether a ship is absent: the farm does not wait for an absent ship.
+  /// @returns whether the value changed
   bool SetAbsent(std::int32_t ship, bool is_absent) {
     return std::exchange(slots_[Index(ship)]->is_absent, is_absent) != is_absent;
   }
@@ -76,8 +82,8 @@ class CommandBarrier {
  private:
   struct Slot {
     std::optional<ShipCommand> pending;  // command for the next step
-    std::uint64_t number{};              // of the newest command
-    Call* call{};                        // that waits for the answer; null if none
+    std::uint64_t number{};              // number of the newest command
+    Call* call{};                        // call that waits for the answer; null: no call waits
     RequestLog<ShipCommand, aquafarm_msgs::CommandResult> log;
     std::condition_variable changed;
     bool is_absent{};

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The protocol of docs/ros_api.md for a FarmBatch, independent of the transport: commands that are
-/// executed exactly once (RequestLog), the lockstep barrier (CommandBarrier), claims of ships
+/// The protocol of docs/ros_api.md for a FarmBatch, independent of the transport: retries that are
+/// not executed again (RequestLog), the lockstep barrier (CommandBarrier), claims of ships
 /// (ClaimTable), pace (PaceClock), joint steps, save and load. Every public function may be called
-/// from any thread. No function throws after construction: invalid requests return a code and
-/// change nothing.
+/// from any thread. Requests never throw: an invalid request returns a code and changes nothing.
 ///
 ///   lockstep:  ship 0 --Command--> waits ----------+--> result of step k+1
 ///              ship 1 -----------------Command-----+--> result of step k+1   (or TIMEOUT)
@@ -42,12 +41,13 @@
 
 namespace aquafarm_sim {
 
-/// Limits of the values of requests.
+// Limits of the values of requests.
 using aquafarm::kMaxFarms;
 inline constexpr double kMinRate_hz = 0.001;
 inline constexpr double kMaxRate_hz = 1000.0;
-/// Max number of cells of all farms together if every episode has a new layout.
+/// Max number of cells and routes of all farms together if every episode has a new layout.
 inline constexpr std::int64_t kMaxDrawnCells = 64'000'000;
+/// Max size of the features and planes in one response [bytes].
 inline constexpr std::size_t kMaxAnswerBytes = std::size_t{256} << 20U;
 
 struct ServerOptions {
@@ -58,22 +58,24 @@ struct ServerOptions {
   double rate_hz{10.0};
   double barrier_timeout_s{10.0};
   bool late_ships_hold{};  ///< lockstep: after the timeout the farm steps without the late ships
-  double claim_timeout_s{10.0};  ///< time without a command of its holder until a claim expires
+  double claim_timeout_s{10.0};  ///< a claim expires if its holder sends nothing for this time
   std::string map_frame{"map"};
 };
 
 /// Counters for diagnostics.
 struct ServerCounters {
-  std::uint64_t farm_steps{};  ///< steps, summed over all farms
-  std::uint64_t late_ships{};  ///< paced: holds without a command; lockstep: ships gone absent
-  std::uint64_t barrier_timeouts{};     ///< lockstep: commands that returned TIMEOUT
-  std::uint64_t superseded{};           ///< commands replaced by another one of the same ship
-  std::uint64_t dropped_clients{};      ///< expired claims
-  std::uint64_t refused{};              ///< requests refused with any other code
-  std::uint64_t saves{};                ///< successful save_state calls
-  std::vector<std::int32_t> absent;     ///< ships that lockstep does not wait for
-  std::vector<std::uint64_t> absences;  ///< by ship: number of times that it went absent
-  double joint_step_age_s{1e9};         ///< time since the last joint step
+  std::uint64_t farm_steps{};  ///< number of steps, summed over all farms
+  /// Number of times that a ship held because it had no command (paced), or that lockstep stopped
+  /// waiting for a ship.
+  std::uint64_t late_ships{};
+  std::uint64_t barrier_timeouts{};     ///< lockstep: number of commands that returned TIMEOUT
+  std::uint64_t superseded{};           ///< number of commands that returned SUPERSEDED
+  std::uint64_t dropped_clients{};      ///< number of expired claims
+  std::uint64_t refused{};              ///< number of refused requests, for any reason
+  std::uint64_t saves{};                ///< number of successful save_state calls
+  std::vector<std::int32_t> absent;     ///< ships for which lockstep does not wait
+  std::vector<std::uint64_t> absences;  ///< by ship: how often lockstep stopped waiting for it
+  double joint_step_age_s{1e9};         ///< time since the last joint step; 1e9 before the first
   std::string fault;  ///< error that paused the paced farm; empty if there is none
   std::uint64_t dropped_notifications{};  ///< number of failed notifications of the listener
   std::string dropped_reason;             ///< reason of the last failure; empty if there is none
@@ -84,29 +86,33 @@ struct ServerView {
   const aquafarm::FarmBatch& batch;
   const std::string& yaml;  ///< canonical YAML of the scenario
   MessageContext context;
-  std::uint64_t episode_count{};  ///< number of episodes that farm 0 has started
-  std::uint64_t version{};        ///< changes whenever farm 0 changes
-  bool joint{};  ///< true if a joint step made the last change: no driver needs each observation
+  std::uint64_t episode_count{};  ///< number of episodes that farm 0 has started or loaded
+  std::uint64_t version{};        ///< changes with farm 0, its pace and its pause
+  bool joint{};  ///< true if a joint step made the last change: no driver needs every observation
 };
 
-/// Receives changes while no farm steps. Callbacks must be quick and must not call the ranch.
+/// Receives changes while no farm steps. Callbacks must return quickly and must not call the
+/// FarmServer, whose mutex is locked. Their exceptions are counted in ServerCounters.
 class FarmListener {
  public:
   virtual ~FarmListener() = default;
-  /// Called after farm 0 has stepped or started an episode.
+  /// Called after a change of farm 0 (a step, a new or loaded episode, a bulletin), of the pace or
+  /// of the pause.
   virtual void OnChange(const ServerView& view) = 0;
+  /// Called after the last step of an episode of any farm.
   virtual void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) = 0;
-  /// Called when lockstep no longer waits for some ships, and when one of them is back.
+  /// Called with is_present = false when lockstep stops waiting for some ships, and with true when
+  /// one of them sends a command again.
   virtual void OnPresence(const std::vector<std::int32_t>& /*ships*/, bool /*is_present*/) {}
 };
 
 /// Receives everything that determines the farms' episodes, in order, while no farm steps.
-/// Callbacks must not call the ranch.
+/// Callbacks must not call the FarmServer, whose mutex is locked.
 class FarmRecorder {
  public:
   virtual ~FarmRecorder() = default;
-  /// Called after farm `number` has started an episode or loaded one.
-  /// @param context pace and rate of the ranch at this time
+  /// Called after farm `number` has started or loaded an episode.
+  /// @param context pace and rate of the farms at this time
   virtual void OnStart(const aquafarm::Farm& farm, std::int32_t number,
                        const MessageContext& context) = 0;
   /// Called after farm `number` has taken a step. @param actions [agents]
@@ -116,25 +122,31 @@ class FarmRecorder {
   virtual void OnIntervention(const aquafarm::Farm& farm, std::int32_t number) = 0;
 };
 
+/// Serves the requests to a batch of farms. Commands of single ships and paced running act on farm
+/// 0 only.
 class FarmServer {
  public:
-  /// @throws InputError if no layout of the scenario can be generated
+  /// @throws InputError if the scenario is a family of ranches, or its layout cannot be generated
   FarmServer(std::shared_ptr<const aquafarm::Scenario> scenario, const ServerOptions& options);
 
-  /// @param listener must stay valid until it is replaced or the ranch ends; null: no listener
+  /// Sets the listener and calls its OnChange; exceptions of this call are not caught.
+  /// @param listener must stay valid until it is replaced or the server is destroyed; null: no
+  ///        listener
   void SetListener(FarmListener* listener);
-  /// As SetListener. OnStart is called immediately for the current episode of each farm.
+  /// Sets the recorder, as SetListener, and calls its OnStart for the current episode of each farm.
   void SetRecorder(FarmRecorder* recorder);
 
-  /// Executes a command. Lockstep: returns when the step was taken, refused or timed out. Paced:
-  /// returns immediately.
+  /// Executes a command. In lockstep it returns after the step, or when the command is refused or
+  /// times out. In paced running it returns at once.
   aquafarm_msgs::CommandResult Command(const ShipCommand& command);
   /// Claims a ship for the calling node, or releases the claim.
+  /// @param ship in [0, agents() - 1]; not checked
   void Claim(std::int32_t ship, const std::string& caller, bool release,
              aquafarm_msgs::Claim::Response& response);
   /// As Command, but refuses an action that is not a move.
   aquafarm_msgs::CommandResult MoveShip(const ShipCommand& command);
-  /// The response stays valid until the next call of Step. Calls of Step must not overlap.
+  /// Executes a joint step. The response stays valid until the next call of Step. Calls of Step
+  /// must not overlap.
   /// @param caller name of the calling node; empty if unknown
   const aquafarm_msgs::Step::Response& Step(const aquafarm_msgs::Step::Request& request,
                                             const std::string& caller = {});
@@ -152,14 +164,15 @@ class FarmServer {
   void SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
                    aquafarm_msgs::SetDisaster::Response& response);
 
-  /// Takes the steps of paced running at their times. Returns after Shutdown.
+  /// Calls Tick when each paced step is due. Returns after Shutdown.
   void RunPaced();
-  /// Takes one paced step of farm 0, or starts its next episode if the current one has ended.
+  /// Takes one paced step of farm 0, or starts its next episode if the current one has ended. Does
+  /// nothing while the farms are paused. An error pauses the farms.
   void Tick();
-  /// Makes all waiting and all later commands return SHUTTING_DOWN.
+  /// Makes all waiting and all later commands and joint steps return SHUTTING_DOWN.
   void Shutdown();
 
-  /// Calls `look` while no farm steps.
+  /// Calls `look` while no farm steps. `look` must not call the FarmServer.
   void Inspect(const std::function<void(const ServerView&)>& look);
   ServerCounters counters();
   std::int32_t agents() const { return agents_; }
@@ -252,7 +265,7 @@ class FarmServer {
   FarmListener* listener_ AQUAFARM_GUARDED_BY(mutex_){};
   FarmRecorder* recorder_ AQUAFARM_GUARDED_BY(mutex_){};
   ServerCounters counters_ AQUAFARM_GUARDED_BY(mutex_);
-  // Time of the last joint step; the clock's zero if none.
+  // Time of the last joint step; the clock's zero before the first one.
   Clock::time_point joint_step_at_ AQUAFARM_GUARDED_BY(mutex_){};
 };
 

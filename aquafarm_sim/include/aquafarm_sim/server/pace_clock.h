@@ -10,25 +10,29 @@
 
 namespace aquafarm_sim {
 
-/// The time of the farms: the stamp of each step, the pace (lockstep or paced at a rate), pauses.
-/// The owner holds one mutex during every call. WaitForTick releases it while it waits.
+/// The clock of the farms: the stamp of each step, the pace (lockstep or paced), the rate and
+/// pauses. The owner must hold one mutex during every call; WaitForTick releases it while it waits.
 class PaceClock {
  public:
   explicit PaceClock(const MessageContext& start) : context_(start) {}
 
   const MessageContext& context() const { return context_; }
 
-  /// Advances the stamp by one step. A pause scheduled for this step begins.
+  /// Advances the stamp by one step. A pause that is scheduled for this step begins.
   void Advance();
-  /// @param after_steps number of steps until the pause begins; 0: immediately. Ignored if `paused`
-  /// is false, which ends a pause and removes a scheduled one.
+  /// Begins or schedules a pause. If `paused` is false, it ends the pause and cancels a scheduled
+  /// one.
+  /// @param after_steps number of steps until the pause begins; 0: immediately. The clock runs
+  ///        during these steps, even if it is paused now.
   void SetPaused(bool paused, std::uint32_t after_steps = 0);
   void SetPace(bool paced, double rate_hz);
 
-  /// Waits until the next paced step is due, `ending` is true, or both. While the clock is paused
-  /// or in lockstep no step is due. @return false if `ending` is true
+  /// Waits until the next paced step is due or `ending` is true. No step is due while the clock is
+  /// paused or in lockstep.
+  /// @param lock lock of the owner's mutex
+  /// @returns false if `ending` is true
   bool WaitForTick(aquafarm::MutexLock& lock, const bool& ending);
-  /// Makes WaitForTick look at `ending`.
+  /// Wakes WaitForTick, which then checks `ending`.
   void Wake() { changed_.notify_all(); }
 
  private:
@@ -39,8 +43,8 @@ class PaceClock {
   MessageContext context_;
   std::uint64_t stamp_ns_{};
   std::uint32_t steps_to_pause_{};  // 0: no scheduled pause
-  Clock::time_point due_{};         // time of the last tick, or since when the clock runs
-  bool is_counting_{};              // `due_` belongs to the present pace
+  Clock::time_point due_{};         // time of the last tick, or when the clock started to run
+  bool is_counting_{};              // `due_` is valid for the present pace and rate
   std::condition_variable changed_;
 };
 

@@ -4,8 +4,9 @@
 namespace aquafarm_sim {
 
 /// The last completed request of a kind and its answer. A client that lost the answer repeats the
-/// request and receives the same answer, so that each request is executed once.
-/// @tparam Key has operator== and IsIdentified(): false if a repetition cannot be recognised
+/// request and receives the same answer, and the request is not executed again.
+/// @tparam Key has operator== and IsIdentified(), which returns false if a retry cannot be
+///         recognized
 template <typename Key, typename Answer>
 class RequestLog {
  public:
@@ -13,12 +14,13 @@ class RequestLog {
   const Answer* Find(const Key& key) const {
     return is_complete_ && key.IsIdentified() && key_ == key ? &answer_ : nullptr;
   }
-  /// Forgets the last request. The caller then fills the answer in place.
+  /// Forgets the last request and returns the object that the caller must fill with the next
+  /// answer. Complete must follow.
   Answer& Begin() {
     is_complete_ = false;
     return answer_;
   }
-  /// Stores that the answer is that of `key`.
+  /// Marks the stored answer as the answer to `key`.
   void Complete(const Key& key) {
     key_ = key;
     is_complete_ = true;

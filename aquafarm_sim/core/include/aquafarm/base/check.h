@@ -31,7 +31,8 @@ template <typename A, typename B>
 }  // namespace internal
 }  // namespace aquafarm
 
-// Active in every build type. On failure throws LogicError with both values.
+// These checks are active in every build type. A failed check throws LogicError with the file, the
+// line, the expression and both values.
 #define AQUAFARM_CHECK_OP(op, a, b)                                                               \
   do {                                                                                            \
     const auto check_a = (a);                                                                     \

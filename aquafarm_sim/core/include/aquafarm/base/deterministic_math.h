@@ -3,11 +3,11 @@
 
 namespace aquafarm {
 
-/// Returns e^x with a relative error below 1e-12 for |x| <= 8. It uses only + and *, so the result
-/// is bit-identical on every machine, which libm does not guarantee.
+/// Returns e^x with a relative error below 1e-12 for |x| <= 8. It uses only +, * and /, so the
+/// result is bit-identical on every machine; libm does not guarantee this.
 constexpr double Exp(double x) {
   constexpr int kHalvings = 8;
-  constexpr int kTerms = 9;  // of the series of e^(x/256)
+  constexpr int kTerms = 9;  // terms of the Taylor series of e^(x/256)
   const double small = x / (1 << kHalvings);
   double sum = 1.0;
   for (int n = kTerms; n > 0; --n) sum = 1.0 + small / n * sum;

@@ -9,7 +9,7 @@
 namespace aquafarm {
 
 /// Mixes 64-bit words into a hash with the finaliser of SplitMix64 (Steele, Lea and Flood, "Fast
-/// splittable pseudorandom number generators", OOPSLA 2014). Not a cryptographic hash.
+/// splittable pseudorandom number generators", OOPSLA 2014). It is not a cryptographic hash.
 class Hasher {
  public:
   void Add(std::uint64_t word) {
@@ -18,10 +18,12 @@ class Hasher {
     z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
     hash_ = z ^ (z >> 31U);
   }
+  /// Adds two numbers as one word.
   void Add(std::int32_t a, std::int32_t b) {
     Add((static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32U) |
         static_cast<std::uint32_t>(b));
   }
+  /// Adds the bit patterns of two numbers as one word.
   void Add(float a, float b) { Add(BitsOf(a), BitsOf(b)); }
   std::uint64_t value() const { return hash_; }
 
@@ -34,10 +36,10 @@ class Hasher {
   std::uint64_t hash_{};
 };
 
-/// Returns a checksum of bytes; the result is the same on every machine.
+/// Returns a checksum of bytes. The result is the same on every machine.
 std::uint64_t HashBytes(std::string_view bytes);
 
-/// Returns the checksum of the parts joined, without joining them.
+/// Returns the checksum of the concatenated parts without copying them.
 std::uint64_t HashBytes(const std::vector<std::string_view>& parts);
 
 }  // namespace aquafarm

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A mutex whose use clang checks at compile time (-Wthread-safety; tools/check_locks): a member
-/// declared AQUAFARM_GUARDED_BY(mutex_) is only used, and a function declared
-/// AQUAFARM_REQUIRES(mutex_) only called, while the mutex is held. Other compilers ignore the
-/// attributes. Source: https://clang.llvm.org/docs/ThreadSafetyAnalysis.html
+/// A mutex whose use clang checks at compile time (-Wthread-safety; tools/check_locks runs it). A
+/// member declared AQUAFARM_GUARDED_BY(mutex_) may only be accessed while mutex_ is locked. A
+/// function declared AQUAFARM_REQUIRES(mutex_) may only be called while mutex_ is locked. Other
+/// compilers ignore the attributes. Source: https://clang.llvm.org/docs/ThreadSafetyAnalysis.html
 
 #include <chrono>
 #include <condition_variable>
@@ -25,13 +25,15 @@
 
 namespace aquafarm {
 
+/// A mutex that MutexLock locks.
 class AQUAFARM_CAPABILITY("mutex") Mutex {
  private:
   friend class MutexLock;
   std::mutex mutex_;
 };
 
-/// Holds a mutex until the end of its scope.
+/// Locks a mutex on construction and unlocks it at the end of the scope. Within the scope, Unlock
+/// releases it and Lock acquires it again.
 class AQUAFARM_SCOPED_CAPABILITY MutexLock {
  public:
   explicit MutexLock(Mutex& mutex) AQUAFARM_ACQUIRE(mutex) : lock_(mutex.mutex_) {}
@@ -42,10 +44,10 @@ class AQUAFARM_SCOPED_CAPABILITY MutexLock {
   void Unlock() AQUAFARM_RELEASE() { lock_.unlock(); }
   void Lock() AQUAFARM_ACQUIRE() { lock_.lock(); }
 
-  /// Releases the mutex until `changed` is notified, possibly without a cause. Call it in a loop
-  /// that checks the condition.
+  /// Releases the mutex, waits until `changed` is notified, and locks the mutex again. Spurious
+  /// wake-ups are possible: call it in a loop that checks the condition.
   void Wait(std::condition_variable& changed) { changed.wait(lock_); }
-  /// As Wait, until `time` at the latest. @return false if `time` has come
+  /// As Wait, but waits until `time` at the latest. @return false after a timeout
   template <typename Clock, typename Duration>
   bool WaitUntil(std::condition_variable& changed,
                  const std::chrono::time_point<Clock, Duration>& time) {

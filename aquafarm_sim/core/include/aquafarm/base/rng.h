@@ -2,8 +2,8 @@
 #pragma once
 
 /// Counter-based random numbers keyed by (seed, episode, purpose, stream). A draw does not depend
-/// on the order of calls, the number of threads or the compiler. Philox4x32-10 of Random123 (Salmon
-/// et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
+/// on the order of calls, the number of threads or the compiler. The generator is Philox4x32-10 of
+/// Random123 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
 
 #include <array>
 #include <cstdint>
@@ -12,21 +12,22 @@ namespace aquafarm {
 
 /// Purpose of a draw. Each purpose has its own streams.
 enum class RngStream : std::uint8_t {
-  kLayout,
-  kStart,
-  kDisasterSpawn,
-  kDisasterTurn,
-  kDamage,
-  kSensors,
-  kExploration,  ///< random choices of an agent
-  kLearner,      ///< initial weights, replay samples
-  kForecast,     ///< direction of forecast errors
-  kStorm,        ///< storm of an archive, and its displacement
-  kRanch,        ///< ranch of a family
+  kLayout,         ///< positions of ports, devices and rocks
+  kStart,          ///< port in which a ship starts
+  kDisasterSpawn,  ///< centre and heading of a disaster at the start
+  kDisasterTurn,   ///< turns of a disaster
+  kDamage,         ///< whether a crash damages devices
+  kSensors,        ///< errors of bulletins
+  kExploration,    ///< random actions
+  kLearner,        ///< initial weights and random samples of a learner
+  kForecast,       ///< errors of forecasts
+  kStorm,          ///< storm drawn from an archive, and its perturbation
+  kRanch,          ///< ranch drawn from a family
 };
 
-/// Set in every evaluation seed, clear in every training seed. Storms of an archive's evaluation
-/// years are drawn for evaluation seeds only.
+/// Bit that is set in every evaluation seed and clear in every training seed. Evaluation seeds draw
+/// storms from the evaluation years of an archive; training seeds draw them from the training
+/// years.
 inline constexpr std::uint64_t kEvaluationSeedBit = 1ULL << 63U;
 constexpr bool IsEvaluationSeed(std::uint64_t seed) { return (seed & kEvaluationSeedBit) != 0; }
 
@@ -35,22 +36,22 @@ struct StreamKey {
   std::uint64_t seed{};
   std::uint64_t episode{};
   RngStream purpose{};
-  std::uint32_t stream{};  ///< index of a ship, disaster, …; below 2^24
+  std::uint32_t stream{};  ///< index, such as the id of a ship or disaster; below 2^24
 };
 
-/// Returns four 32-bit draws, a pure function of key and index.
+/// Returns four 32-bit draws, which depend only on `key` and `index`.
 std::array<std::uint32_t, 4> Draw(const StreamKey& key, std::uint32_t index);
 
-/// Maps a draw to [0, 1) with 24 bits, exactly.
+/// Maps a draw to [0, 1): returns its upper 24 bits divided by 2^24, without rounding.
 constexpr float ToUnit(std::uint32_t draw) {
   return static_cast<float>(draw >> 8U) * (1.0F / 16777216.0F);
 }
-/// Maps a draw to [0, count); count > 0.
+/// Maps a draw to an integer in [0, count). @param count above 0
 constexpr std::uint32_t ToBelow(std::uint32_t draw, std::uint32_t count) {
   return static_cast<std::uint32_t>((static_cast<std::uint64_t>(draw) * count) >> 32U);
 }
 
-/// Generates one stream of draws. All state is plain data, so a copy saves the position.
+/// Generates the draws of one stream. A copy of the object continues with the same draws.
 class RandomStream {
  public:
   RandomStream() = default;
@@ -63,15 +64,15 @@ class RandomStream {
     }
     return block_[used_++];
   }
-  /// Uniform in [0, 1).
+  /// Returns a number that is uniform in [0, 1).
   float Unit() { return ToUnit(Next()); }
-  /// Uniform in [min, max); rounding may return max.
+  /// Returns a number that is uniform in [min, max); rounding may produce max.
   float Uniform(float min, float max) { return min + (max - min) * Unit(); }
-  /// Uniform in [0, count).
+  /// Returns an integer that is uniform in [0, count).
   std::uint32_t Below(std::uint32_t count) { return ToBelow(Next(), count); }
 
-  /// Approximately normal with mean 0 and standard deviation 1, in [-3.47, 3.47]: the sum of four
-  /// uniform draws. Bit-identical on every machine.
+  /// Returns a number that is approximately normal with mean 0 and standard deviation 1, in [-3.47,
+  /// 3.47]: the scaled sum of four uniform draws. It is bit-identical on every machine.
   double Normal() {
     constexpr double kScale = 1.7320508075688772;  // 1 / standard deviation of the sum
     double sum = -2.0;

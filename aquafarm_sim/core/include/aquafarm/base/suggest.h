@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Suggests a name in place of a mistyped one. Header only, so that programs that do not link the
-/// core may use it.
+/// Suggests a valid name for a mistyped one. It is header-only, for programs that do not link the
+/// core.
 
 #include <algorithm>
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace aquafarm {
 
-/// Returns the min number of letters to insert, remove or replace that turns `a` into `b`
+/// Returns the smallest number of characters to insert, remove or replace that turns `a` into `b`
 /// (Levenshtein 1966).
 inline std::size_t EditDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -29,16 +29,17 @@ inline std::size_t EditDistance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-/// Returns a name without hyphens, underscores and blanks.
+/// Returns a name without its hyphens, underscores and blanks.
 inline std::string WithoutSeparators(std::string name) {
   const auto is_separator = [](char c) { return c == '-' || c == '_' || c == ' '; };
   name.erase(std::remove_if(name.begin(), name.end(), is_separator), name.end());
   return name;
 }
 
-/// Returns " (did you mean 'NAME'?)" with the first of the names that need the fewest edits; empty
-/// if each needs three or more, or more than half of the letters of `text`. A name that differs
-/// only in separators comes first: INFA is the storm IN-FA, not LINFA.
+/// Returns " (did you mean 'NAME'?)" with the name that needs the fewest edits, or the first of
+/// several such names. Returns "" if every name needs more than two edits, or more edits than half
+/// of the length of `text`. Also returns "" if `text` has more than 100 characters. A name that
+/// differs only in separators needs no edit: INFA is the storm IN-FA, not LINFA.
 inline std::string DidYouMean(const std::string& text, const std::vector<std::string>& names) {
   constexpr std::size_t kLongest = 100;
   std::size_t limit = std::min<std::size_t>(3, text.size() / 2 + 1);

@@ -2,7 +2,7 @@
 #pragma once
 
 namespace aquafarm {
-/// Version of the suite, written to every bag, checkpoint and results file. CMake reads it here;
-/// with a generated header in each build, ccache would not recognise the same sources.
+/// Version of the suite, recorded in bags, checkpoints and the JSON files of results. CMake reads
+/// it from this file. A header generated in each build would prevent ccache from reusing objects.
 inline constexpr const char* kVersion = "0.1.0";
 }  // namespace aquafarm

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Elevations as an ASCII grid. The header has "ncols 60" or "60 ncols", nrows, xllcorner or
-/// xllcenter (or xlower), the same keys for y, cellsize and NODATA_value. The values follow row by
-/// row from the north, with any number of values per line.
+/// Elevations as an ASCII grid. Each header line is a key and a number, in either order: "ncols 60"
+/// or "60 ncols". The keys are ncols, nrows, cellsize, NODATA_value (default -9999), and one key
+/// each for the position in x and y. For x it is xllcorner, which is the west edge of the grid, or
+/// xllcenter or xlower, which are the centre of the first column. The values follow row by row from
+/// the north. A line may have any number of values.
 
 #include <array>
 #include <string>
@@ -14,30 +16,36 @@
 namespace aquafarm {
 
 struct AsciiGrid {
-  Grid<float> value;  ///< [H, W], row 0 in the south; NaN where there is no data
-  double west{};      ///< x of the centre of the south-west cell
-  double south{};     ///< y of the centre of the south-west cell
-  double cell_size{};
-  /// Returns whether coordinates are in degrees: cells are smaller than 1 and the corner is within
-  /// twice the range of degrees, so that typing errors are detected. If false, they are in metres.
+  Grid<float> value;   ///< [H, W], row 0 in the south; NaN where there is no data
+  double west{};       ///< x of the centre of the south-west cell
+  double south{};      ///< y of the centre of the south-west cell
+  double cell_size{};  ///< distance of neighbouring centres [degrees or metres]
+  /// Returns whether coordinates are in degrees; if not, they are in metres. They are in degrees if
+  /// `cell_size` is below 1, |west| is at most 720 and |south| is at most 180. These limits are
+  /// twice the valid ones, so the parser reports a mistyped corner in degrees instead of reading it
+  /// as metres.
   bool IsGeographic() const;
-  /// Whether a grid in degrees has a value at a place; longitudes are equal modulo 360.
+  /// Returns whether a position is in a grid in degrees, even where the grid has no data.
+  /// Longitudes are equal modulo 360.
   bool Covers(GeoPoint place) const;
-  /// The column and row of the value nearest to a place; outside the grid: beyond its columns or
-  /// rows.
+  /// Returns the column and row of the cell of a grid in degrees that is nearest to a position. At
+  /// least one of them is out of range for a position outside the grid.
   std::array<long, 2> Nearest(GeoPoint place) const;
 };
 
-/// Parses a text. @throws InputError "bay.asc:3: cellsize: got '0', expected …"
+/// Parses a text. @throws InputError "bay.asc:5: CELLSIZE: got 0, expected …"
 AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name);
-/// Reads a file as ParseAsciiGrid does. @throws InputError also when it cannot be read
+/// Reads a file and parses it as ParseAsciiGrid does. @throws InputError also if it cannot be read
 AsciiGrid LoadAsciiGrid(const std::string& path);
 
-/// Returns the land share of a grid in degrees. Values above `sea_level` or without data are land.
-/// Each cell of the ranch uses the nearest values at 5 × 5 points.
+/// Returns the land share [height, width] of the cells of a ranch, from a grid in degrees. Each
+/// cell has 5 × 5 sample points, which use the nearest values of the grid. A point is land if its
+/// value is above `sea_level` or missing, or if it is outside the grid.
+/// @param sea_level in the unit of the values
 LandShare ShareOfLand(const AsciiGrid& grid, const GeoFrame& frame, std::int32_t width,
                       std::int32_t height, float sea_level);
-/// Returns the land share of a grid in metres, one value per cell of the ranch.
+/// Returns the land share of a grid in metres, whose cells are those of the ranch: 1 if the value
+/// is above `sea_level` or missing, else 0.
 LandShare ShareOfLand(const AsciiGrid& grid, float sea_level);
 
 }  // namespace aquafarm

@@ -16,38 +16,41 @@
 
 namespace aquafarm {
 
-/// Fraction of land of each cell [0, 1], [H, W].
+/// Fraction of land in each cell, in [0, 1]; [H, W].
 using LandShare = Grid<float>;
 
-/// Min land share of an island cell. [decided]
+/// Min land share of an island cell ([decided]).
 inline constexpr float kLandShare = 0.4F;
-/// Min land share of a rock: too little land for an island, too much to sail over. [decided]
+/// Min land share of a rock cell ([decided]). It has too little land for an island and too much for
+/// ships.
 inline constexpr float kRockShare = 0.05F;
 
-/// Cell types of a ranch for a scenario, in which all water is connected.
+/// Cell types of a ranch. All its water is connected.
 struct Terrain {
   Grid<std::uint8_t> land;          ///< [H, W]; 1: island
-  std::vector<Cell> rocks;          ///< south to north, west to east
-  std::int32_t filled{};            ///< unreachable water cells that were converted to land
-  std::int32_t WaterCells() const;  ///< neither island nor rock
+  std::vector<Cell> rocks;          ///< row by row from the south, each row from the west
+  std::int32_t filled{};            ///< number of unreachable water cells that became land
+  std::int32_t WaterCells() const;  ///< number of cells that are neither island nor rock
 };
 
-/// Converts land shares to islands and rocks. Water that is not connected to the largest body of
-/// water by the eight moves becomes land.
-/// @throws InputError when there is no water
+/// Converts land shares to islands and rocks. Of the bodies of water that the eight moves connect,
+/// only the largest one stays water; the others become land.
+/// @throws InputError if there is no water
 Terrain ToTerrain(const LandShare& share);
 
-/// Returns a small set of blocks that cover exactly the land, as used in scenario files.
+/// Returns a small set of blocks that together cover all land cells and no other cell, as used in
+/// scenario files.
 std::vector<IslandBlock> ToIslands(const Grid<std::uint8_t>& land);
 
 /// Returns the shore cell nearest to `wanted` that is not in `taken`. A shore cell is water with
-/// land among its eight neighbours. Ties are resolved from the south-west.
-/// @throws InputError when there is no land in the chart, or no such cell left
+/// land among its eight neighbours. Of several nearest cells, returns the southernmost, and of
+/// these the westernmost.
+/// @throws InputError if no shore cell is left
 Cell NearestShore(const Terrain& terrain, Cell wanted, const std::vector<Cell>& taken);
 
-/// Returns up to `count` shore cells that are far from one another: first the cell nearest to the
-/// middle, then repeatedly the cell farthest from those chosen. Returns fewer if the shore has
-/// fewer cells, and an empty list without land.
+/// Returns up to `count` shore cells that are far from one another. The first is nearest to the
+/// middle of the chart. Each later one is the cell whose nearest chosen cell is farthest away.
+/// Returns fewer cells if the shore has fewer, and an empty list if there is no land.
 std::vector<Cell> SpreadPorts(const Terrain& terrain, std::int32_t count);
 
 }  // namespace aquafarm

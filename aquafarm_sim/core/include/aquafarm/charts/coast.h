@@ -2,7 +2,7 @@
 #pragma once
 
 /// Coastlines as GeoJSON (RFC 7946): Polygon and MultiPolygon, as single geometries or inside
-/// Features, FeatureCollections or GeometryCollections. Other geometries are skipped.
+/// Features, FeatureCollections or GeometryCollections. Points and lines are skipped.
 
 #include <string>
 #include <vector>
@@ -14,22 +14,24 @@ namespace aquafarm {
 
 /// A closed line; the last point equals the first.
 using CoastRing = std::vector<GeoPoint>;
-/// An outer ring (shore), followed by holes (lakes).
+/// An outer ring (the shore), followed by its holes (lakes).
 using CoastPolygon = std::vector<CoastRing>;
 
 struct Coast {
   std::vector<CoastPolygon> polygons;
-  std::vector<std::string> warnings;  ///< "coast.json:3: features[0]…: ring crosses itself, …"
+  std::vector<std::string> warnings;  ///< "coast.json:3: features[0]…: the ring crosses itself; …"
 };
 
-/// Parses a GeoJSON text. A ring that crosses or overlaps itself, or has too many segments to
-/// check, is kept with a warning; the even-odd rule then decides what is land.
-/// @throws InputError "coast.json:7: features[0].geometry.coordinates[0]: the ring is open, …"
+/// Parses a GeoJSON text. A ring that crosses or overlaps itself is kept with a warning. After 50
+/// million comparisons of segments in a file, the check of rings ends with a warning.
+/// @throws InputError "coast.json:7: features[0].geometry.coordinates[0]: the ring is open, …",
+///   also if there is no polygon
 Coast ParseCoast(const std::string& text, const std::string& origin_name);
-/// Reads a file as ParseCoast does. @throws InputError also when it cannot be read
+/// Reads a file and parses it as ParseCoast does. @throws InputError also if it cannot be read
 Coast LoadCoast(const std::string& path);
 
-/// Returns the fraction of land of each cell of a width × height grid, from 5 × 5 samples per cell.
+/// Returns the land share [height, width] from 5 × 5 sample points per cell. A point is land if it
+/// is inside a polygon by the even-odd rule, applied to all rings of the polygon.
 LandShare ShareOfLand(const Coast& coast, const GeoFrame& frame, std::int32_t width,
                       std::int32_t height);
 

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Charts in the format of map_server: a YAML file and an image in the same folder.
+/// Charts in the format of map_server: a YAML file and an image.
 ///
 ///   image: chart.pgm        PGM, PNG or BMP; dark is occupied
 ///   resolution: 200         metres per pixel
 ///   origin: [0, 0, 0]       x, y of the south-west corner [m], yaw [rad]
 ///   negate: 0               1: light is occupied
-///   occupied_thresh: 0.65   above: occupied; below free_thresh: free; between: unknown
-///   free_thresh: 0.196
-///   mode: trinary           scale: linear between the two; raw: pixels are 0 to 100
+///   occupied_thresh: 0.65   a pixel with a higher occupancy is occupied
+///   free_thresh: 0.196      a pixel with a lower occupancy is free
+///   mode: trinary           between the thresholds: unknown (trinary), or linear (scale)
 ///
-/// (wiki.ros.org/map_server)
+/// The occupancy of a pixel is 0 if it is white and 1 if it is black. With mode: raw, grey values 0
+/// to 100 are the occupancy in percent. Source: wiki.ros.org/map_server
 
 #include <array>
 #include <string>
@@ -27,20 +28,23 @@ struct MapFile {
 };
 
 /// Reads a map. A relative image path is resolved against the folder of the YAML file.
-/// @throws InputError with the file, the line and the key, or the position in the image
+/// @throws InputError with the YAML file, the line and the key, or with the image file
 MapFile LoadMap(const std::string& yaml_path);
 
-/// Writes NAME.yaml and NAME.pgm in the same folder, each first under a temporary name. Pixel
-/// values are those of map_saver: 254 free, 0 occupied (from 65), 205 unknown.
-/// @throws InputError when a file cannot be written
+/// Writes `yaml_path` and, next to it, the image with the extension .pgm. Each file has a temporary
+/// name until it is complete. Grey values are those of map_saver: 254 for an occupancy from 0 to
+/// 19, 0 from 65, and 205 for the values between and for unknown.
+/// @throws InputError if a file cannot be written
 void SaveMap(const MapFile& map, const std::string& yaml_path);
 
-/// Returns the land share of each cell: occupied is land, free is water, values between are
-/// proportional. Unknown is land, because ships must not go there ([decided], see docs/model.md).
+/// Returns the land share of each cell: its occupancy divided by 100. Unknown cells are land,
+/// because ships must not enter them ([decided], see docs/model.md).
 /// @throws InputError for a rotated map, because the grid of a ranch points north
 LandShare ShareOfLand(const MapFile& map);
 
-/// Returns the land and rocks of the first episode of a scenario as a map.
+/// Returns the islands and rocks of a scenario as a map, with 100 for land and rocks and 0 for
+/// water. The layout is that of episode 0 with the seed Scenario::layout_seed.
+/// @throws InputError if the layout cannot be drawn
 MapFile ToMap(const Scenario& scenario);
 
 }  // namespace aquafarm

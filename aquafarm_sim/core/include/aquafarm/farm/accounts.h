@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The money of an episode, in whole cents, so that sums are exact:
+/// The money of an episode, in whole cents, so that sums are exact. These equations apply to each
+/// device, to each kind of device and to the episode:
 ///
-///   insured = saved + damaged + lost       for each device, each kind and the episode
+///   insured = saved + damaged + lost
 ///   loss    = damaged + lost
 ///
-///   damaged   the share of its health that a device lost in the episode, times its insured value
-///   saved     what is left of a device in a port
-///   lost      what is left of a device at sea or aboard at the end of the episode, times
-///             money.at_sea_loss; the other part of it is saved
+/// The remaining value of a device is insured - damaged. The three parts of a device's value are:
 ///
-/// Amounts of a device are rounded to cents once: damage first, then the loss at sea. Costs of the
-/// operation stand next to the ledger and are not part of the loss.
+///   damaged   the share of its initial health that the device lost, times its insured value
+///   lost      0 if the device was delivered to a port, else the remaining value times
+///             money.at_sea_loss
+///   saved     the remaining value minus `lost`
+///
+/// `damaged` and then `lost` are rounded to cents, each once per device. The costs of ships and
+/// energy are separate from the ledger and are not part of the loss.
 
 #include <array>
 #include <cstdint>
@@ -22,20 +25,20 @@
 
 namespace aquafarm {
 
-/// Hundredths of the scenario's currency.
+/// Amount of money in hundredths of the scenario's currency.
 using Cents = std::int64_t;
 
-/// Returns an amount of the scenario's currency in cents, rounded to the nearest.
+/// Converts an amount of the scenario's currency to cents, rounded to the nearest.
 Cents ToCents(double amount);
 
-/// What became of an insured value.
+/// The insured value of devices and its three parts.
 struct Ledger {
   Cents insured{};
   Cents saved{};
   Cents damaged{};
   Cents lost{};
 
-  /// Returns the part of the insured value that is gone.
+  /// Returns the part of the insured value that is damaged or lost.
   Cents Loss() const { return damaged + lost; }
   Ledger& operator+=(const Ledger& other);
   bool operator==(const Ledger& other) const;
@@ -44,20 +47,23 @@ struct Ledger {
 /// Money of one episode.
 struct Accounts {
   std::array<Ledger, kDeviceKindCount> by_kind{};  ///< indexed by DeviceKind
-  Cents ship_cost{};                               ///< ship-hours times their price
-  Cents energy_cost{};                             ///< energy times its price
+  Cents ship_cost{};    ///< hours of rescue ships not moored × ship_hour
+  Cents energy_cost{};  ///< energy of all agents × MoneySpec::kwh
 
-  /// Returns the sum over all kinds.
+  /// Returns the sum of the ledgers of all kinds.
   Ledger Total() const;
-  /// Returns the cost of the operation.
+  /// Returns the cost of ships and energy.
   Cents OperatingCost() const { return ship_cost + energy_cost; }
 };
 
-/// Returns the insured value of a device. @param site of an explicit placement; nullptr for others
+/// Returns the insured value of a device.
+/// @param site entry of the device in an explicit placement; nullptr for other placements
 Cents InsuredValue(const MoneySpec& money, DeviceKind kind, const DeviceSite* site);
 
 /// Returns the ledger of one device at the end of an episode.
-/// @param health at the end, [0, 1] @param initial_health at the start, (0, 1]
+/// @param health at the end of the episode, [0, 1]
+/// @param initial_health at the start of the episode, (0, 1]
+/// @param in_port whether the device was delivered
 Ledger Settle(const MoneySpec& money, Cents insured, float health, float initial_health,
               bool in_port);
 

@@ -5,13 +5,14 @@
 
 namespace aquafarm {
 
-/// Bits of a chart cell; 0 is open water.
+/// Bits of a chart cell. A cell without bits is open water.
 enum CellBits : std::uint8_t {
   kIslandBit = 1,
   kRockBit = 2,
-  kPortBit = 4,        ///< water
-  kDeviceSiteBit = 8,  ///< water; a device was deployed here at the start of the episode
+  kPortBit = 4,        ///< a port on water
+  kDeviceSiteBit = 8,  ///< water where a device was deployed at the start of the episode
 };
+/// Bits of cells that ships cannot enter.
 inline constexpr std::uint8_t kBlockedBits = kIslandBit | kRockBit;
 
 }  // namespace aquafarm

@@ -3,17 +3,18 @@
 
 /// Disasters that move over the farm (paper §2.1, see docs/model.md).
 ///
-///      . . r2 . .        risk at a cell = the risk of the smallest ring whose radius is at least
-///    .   . r1 .   .      the Euclidean distance from the centre to the cell's centre; 0 outside.
-///   .  .   c--->.  .     With several disasters the worst risk counts. A look-up takes
-///    .   . . .   .       O(disasters) and needs no grid.
+///      . . r2 . .        The risk at a cell is that of the smallest ring whose radius is at least
+///    .   . r1 .   .      the Euclidean distance from the centre c to the centre of the cell. It is
+///   .  .   c--->.  .     0 outside all rings. With several disasters the worst risk applies. It is
+///    .   . . .   .       computed from the rings, without a grid.
 ///
 /// A ring may have a separate radius for each quadrant, as in typhoon bulletins. A cell due north
 /// of the centre belongs to the north-east quadrant, a cell due east to the south-east quadrant,
 /// and so on clockwise.
 ///
 /// Difference from the paper: the centre moves by a real number of cells along a heading in whole
-/// degrees, and is reflected at the border of the farm enlarged by the largest radius.
+/// degrees. By default it is reflected at the border of the farm enlarged by the largest radius;
+/// Border has alternatives.
 
 #include <array>
 #include <cstdint>
@@ -27,90 +28,100 @@
 
 namespace aquafarm {
 
-/// Returns the (east, north) components of a unit vector along a compass bearing. The result is
+/// Returns the (east, north) components of the unit vector of a compass bearing. The result is
 /// bit-identical on every machine.
-/// @param heading_deg in [0, 359]
+/// @param heading_deg in [0, 359] @throws LogicError for another bearing
 std::array<float, 2> HeadingVector(std::int32_t heading_deg);
 
-/// State of a disaster as last reported by a bulletin (partial view).
+/// State of a disaster in its last bulletin (partial view).
 struct Bulletin {
-  float x{};
+  float x{};  ///< reported centre [cells], with the error of ViewSpec::bulletin_noise
   float y{};
-  float speed{};
-  std::int32_t heading_deg{};
-  std::int32_t step{kNone};                                ///< step of issue; kNone: not issued yet
-  std::array<float, kMaxRings> radius{};                   ///< at the step of issue
-  std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< at the step of issue
+  float speed{};                          ///< [cells/step]
+  std::int32_t heading_deg{};             ///< compass bearing
+  std::int32_t step{kNone};               ///< step of issue; kNone: not issued yet
+  std::array<float, kMaxRings> radius{};  ///< at `step`, or of the last Farm::SetDisaster [cells]
+  std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< as `radius`, by quadrant
 };
 
-/// The part of a disaster's state that views copy, as plain data.
+/// The part of a disaster's state that views copy. All of it is plain data.
 struct ObservableDisaster {
   DisasterKind kind{};
   Border border{};
   std::int32_t grade{};
-  std::int32_t rings{};
-  std::array<float, kMaxRings> radius{};
-  std::array<float, kMaxRings> radius_squared{};
-  std::array<float, kMaxRings> risk{};
-  float x{};  ///< centre [cells]
+  std::int32_t rings{};                           ///< number of rings, innermost first
+  std::array<float, kMaxRings> radius{};          ///< [cells]; 0: the ring is absent
+  std::array<float, kMaxRings> radius_squared{};  ///< -1 for an absent ring
+  std::array<float, kMaxRings> risk{};            ///< risk inside each ring, negative
+  float x{};                                      ///< centre [cells]
   float y{};
-  float dx{};  ///< displacement in a step [cells]
+  float dx{};  ///< displacement [cells/step]
   float dy{};
-  float speed{};
-  std::int32_t heading_deg{};
+  float speed{};                   ///< [cells/step]
+  std::int32_t heading_deg{};      ///< compass bearing of the motion
   std::uint32_t turn_threshold{};  ///< the disaster turns if a 31-bit draw is below it
-  float radius_growth{};
-  float margin{};                ///< border around the map: the largest radius at the start [cells]
+  float radius_growth{};           ///< [cells/step]; not used with a track
+  float margin{};  ///< width of the border around the map: largest initial radius [cells]
   std::int32_t steps_left{};     ///< 0: the disaster has ended and causes no risk
   std::int32_t waypoint{kNone};  ///< index of the last waypoint passed; kNone: no track
   bool by_quadrant{};  ///< if true, `quadrant` applies and `radius` holds the largest of the four
-  std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< NE, SE, SW, NW, ring by ring
+  std::array<std::array<float, kMaxRings>, 4>
+      quadrant{};  ///< radius by quadrant (NE, SE, SW, NW) and ring
 
+  /// Returns whether the disaster has not ended.
   bool active() const { return steps_left > 0; }
   /// Returns the largest radius, or 0 if there is no ring.
   float reach() const { return rings == 0 ? 0.0F : radius[static_cast<std::size_t>(rings - 1)]; }
 };
 
-/// Complete state of a disaster, without its last bulletin: everything that may change during an
-/// episode.
+/// Complete state of a disaster except its last bulletin.
 struct Disaster : ObservableDisaster {
   std::array<std::uint32_t, 4> draws{};  ///< random draws of the current block of four steps
 };
 
-/// Copies the present rings of a disaster into its bulletin.
+/// Copies the current rings of a disaster into its bulletin.
 inline void CopyRings(const ObservableDisaster& disaster, Bulletin& bulletin) {
   bulletin.radius = disaster.radius;
   bulletin.quadrant = disaster.quadrant;
 }
 
-/// Waypoints of a disaster; shared and constant during an episode.
+/// Waypoints of a disaster. They do not change during an episode.
 using Track = std::shared_ptr<const std::vector<Waypoint>>;
 
-/// Creates a disaster at the start of an episode. Unset fields of its spec are drawn at random.
-/// @param track that it follows instead of spec.track; null: spec.track
+/// Creates a disaster. A centre or heading that its spec does not set is drawn from (seed, episode,
+/// id). With a track, the disaster is in the state of the track at step 0.
+/// @param width, height size of the farm [cells]
+/// @param track waypoints that replace those of the spec; null: those of the spec apply
 Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t seed,
                        std::uint64_t episode, std::int32_t width, std::int32_t height,
                        const std::vector<Waypoint>* track = nullptr);
 
-/// Advances a disaster to step `step` (the first move of an episode is to step 1): turns, moves,
-/// grows and ages it. A disaster that has ended does not move.
+/// Advances a disaster by one step, to step `step` of the episode; the first call has step 1. With
+/// a track, the disaster follows it; without one, the disaster turns, moves and grows. A disaster
+/// that has ended does not change.
+/// @param turn_key key of the random turns
+/// @param width, height size of the farm [cells]
 void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_key,
                   std::int32_t step, std::int32_t width, std::int32_t height);
 
-/// Sets a tracked disaster to the state of its track at `step`.
+/// Sets position, rings, grade and motion of a disaster to those of its track at `step`. Before the
+/// first waypoint they are those of the first one, and after the last waypoint those of the last
+/// one. The search for the current leg starts at `disaster.waypoint`, so `step` must not decrease
+/// from call to call.
 void FollowTrack(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
                  std::int32_t step);
 
-/// Sets a ring to a circle. Radius 0 means that the ring is absent, so a track may gain and lose
-/// rings.
+/// Sets a ring to a circle. A ring of radius 0 is absent, so a track may gain and lose rings.
 void SetRing(ObservableDisaster& disaster, std::size_t ring, float radius);
-/// Sets a ring by quadrants.
+/// Sets the radius of a ring in each quadrant.
 void SetRing(ObservableDisaster& disaster, std::size_t ring, const QuadrantRadii& radii);
-/// Adds `by` cells to the radius of every ring, with a minimum of 0.
+/// Adds `by` cells to the radius of every ring, but keeps radii at or above 0. In a disaster with
+/// quadrants, a radius of 0 stays 0.
 void GrowRings(ObservableDisaster& disaster, float by);
 
-/// Returns the index of the quadrant (NE, SE, SW, NW) of a point relative to a centre.
-/// @param west distance of the point west of the centre @param south distance south of it
+/// Returns the index of the quadrant (0 NE, 1 SE, 2 SW, 3 NW) in which a point lies.
+/// @param west distance of the point west of the centre, negative in the east
+/// @param south distance of the point south of the centre, negative in the north
 constexpr std::size_t QuadrantOf(float west, float south) {
   if (west <= 0.0F && south < 0.0F) return 0;
   if (west < 0.0F) return 1;
@@ -118,12 +129,14 @@ constexpr std::size_t QuadrantOf(float west, float south) {
   return west > 0.0F ? 3 : 0;
 }
 
-/// Returns the risk of rings by quadrant at a point `west` and `south` of the centre.
+/// Returns the risk of a disaster with quadrants at a point; 0 outside its rings.
+/// @param west, south position of the point as in QuadrantOf [cells]
+/// @param distance_squared squared distance of the point from the centre
 float RiskByQuadrant(const ObservableDisaster& disaster, float west, float south,
                      float distance_squared);
 
-/// Returns the risk of one disaster at a point [cells]; 0 outside its rings or after its end, else
-/// negative.
+/// Returns the risk of one disaster at a point [cells]: negative inside its rings; 0 outside them
+/// or after its end.
 inline float RiskOf(const ObservableDisaster& disaster, float x, float y) {
   const float dx = disaster.x - x;
   const float dy = disaster.y - y;
@@ -137,7 +150,7 @@ inline float RiskOf(const ObservableDisaster& disaster, float x, float y) {
   return 0.0F;
 }
 
-/// Returns the worst risk of several disasters at a cell.
+/// Returns the worst risk of several disasters at a cell; 0 without a risk.
 inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
   float worst = 0.0F;
   for (const Disaster& disaster : disasters) {
@@ -147,9 +160,9 @@ inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
   return worst;
 }
 
-/// Returns the risk that damages a device at a cell: of the disasters' risks there, each times the
-/// factor of its kind, the worst. May be below kWorstRisk.
-/// @param factors of the device's kind, by kind of disaster (DamageSpec::FactorsOf)
+/// Returns the risk that damages a device at a cell. The risk of each disaster is multiplied by the
+/// factor of the disaster's kind, and the worst product is returned. It may be below kWorstRisk.
+/// @param factors factors of the device's kind, indexed by DisasterKind (DamageSpec::FactorsOf)
 inline float DamagingRiskAt(const std::vector<Disaster>& disasters, Cell cell,
                             const std::array<float, kDisasterKindCount>& factors) {
   float worst = 0.0F;
@@ -161,14 +174,16 @@ inline float DamagingRiskAt(const std::vector<Disaster>& disasters, Cell cell,
   return worst;
 }
 
-/// Fills the risk grid [H, W] of disasters and sea, for drawing, publishing and planning.
+/// Writes the worst risk of disasters and sea to each cell of `risk`, for drawing, publishing and
+/// planning.
+/// @param risk [H, W], already of this size
 void FillRisk(const Scenario& scenario, const std::vector<Disaster>& disasters, Grid<float>& risk);
 
-/// Risk grids by kind of device; a grid is empty if its kind is not needed.
+/// Risk grids [H, W], indexed by DeviceKind. A grid is empty if its kind is not needed.
 using DamagingRisks = std::array<Grid<float>, kDeviceKindCount>;
 
-/// As FillRisk; also fills the grids [H, W] in `by_kind` that are not empty with the risk that
-/// damages each kind (DamagingRiskAt).
+/// As FillRisk; also writes the risk that damages devices of a kind (Farm::DamagingRiskAt) to the
+/// grid of that kind in `by_kind`. Skips kinds with an empty grid.
 void FillRisks(const Scenario& scenario, const std::vector<Disaster>& disasters, Grid<float>& risk,
                DamagingRisks& by_kind);
 

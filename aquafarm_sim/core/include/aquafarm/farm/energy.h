@@ -5,9 +5,10 @@
 ///
 ///   idle_per_step + per_km · distance · (1 + per_device · aboard) · (1 + rough_sea · risk / -20)
 ///
-/// The distance is that between the cells' centres: a diagonal move covers √2 cells. A move that
-/// does not leave its cell (edge, crash, collision) covers none. The risk is that at the cell of
-/// the ship after its action, as in the reward. See docs/model.md.
+/// `distance` is the distance between the centres of the cells [km]; a diagonal move covers √2
+/// cells. It is 0 if the ship stays in its cell, for example after a crash. `aboard` is the number
+/// of devices aboard. `risk` is the risk at the cell of the ship after its action, as in the
+/// reward. The other names are fields of EnergyFigures. See docs/model.md.
 
 #include <cmath>
 
@@ -24,8 +25,10 @@ inline double MoveLength(Action action) {
   return move.x != 0 && move.y != 0 ? 1.4142135623730951 : 1.0;
 }
 
-/// Returns the energy of one step [kWh]. @param distance_km travelled in the step
-/// @param aboard devices aboard @param risk at the cell reached, 0 or negative
+/// Returns the energy of one step [kWh].
+/// @param distance_km distance travelled in the step
+/// @param aboard number of devices aboard after the action
+/// @param risk risk at the cell after the action, 0 or negative
 inline double EnergyOf(const EnergyFigures& figures, double distance_km, std::int32_t aboard,
                        float risk) {
   const double load = 1.0 + figures.per_device * aboard;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// One episode on one farm (Algorithm 1; rules in docs/model.md). A step, in this order:
-///   MoveDisasters → Act (ships in id order; the lower id has right of way) → Damage → Consume (if
-///   the scenario has energy) → Reward → Finish. Step never allocates. Reset allocates only after
-///   SetDisaster or Load has set a track, or if another owner still holds the drawn storm's track.
+/// One episode on one farm (Algorithm 1; rules in docs/model.md). A step runs in this order:
+/// MoveDisasters, Act for each ship in id order (so the lower id has right of way), Damage, Consume
+/// (if the scenario has energy), Reward, CountShipSteps (if it has money), Finish.
+///
+/// Step never allocates memory. Reset allocates only while its buffers grow, as in the first
+/// episodes, or if another owner still holds the track of a drawn storm.
 
 #include <algorithm>
 #include <array>
@@ -28,32 +30,33 @@ namespace aquafarm {
 class Hasher;
 struct SavedDisaster;
 
-/// Forecasts of one disaster that were issued during an episode, in order of issue; null: none.
+/// Forecasts of one disaster that were issued during an episode, in order of issue. Null if there
+/// are none.
 using Forecasts = std::shared_ptr<const std::vector<IssuedForecast>>;
 
 /// A rescue ship, or a self-propelled device that acts as a ship.
 struct Ship {
   Cell cell{};
   std::int32_t own_device{kNone};  ///< id of the self-propelled device; kNone: rescue ship
-  std::int32_t aboard{};           ///< devices aboard
+  std::int32_t aboard{};           ///< number of devices aboard
   bool active{true};               ///< false once a self-propelled device is delivered
-  Action action{Action::kHold};    ///< in the last step
+  Action action{Action::kHold};    ///< action in the last step
   Outcome outcome{Outcome::kHeld};
-  RewardTerms terms;          ///< of this ship in the last step, before sharing
-  float reward{};             ///< in the last step, after sharing
-  float episode_return{};     ///< sum of rewards
-  double energy{};            ///< consumed in the last step [kWh]
-  double distance{};          ///< travelled in the last step [km]
-  double episode_energy{};    ///< sum of energy [kWh]
-  double episode_distance{};  ///< sum of distance [km]
+  RewardTerms terms;          ///< terms of this ship in the last step, before sharing
+  float reward{};             ///< reward in the last step, after sharing
+  float episode_return{};     ///< sum of `reward` in this episode
+  double energy{};            ///< energy consumed in the last step [kWh]
+  double distance{};          ///< distance travelled in the last step [km]
+  double episode_energy{};    ///< sum of `energy` in this episode [kWh]
+  double episode_distance{};  ///< sum of `distance` in this episode [km]
 };
 
 /// State of a device in an episode.
 struct Device {
-  Cell cell{};  ///< where it was deployed or delivered; Farm::CellOf returns its current cell
-  float value{};
-  float health{1.0F};
-  std::int32_t carrier{kNone};  ///< ship that carries it; kNone unless status is kAboard
+  Cell cell{};                  ///< current cell; while aboard, the cell of the pickup
+  float value{};                ///< added to the reward of a delivery, times `health`
+  float health{1.0F};           ///< [0, 1]
+  std::int32_t carrier{kNone};  ///< id of the ship that carries it; kNone unless status is kAboard
   DeviceKind kind{};
   DeviceStatus status{DeviceStatus::kDeployed};
   bool self_propelled{};
@@ -61,46 +64,50 @@ struct Device {
 
 /// Statistics of an episode, updated every step.
 struct EpisodeRecord : EpisodeStatistics {
-  std::int32_t ship_steps{};  ///< steps of rescue ships not moored in a port; 0 without money
+  std::int32_t ship_steps{};  ///< sum over steps of rescue ships not moored; 0 without money
 };
 
-/// Returns the summary of an episode that the farm with index `farm` played.
+/// Returns the summary of an episode. @param farm index of the farm that played it
 EpisodeSummary SummaryOf(const EpisodeRecord& record, std::int32_t farm);
 
-/// Storms drawn for the disasters of a farm in the present episode.
+/// Storms that the disasters of a farm have drawn for the current episode.
 struct DrawnStorms {
   std::vector<std::shared_ptr<std::vector<Waypoint>>>
-      tracks;                                ///< by disaster; null if it draws none
-  std::vector<const ArchivedStorm*> storms;  ///< by disaster; null if it draws none
+      tracks;                                ///< by disaster; null if it has no storms
+  std::vector<const ArchivedStorm*> storms;  ///< by disaster; null if it has no storms
   StormPlacer placer;
-  std::vector<StormErrors> errors;  ///< of the storm that is placed
+  std::vector<StormErrors> errors;  ///< errors of the last storm placed
 };
 
-/// One farm. Calling Step after the end of an episode is a programming error.
+/// One farm with its current episode. Not thread-safe.
 class Farm {
  public:
   /// Creates a farm at the start of episode 0 of seed 0.
   /// @param scenario must have passed ValidateScenario
-  /// @throws InputError when its layout cannot be drawn
+  /// @throws InputError if its layout cannot be drawn
   explicit Farm(std::shared_ptr<const Scenario> scenario);
-  /// Creates a farm that uses a shared fixed layout instead of drawing its own.
+  /// Creates a farm that uses a shared layout in all episodes and draws none.
+  /// @param fixed_layout layout of the same scenario; null: the farm draws its own
   Farm(std::shared_ptr<const Scenario> scenario, std::shared_ptr<const Layout> fixed_layout);
 
   /// Starts episode `episode` of the sequence `seed`.
-  /// @throws InputError when the episode's layout cannot be drawn; call Reset with another episode
+  /// @throws InputError if the layout of the episode cannot be drawn. The farm must then be reset
+  ///   to another episode before it is used.
   void Reset(std::uint64_t seed, std::uint64_t episode);
 
-  /// Loads the first ship, device and disaster into the cache; helps if Step follows some 50 ns
-  /// later.
+  /// Loads the first ship, device and disaster into the cache. This saves time if Step follows
+  /// about 50 ns later.
   void Prefetch() const;
 
-  /// Executes one step. @param actions one per agent, [AgentCount()], each an Action incl. kHold
+  /// Executes one step.
+  /// @param actions [AgentCount()], one Action per agent; kHold is allowed
+  /// @throws LogicError if the episode has ended or an action is invalid
   void Step(const std::uint8_t* actions);
 
   const Scenario& scenario() const { return *scenario_; }
   /// The scenario as a shared pointer, for other farms of the same scenario.
   const std::shared_ptr<const Scenario>& shared_scenario() const { return scenario_; }
-  /// Chart, ports and initial device cells of this episode.
+  /// Chart, ports and initial cells of the devices in this episode.
   const Layout& layout() const { return *layout_; }
   /// The layout as a shared pointer, for other farms with the same fixed layout.
   const std::shared_ptr<const Layout>& shared_layout() const { return layout_; }
@@ -114,8 +121,8 @@ class Farm {
   const Bulletin& BulletinOf(std::size_t disaster) const;
   /// Waypoints of each disaster; empty for a disaster without a track.
   const std::vector<Track>& tracks() const { return tracks_; }
-  /// Forecasts of each disaster that were issued during this episode. Agents receive them. They
-  /// have no effect on the disasters; forecast.h merges them with the scenario's.
+  /// Forecasts of each disaster that were issued during this episode. They affect only what agents
+  /// observe. NewestForecast (forecast.h) also considers those of the scenario.
   const std::vector<Forecasts>& forecasts() const { return forecasts_; }
   /// Statistics of this episode so far.
   const EpisodeRecord& record() const { return record_; }
@@ -127,40 +134,44 @@ class Farm {
   std::int32_t step() const { return record_.steps; }
   /// Reason why the episode ended; kNone while it runs.
   EndReason reason() const { return record_.reason; }
-  /// Whether the episode has ended; call Reset or Load to continue.
+  /// Returns whether the episode has ended. Reset starts another one.
   bool over() const { return record_.reason != EndReason::kNone; }
-  /// Returns the accounts of an episode that has ended; nullopt before its end and without `money`.
+  /// Returns the accounts of an ended episode; nullopt before its end or if the scenario has no
+  /// money.
   std::optional<Accounts> SettleAccounts() const;
 
-  /// Returns the current worst risk of disasters and sea at a cell of the map; 0 or negative.
+  /// Returns the worst current risk of disasters and sea at a cell of the map; 0 or negative.
   float RiskAt(Cell cell) const;
-  /// Returns the current risk of disasters and sea that damages a kind of device at a cell of the
-  /// map: that of RiskAt, with each disaster's risk times its factor of damage.kinds.
+  /// Returns the current risk that damages a kind of device at a cell of the map. It is computed as
+  /// in RiskAt, but the risk of each disaster is first multiplied by its factor of
+  /// DamageSpec::kinds.
   float DamagingRiskAt(Cell cell, DeviceKind kind) const;
 
-  /// Returns the current cell of a device: its own cell, or the cell of its carrier.
+  /// Returns the current cell of a device: that of its carrier, or its own without a carrier.
   Cell CellOf(std::int32_t device) const {
     return CellOf(devices_[static_cast<std::size_t>(device)]);
   }
-  /// As above. @param device of this farm
+  /// As above. @param device a device of this farm
   Cell CellOf(const Device& device) const {
-    // Branch-free: farms differ in it, so a branch would be mispredicted.
+    // Branch-free: the processor could not predict a branch, because its outcome varies between
+    // farms.
     const std::size_t is_aboard = device.carrier == kNone ? 0 : 1;
     const Cell aboard = ships_[is_aboard * static_cast<std::size_t>(device.carrier)].cell;
     const Cell cells[] = {device.cell, aboard};
     return cells[is_aboard];
   }
 
-  /// Returns the legal actions of a ship in the current state; all moves if it is out of play.
+  /// Returns the legal actions of a ship in the current state. All moves are legal. A ship that is
+  /// not active has no other legal action.
   ActionMask LegalActions(std::int32_t ship) const;
 
-  /// Returns a hash of all state that affects the future or the observations. Equal states give
-  /// equal hashes on every machine.
+  /// Returns a hash of all state that affects later steps or observations. Equal states have equal
+  /// hashes on every machine.
   std::uint64_t Hash() const;
 
   /// Returns a hash of the layout, ships, devices and disasters, without seed and episode number.
-  /// Right after Reset it identifies the start of an episode: two episodes with equal hashes differ
-  /// at most in later random draws.
+  /// Right after Reset it identifies the start of an episode: two episodes of a scenario with equal
+  /// hashes differ at most in later random draws.
   std::uint64_t StartHash() const;
 
   /// Returns the storm that a disaster drew in this episode; nullptr for a disaster without storms.
@@ -168,35 +179,42 @@ class Farm {
 
   /// Serializes an episode in progress as CBOR bytes.
   std::string Save() const;
-  /// Restores a saved episode, which then continues bit-identically.
-  /// @throws InputError when the bytes are damaged or belong to another version or scenario; the
-  ///         farm is then unchanged
+  /// Restores an episode written by Save; the episode then continues bit-identically.
+  /// @throws InputError if the bytes are damaged or belong to another version or scenario; the farm
+  ///   is then unchanged
   void Load(const std::string& bytes);
-  /// Becomes a copy of a farm of the same scenario, with its episode in progress, and then
-  /// continues bit-identically. The scenarios may be two objects, which may differ in what ships
-  /// observe.
-  /// @throws InputError when the layout has to be drawn again for other observations and cannot be
+  /// Copies the episode in progress of a farm of the same scenario; the copy continues
+  /// bit-identically. The two scenario objects may differ in the observations of ships if their
+  /// hashes are equal.
+  /// @throws LogicError if the hashes of the scenarios differ
+  /// @throws InputError if the layout must be drawn again, because only this farm observes routes,
+  ///   and cannot be drawn
   void CopyStateFrom(const Farm& from);
 
-  /// Applies a bulletin: replaces disaster `id`, or adds a disaster when `id` equals their number.
-  /// A spec without start keeps the current centre; a new disaster needs a start or a track. The
-  /// track is the truth, and the spec's forecasts are what agents receive. They replace those
-  /// issued before; with forecasts, the bulletin is issued at once.
-  /// @throws InputError on an id or spec out of range; the farm is then unchanged
+  /// Applies a bulletin: replaces disaster `id`, or adds a disaster if `id` is the number of
+  /// disasters. If the spec has neither start nor track, the disaster keeps the centre of the one
+  /// that it replaces; a new disaster needs a start or a track. The disaster follows the track of
+  /// the spec, whose steps count from the start of the episode. Agents receive the forecasts of the
+  /// spec, which replace all earlier ones. In partial view, a spec with forecasts also issues a
+  /// bulletin of the new state at once.
+  /// @throws InputError if the id or the spec is invalid or the spec has storms; the farm is then
+  ///   unchanged
   void SetDisaster(std::int32_t id, const DisasterSpec& spec);
 
-  /// Applies a forecast of disaster `id`: from now on agents receive it, with a bulletin that is
-  /// issued at once. The disaster itself does not change.
-  /// @param forecast issued at the present step or earlier, not before the newest one in force,
-  ///   with a point after the present step; its rings are as many as those of the disaster
-  /// @throws InputError on an id or forecast out of range; the farm is then unchanged
+  /// Applies a forecast of disaster `id`: agents receive it from now on. The disaster itself does
+  /// not change. In partial view, a bulletin of the current state is issued at once.
+  /// @param forecast issued at the current step or earlier, but not before the newest forecast that
+  ///   applies. Its last point is after the current step. Its points have as many rings as the
+  ///   disaster, or none.
+  /// @throws InputError if the id or the forecast is invalid; the farm is then unchanged
   void IssueForecast(std::int32_t id, const IssuedForecast& forecast);
 
-  /// Returns whether PlaceShip may move a ship to a cell: one on the map that is not blocked, and
-  /// that no other ship occupies unless it is a port.
+  /// Returns whether PlaceShip may move a ship to a cell. The cell must be on the map and not
+  /// blocked. It must be a port, the ship's own cell, or a cell without another ship.
+  /// @throws LogicError if there is no such ship
   bool CanPlaceShip(std::int32_t ship, Cell cell) const;
   /// Moves a ship to another cell, to query an agent's behaviour there.
-  /// @throws InputError unless CanPlaceShip; the farm is then unchanged
+  /// @throws InputError if CanPlaceShip returns false; the farm is then unchanged
   void PlaceShip(std::int32_t ship, Cell cell);
 
  private:
@@ -225,27 +243,30 @@ class Farm {
   void IndexShips();
   std::int32_t DeviceToPickUp(const Ship& ship) const;
 
-  // What a step uses comes first, so that it takes few cache lines.
+  // The members that Step uses come first, so that they share cache lines.
   std::shared_ptr<const Scenario> scenario_;
   std::shared_ptr<const Layout> layout_;
   std::vector<Ship> ships_;
-  std::vector<std::int32_t> ship_index_;  // each ship's linear cell; kNone: out of play
+  std::vector<std::int32_t> ship_index_;  // linear cell of each ship; kNone: not active
   std::vector<Device> devices_;
   std::vector<Disaster> disasters_;
   std::vector<Track> tracks_;
-  std::array<double, 2> move_km_{};  // length of a straight and of a diagonal move
-  std::int32_t remaining_{};         // devices not yet delivered
-  bool tracks_changed_{};            // by SetDisaster or Load during this episode
+  std::array<double, 2> move_km_{};  // length of a straight and of a diagonal move [km]
+  std::int32_t remaining_{};         // number of devices not yet delivered
+  bool tracks_changed_{};            // whether SetDisaster or Load set tracks in this episode
   EpisodeRecord record_;
 
-  std::shared_ptr<Layout> own_layout_;  // null when the layout is shared
+  std::shared_ptr<Layout> own_layout_;  // null if the layout is shared
   std::unique_ptr<LayoutGenerator> generator_;
   std::vector<Forecasts> forecasts_;
-  std::vector<Bulletin> bulletins_;     // by disaster; may be empty if none was issued
-  std::unique_ptr<DrawnStorms> drawn_;  // null: no disaster has storms
+  std::vector<Bulletin> bulletins_;     // by disaster; may be empty in full view
+  std::unique_ptr<DrawnStorms> drawn_;  // null if no disaster has storms
 };
 
-/// Returns the fraction of its health that a device aboard loses in a crash into a rock or island.
+/// Returns the health that a device aboard loses in a crash into a rock or island. A self-propelled
+/// device loses as much in its own crash.
+/// @param bits CellBits of the rock or island
+/// @param crash_reward reward of the crash, 0 or negative
 float CrashDamage(const Scenario& scenario, std::uint8_t bits, float crash_reward);
 
 }  // namespace aquafarm

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A farm as text, one character a cell, north up:
-///   0-9 ship (last digit of its id)   d device that waits   P port   # island   o rock
-///   ~ water at a risk                 . other water
-/// A ship hides what lies in its cell, a device that waits hides the port, and so on in this order.
+/// A farm as text, with one character per cell and north at the top:
+///   0-9 ship (last digit of its id)   d device to fetch   P port   # island   o rock
+///   ~ water with a risk               . other water
+/// A cell with several objects shows the first of them in this order. Of several ships it shows the
+/// one with the lowest id. Ships that are not active are not shown.
 
 #include <cstdint>
 #include <string>
@@ -13,14 +14,15 @@
 
 namespace aquafarm {
 
-/// The marks of maps in text; the script `keyboard` has the same line.
+/// Legend of the marks. The script aquafarm_bringup/scripts/keyboard contains the same line.
 inline constexpr const char kMapKey[] =
     "0…9 ship  d device  P port  # island  o rock  ~ disaster  . water";
 
-/// The mark of a chart cell (CellBits); `device_mark` stands for a device site.
+/// Returns the mark of a chart cell. @param bits CellBits @param device_mark mark of a device site
 char ChartMark(std::uint8_t bits, char device_mark);
 
-/// The present state: a line with the step, the return and the deliveries, then the map.
+/// Returns the current state as text: a line with the name of the scenario, step, return,
+/// deliveries and the end reason if there is one, then the map.
 std::string RenderText(const Farm& farm);
 
 }  // namespace aquafarm

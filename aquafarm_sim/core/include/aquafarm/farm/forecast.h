@@ -2,27 +2,31 @@
 #pragma once
 
 /// Forecasts of a disaster's track that agents observe. The disaster itself follows its true track.
-/// A forecast is either one issued by an authority (a disaster's `forecasts` and
-/// Farm::IssueForecast) or the true track with a position error that grows with lead time
+/// There are two sources of forecasts: an authority (DisasterSpec::forecasts and
+/// Farm::IssueForecast), or the true track plus a position error that grows with the lead time
 /// (view.forecast_error_km).
 ///
-///      truth     o----o----o----o      forecast(t) = truth(t) + mean error(t - issued) · u
-///      forecast  o-----o-----o-----o   linear between waypoints, exact at lead time 0
-///               issued +24 h +48 h
+///      truth     o----o----o----o      second source: truth(t) + error(t - issued) · u,
+///      forecast  o-----o-----o-----o   linear between waypoints; error is MeanForecastError,
+///               issued +24 h +48 h     which is 0 at the step of issue
 ///
-/// The newest forecast of an authority applies. It leads from the current position to the points
-/// that lie in the future. After its last point the disaster keeps the motion between the last two
-/// points, or its present motion if there is one point, until the true track or the disaster ends.
-/// Its rings are those of its points, or the true ones if its points have none. The rings of a
-/// disaster without a track grow by radius_growth from the present step on. If points have rings,
-/// growth starts after the last of these points, and shrinking is ignored. Before the first
-/// forecast is issued and after the newest one expires, agents observe the current motion of the
-/// storm. If a new track replaces that of the scenario, the forecasts of the scenario no longer
-/// apply.
+/// The newest forecast of an authority applies until the step of its last point; see
+/// NewestForecast. Its path leads from the current position to its points in the future. After the
+/// last point the disaster keeps the motion between the last two points, or its current motion if
+/// there is only one point. It stops where the true track or the disaster ends.
+///
+/// The rings of this forecast are those of its points. If the points have no rings, the rings are
+/// those of the true track, or for a disaster without a track the current ones, which grow by
+/// radius_growth per step. If the points of a disaster without a track have rings, these grow after
+/// the last point by radius_growth if it is positive.
+///
+/// While no forecast of an authority applies, agents observe the second source if the scenario has
+/// view.forecast_error_km and the disaster has a track. If not, they observe the current motion.
+/// The forecasts of the scenario apply only while the disaster follows the track of the scenario.
 ///
 /// u is drawn once per episode and disaster, with a mean length of 1 and a random direction.
-/// Successive forecasts of one storm therefore err to the same side, and each is more accurate than
-/// the previous one. [decided], see docs/model.md
+/// Successive forecasts of one storm therefore err to the same side, and their error at a given
+/// time shrinks as the time comes closer. [decided], see docs/model.md
 
 #include <array>
 #include <vector>
@@ -31,46 +35,52 @@
 
 namespace aquafarm {
 
-/// Lead time, counted from now, of the forecast position that agents observe [steps].
+/// Number of steps from now to the forecast position that agents observe.
 inline constexpr std::int32_t kForecastSteps = 10;
 
 /// Returns the mean distance between the forecast and the true position [cells]. It is interpolated
-/// linearly between 0 at lead time 0 and the errors after 24, 48 and 72 hours, and extrapolated
-/// from the last two.
-/// @param lead [steps], at least 0 @param scenario with view.forecast_error_km
+/// linearly between 0 at lead time 0 and the errors after 24, 48 and 72 hours. Beyond 72 hours it
+/// is extrapolated from the last two errors.
+/// @param scenario must have view.forecast_error_km @param lead lead time [steps], at least 0
 float MeanForecastError(const Scenario& scenario, float lead);
 
-/// Returns u of a disaster in an episode: approximately normal in both components, mean length 1.
+/// Returns the vector u of a disaster in an episode. Its components are approximately normal, and
+/// its mean length is 1.
 std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episode,
                                          std::int32_t disaster);
 
-/// Returns the forecast of an authority that applies at step `issued`; nullptr if there is none or
-/// the newest one has expired. The pointer is valid until the farm changes.
+/// Returns the newest forecast of an authority that was issued by step `issued` and has a point
+/// after it; nullptr if there is none. The pointer is valid until the farm changes.
 const IssuedForecast* NewestForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
-/// Checks whether Farm::IssueForecast accepts a forecast. @throws InputError if it does not
+/// Checks a forecast for Farm::IssueForecast. @throws InputError if it is not acceptable
 void CheckForecast(const Farm& farm, std::int32_t disaster, const IssuedForecast& forecast);
 
-/// Fits a storm to a farm before Farm::SetDisaster. A forecast that is issued in the farm's future
-/// is issued now. Without view.forecast_error_km the true track follows the forecast. With it, the
-/// waypoints after the issue of the newest forecast are moved by minus the error of the farm's
-/// episode. The truth is then as far from the forecast as storms are from published forecasts.
+/// Prepares a storm for Farm::SetDisaster; does nothing if it has no forecast. If the step of its
+/// newest forecast is after the farm's current step, the forecast is issued now, with the later
+/// waypoints of the track as its points. Without view.forecast_error_km the track stays as it is.
+/// With view.forecast_error_km, the error (MeanForecastError times ForecastErrorVector) is
+/// subtracted from the waypoints after the step of issue. The truth then differs from the forecast
+/// as real storms differ from published forecasts.
 void FitArrival(const Farm& farm, std::int32_t disaster, DisasterSpec& spec);
 
-/// Returns the newest forecast of a storm, fitted to a farm for Farm::IssueForecast: a forecast
-/// that is issued in the farm's future is issued now and begins with the storm's next waypoint. Its
-/// rings are left out if the disaster has another number of rings.
-/// @param storm with a forecast
+/// Returns the newest forecast of a storm, prepared for Farm::IssueForecast. If its step is after
+/// the farm's current step, it is issued now, with the later waypoints of the storm's track as its
+/// points. Its rings are left out if the disaster has another number of rings, or if only one of
+/// them has quadrants.
+/// @param storm must have a forecast
+/// @throws InputError if the farm has no such disaster
 IssuedForecast FitForecast(const Farm& farm, std::int32_t disaster, const DisasterSpec& storm);
 
-/// Returns the present position and rings of a disaster as a waypoint of step 0.
+/// Returns the current position, grade and rings of a disaster as a waypoint of step 0.
 Waypoint RingsOf(const ObservableDisaster& disaster);
 
-/// HasForecast for a disaster that has a track or an issued forecast; called by it.
+/// Implements HasForecast for a disaster with a track or an issued forecast.
 bool HasForecastOfTrack(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
-/// Returns whether the agents of a farm observe a forecast of a disaster at step `issued`. Each
-/// observation calls it; most disasters have neither a track nor an issued forecast.
+/// Returns whether agents whose newest information on a disaster is from step `issued` observe a
+/// forecast of it. This check is inline because each observation calls it and most disasters have
+/// neither a track nor an issued forecast.
 inline bool HasForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
   const auto id = static_cast<std::size_t>(disaster);
   if (farm.tracks()[id]->empty() && farm.forecasts()[id] == nullptr) return false;
@@ -78,6 +88,7 @@ inline bool HasForecast(const Farm& farm, std::int32_t disaster, std::int32_t is
 }
 
 /// Returns the position of a disaster at `step` in the forecast of step `issued` [cells].
+/// @param issued the current step, or the step of the last bulletin @param step at least `issued`
 std::array<float, 2> ForecastAt(const Farm& farm, std::int32_t disaster, std::int32_t issued,
                                 std::int32_t step);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Positions of ports, rocks, islands and devices, drawn from (Scenario, seed, episode). A
-/// breadth-first search ensures that water connects all devices and ports (paper §2.4, see
-/// docs/model.md).
+/// Positions of ports, rocks and devices, drawn from (scenario, seed, episode), and the islands of
+/// the scenario. A breadth-first search ensures that water connects all devices and ports (paper
+/// §2.4, see docs/model.md).
 
 #include <cstdint>
 #include <vector>
@@ -24,29 +24,32 @@ struct PlacedDevice {
   DeviceKind kind{};
   float value{};
   bool self_propelled{};
-  Cents insured{};  ///< 0 if the scenario has no money
+  Cents insured{};  ///< insured value; 0 if the scenario has no money
 };
 
-/// A chart and the objects on it.
+/// The chart of an episode and the objects on it.
 struct Layout {
   Grid<std::uint8_t> cells;     ///< [H, W] CellBits
-  Grid<float> crash_reward;     ///< [H, W]; 0 on water, negative on rocks and islands
+  Grid<float> crash_reward;     ///< [H, W]; 0 on water, 0 or negative on rocks and islands
   Grid<std::uint8_t> obstacle;  ///< [H, W] image plane; 255 · min(1, |crash_reward| / 20)
   std::vector<Cell> ports;
   std::vector<Cell> rocks;
   std::vector<PlacedDevice> devices;
-  /// [H, W, route_count()] Routes from each cell to each port and then to each fetchable device, in
-  /// id order; empty without ViewSpec::routes and ViewSpec::tokens.
+  /// [H, W, route_count()] Routes from each cell to each port, then to each device that ships
+  /// fetch, in id order. Empty unless ViewSpec::NeedsRoutes().
   std::vector<RouteEntry> routes;
 
+  /// Returns the number of targets in `routes`.
   std::size_t route_count() const { return routes.size() / static_cast<std::size_t>(cells.size()); }
+  /// Returns the CellBits of a cell.
   std::uint8_t bits(Cell cell) const { return cells(cell.y, cell.x); }
 };
 
 /// Draws layouts. Keeps its scratch memory, so drawing into the same Layout again does not
-/// allocate. Ports are placed first, then devices, then rocks on the remaining water. Placements:
-///   uniform  one device near the middle of each of `count` equal parts of the map
-///   linear   devices in straight rows, west to east or south to north
+/// allocate. Islands and objects with cells in the scenario are placed first, then random ports,
+/// devices and rocks, in this order. Placements of devices:
+///   uniform  one device near the middle of each of `count` parts of the map of about equal size
+///   linear   devices in straight rows, all from west to east or all from south to north
 ///   random   anywhere on free water
 ///   explicit at the cells given in the scenario
 class LayoutGenerator {
@@ -54,15 +57,16 @@ class LayoutGenerator {
   /// Keeps a reference to the scenario, which must have passed ValidateScenario.
   explicit LayoutGenerator(const Scenario& scenario);
 
-  /// Draws the layout of one episode into `layout`, reusing its memory. With LayoutMode::kFixed
-  /// the draw depends on layout_seed alone.
-  /// @throws InputError when no connected layout is found within a bounded number of attempts; the
-  ///         message names the parameter that is too large
+  /// Draws the layout of one episode into `layout` and reuses its memory. With LayoutMode::kFixed
+  /// the layout depends only on the scenario, and its seed is layout_seed.
+  /// @throws InputError if 100 attempts find no layout in which water connects all ports and
+  ///   devices; the message names a parameter to change
   void Generate(std::uint64_t seed, std::uint64_t episode, Layout& layout);
 
  private:
-  /// Makes one attempt to place all objects; on failure crowded_ names the parameter to reduce.
+  /// Tries once to place all objects. If it returns false, crowded_ names the parameter to change.
   bool TryPlace(std::uint64_t seed, std::uint64_t episode, std::uint32_t attempt, Layout& layout);
+  /// Sizes the grids of a layout and reserves its lists.
   void Reserve(Layout& layout) const;
   void PlaceIslands(Layout& layout) const;
   void PlaceExplicit(Layout& layout) const;
@@ -77,20 +81,23 @@ class LayoutGenerator {
   void AddRock(Cell cell, float reward, Layout& layout) const;
   void ChartAllWays(Layout& layout);
   bool AtShore(const Layout& layout, Cell cell) const;
-  /// Returns the free cell nearest to `wanted`, searched ring by ring; x = kNone if there is none.
+  /// Returns the nearest cell to `wanted` without any bit, searched in growing squares; its x is
+  /// kNone if there is no such cell.
   Cell NearestFree(const Layout& layout, Cell wanted) const;
-  /// Returns whether cells without any bit of `blocked` connect all ports and devices.
+  /// Returns whether all ports and devices are connected through cells without any bit of
+  /// `blocked`.
   bool Connected(const Layout& layout, std::uint8_t blocked);
-  /// Removes a random candidate and returns it.
+  /// Removes a random cell from candidates_ and returns it.
   Cell TakeCandidate(RandomStream& rng);
+  /// Sets candidates_ to the cells without any bit.
   void CollectFree(const Layout& layout);
 
   const Scenario& scenario_;
-  std::vector<std::int32_t> candidates_;  // linear indices of cells still available
+  std::vector<std::int32_t> candidates_;  // linear indices of free cells
   std::vector<std::int32_t> queue_;       // scratch of the breadth-first search
   Grid<std::int32_t> route_steps_;        // scratch of ComputeRoutes
   std::vector<Cell> route_queue_;         // scratch of ComputeRoutes
-  std::vector<std::uint8_t> reached_;     // with a border of one cell on every side
+  std::vector<std::uint8_t> reached_;     // by cell, with a border of one cell on every side
   const char* crowded_{""};
 };
 

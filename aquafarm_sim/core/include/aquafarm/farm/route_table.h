@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Shortest routes by water from every cell to a target, as shown by a chart plotter: breadth-first
-/// search over the 8 moves, around islands and rocks. Ships and disasters are ignored.
+/// Shortest routes by water from every cell to a target: a breadth-first search over the eight
+/// moves, around islands and rocks. Ships and disasters are ignored.
 
 #include <cstdint>
 #include <vector>
@@ -11,28 +11,30 @@
 
 namespace aquafarm {
 
-/// Distance of unreachable cells; longer than any route on a map of a million cells.
+/// Number of moves for unreachable cells; larger than that of any route.
 inline constexpr std::int32_t kUnreachable = 1 << 28;
 
 /// Computes the number of moves by water from every cell of a chart to the nearest of `count`
-/// targets; kUnreachable on land and where no route exists.
-/// @param cells [H, W] CellBits
-/// @param steps [H, W], resized; nothing is allocated if `steps` and `queue` are large enough
+/// targets. It is kUnreachable on land and where no route exists.
+/// @param cells [H, W] CellBits @param targets [count] cells of the chart
+/// @param steps [H, W] result; resized
+/// @param queue scratch memory. Nothing is allocated if `steps` and `queue` are large enough.
 void StepsByWater(const Grid<std::uint8_t>& cells, const Cell* targets, std::size_t count,
                   Grid<std::int32_t>& steps, std::vector<Cell>& queue);
 
-/// The route from one cell to one target: the next move and the number of moves left. Of several
-/// shortest routes, the one whose next cell is nearest to the target in a straight line.
+/// The next move of a shortest route from a cell to a target, and the number of moves left. If
+/// several moves are on shortest routes, it is the one whose cell has the smallest straight-line
+/// distance to the target.
 struct RouteEntry {
   std::int32_t steps{kUnreachable};
-  std::int8_t east{};  ///< next move; both 0 at the target and where no route exists
+  std::int8_t east{};  ///< next move, as `north`; both are 0 at the target and without a route
   std::int8_t north{};
 };
 
-/// Writes the routes from every cell to `target` to every `stride`-th element of `routes`, by
-/// linear index.
-/// @param routes [H · W · stride]
-/// @param steps scratch, like `queue`, as in StepsByWater
+/// Computes the routes from every cell to `target`. The route of the cell with linear index i is
+/// written to routes[i * stride].
+/// @param routes first element to write; H · W routes at distances of `stride`
+/// @param steps scratch memory, like `queue`, as in StepsByWater
 void ComputeRoutes(const Grid<std::uint8_t>& cells, Cell target, RouteEntry* routes,
                    std::size_t stride, Grid<std::int32_t>& steps, std::vector<Cell>& queue);
 

@@ -2,7 +2,7 @@
 #pragma once
 
 /// The actions of a ship, their outcomes, and the reasons why an episode ends. § and Eq. refer to
-/// the paper, see docs/model.md.
+/// sections and equations of the paper, see docs/model.md.
 
 #include <array>
 #include <cstdint>
@@ -12,8 +12,9 @@
 
 namespace aquafarm {
 
-/// Actions of a ship in one step (Eq. 1, §2.2). kHold is used in paced running when no command
-/// arrives in time. It is not part of the learners' action space.
+/// Actions of a ship in one step (Eq. 1, §2.2). kHold leaves the ship where it is. The action space
+/// of learners does not contain it: a server executes it for a ship without a command, and some
+/// policies that do not learn use it.
 enum class Action : std::uint8_t {
   kNorth,
   kSouth,
@@ -28,10 +29,12 @@ enum class Action : std::uint8_t {
   kHold,
 };
 
+/// Number of moves, the first values of Action.
 inline constexpr int kMoveCount = 8;
+/// Number of actions of learners: all except kHold.
 inline constexpr int kActionCount = 10;
 
-/// The displacement of each move, indexed by Action; N = (0, +1) as in Eq. 1.
+/// Displacement of each move [cells], indexed by Action. North is (0, +1) as in Eq. 1.
 inline constexpr std::array<Cell, kMoveCount> kMoves{
     {{0, 1}, {0, -1}, {-1, 0}, {1, 0}, {-1, 1}, {1, 1}, {-1, -1}, {1, -1}}};
 
@@ -39,12 +42,14 @@ inline constexpr std::array<Cell, kMoveCount> kMoves{
 using ActionMask = std::uint16_t;
 inline constexpr ActionMask kMoveMask = (1U << kMoveCount) - 1;
 
+/// Returns the mask that contains one action.
 constexpr ActionMask MaskOf(Action action) {
   return static_cast<ActionMask>(1U << static_cast<unsigned>(action));
 }
 
-/// Index of the first of the eight features blocked.<move> in an agent's feature vector;
-/// Encoder::feature_names lists all features.
+/// Index of the first of eight consecutive features in the feature vector of an agent:
+/// "blocked.<move>", or "ship.blocked.<move>" with entity tokens. Encoder::feature_names lists all
+/// features.
 inline constexpr std::int32_t kFirstBlockedFeature = 5;
 
 /// Outcome of a ship's action in the last step.
@@ -52,17 +57,17 @@ enum class Outcome : std::uint8_t {
   kOk,
   kEdge,            ///< a move off the map; the ship stayed
   kCrash,           ///< a move into a rock or island; the ship stayed
-  kCollision,       ///< a move into another ship's cell; the ship stayed
-  kIllegalPickup,   ///< no device to pick up here, or no capacity left
+  kCollision,       ///< a move into another ship's cell outside a port; the ship stayed
+  kIllegalPickup,   ///< no device to pick up here, no capacity, or not a rescue ship
   kIllegalDropOff,  ///< not at a port, or no device aboard
-  kHeld,            ///< the action was kHold, or no command arrived in time
+  kHeld,            ///< the action was kHold; also before the first step
   kOutOfPlay,       ///< a delivered self-propelled device; its action was ignored
 };
 inline constexpr int kOutcomeCount = 8;
 
 /// Reason why an episode ended.
 enum class EndReason : std::uint8_t {
-  kNone,           ///< it has not ended
+  kNone,           ///< the episode has not ended
   kAllRetrieved,   ///< terminated: every device is delivered; the only success
   kDisasterEnded,  ///< terminated: the duration of every disaster has elapsed
   kStepLimit,      ///< truncated, not terminated
@@ -73,12 +78,13 @@ constexpr bool IsTerminated(EndReason reason) {
 }
 constexpr bool IsTruncated(EndReason reason) { return reason == EndReason::kStepLimit; }
 
-/// Returns the name used in scenario files, such as "north_west" or "all_retrieved".
+/// Returns the name of a value in files and feature names, such as "north_west" or "all_retrieved".
+/// @throws LogicError for a value outside the enumeration
 std::string_view ToString(Action value);
 std::string_view ToString(Outcome value);
 std::string_view ToString(EndReason value);
 
-/// Id that refers to no ship or device.
+/// Stands for a missing id or index, such as "no ship" or "no device".
 inline constexpr std::int32_t kNone = -1;
 
 }  // namespace aquafarm

@@ -5,8 +5,8 @@
 ///
 ///        y (north)
 ///        ^        (0, H-1) . . . (W-1, H-1)
-///        |           .               .        linear index = y * W + x
-///        |         (0, 0)  . . . (W-1, 0)     as in nav_msgs/OccupancyGrid; images are flipped
+///        |           .               .        linear index = y * W + x,
+///        |         (0, 0)  . . . (W-1, 0)     as in nav_msgs/OccupancyGrid; image row 0 is north
 ///        +------> x (east)
 ///
 /// Lengths are in cells and times in steps unless a name contains another unit. (Paper §2.4 and

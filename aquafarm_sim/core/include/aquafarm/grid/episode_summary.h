@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The statistics of an episode, listed once. The list serves saved states, messages, metrics.csv,
+/// The statistics of an episode. One list of them serves saved states, messages, metrics.csv,
 /// evaluation.csv and Python.
 
 #include <cstdint>
@@ -13,13 +13,14 @@ namespace aquafarm {
 
 /// One statistic of an episode.
 struct EpisodeField {
-  const char* name;    ///< of the member
-  const char* column;  ///< in metrics.csv and evaluation.csv
-  bool is_added{};     ///< files and saved states of version 0.1.0 lack it
+  const char* name;    ///< name of the struct member
+  const char* column;  ///< column in metrics.csv and evaluation.csv
+  bool is_added{};     ///< true if files and saved states of version 0.1.0 lack it
 };
 
-/// Calls visit(field, member…) for every statistic, with its member of each of the given records:
-/// EpisodeStatistics or the message EpisodeSummary. Add a statistic at the end, with is_added.
+/// Calls visit(field, member…) for every statistic. The members are those of the given records,
+/// each an EpisodeStatistics or a message EpisodeSummary. Append new statistics at the end, with
+/// is_added.
 template <typename Visit, typename... Records>
 void VisitEpisodeFields(const Visit& visit, Records&... records) {
   visit(EpisodeField{"seed", "seed"}, records.seed...);
@@ -37,7 +38,7 @@ void VisitEpisodeFields(const Visit& visit, Records&... records) {
   visit(EpisodeField{"distance", "distance_km", true}, records.distance...);
 }
 
-/// Copies every statistic from one record to another of another type.
+/// Copies every statistic from one record to another, and converts between their types.
 template <typename From, typename To>
 void CopyEpisodeFields(const From& from, To& to) {
   VisitEpisodeFields([](const EpisodeField&, const auto& value,
@@ -50,15 +51,15 @@ struct EpisodeStatistics {
   std::uint64_t seed{};
   std::uint64_t episode{};
   std::int32_t steps{};
-  float episode_return{};  ///< sum of the reward terms of all ships, before sharing
+  float episode_return{};  ///< sum over all ships and steps of the reward before sharing
   std::int32_t delivered{};
   std::int32_t devices{};
-  /// Health of the delivered devices: their mean, 0 without a delivery; in an EpisodeRecord the
-  /// sum.
+  /// In an EpisodeSummary the mean health of the delivered devices, or 0 without a delivery; in an
+  /// EpisodeRecord the sum of their health.
   float delivered_health{};
   std::int32_t crashes{};
   std::int32_t collisions{};
-  std::int32_t steps_in_disaster{};  ///< ship-steps spent at a risk
+  std::int32_t steps_in_disaster{};  ///< steps of ships that ended in a cell with a risk
   double energy{};                   ///< consumed by all ships [kWh]
   double distance{};                 ///< travelled by all ships [km]
   EndReason reason{};
@@ -66,9 +67,9 @@ struct EpisodeStatistics {
   bool Success() const { return reason == EndReason::kAllRetrieved; }
 };
 
-/// Statistics with which an episode of a farm ended.
+/// Statistics of an ended episode and the farm that played it.
 struct EpisodeSummary : EpisodeStatistics {
-  std::int32_t farm{};
+  std::int32_t farm{};  ///< index of the farm
 };
 
 }  // namespace aquafarm

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Geographic reference of the grid: the tangent plane (ENU) at the centre of cell (0, 0) on the
-/// WGS 84 ellipsoid, with x east and y north, in cells.
+/// Geographic reference of the grid: the tangent plane of the WGS 84 ellipsoid at the centre of
+/// cell (0, 0), with x east and y north, in cells.
 
 #include <array>
 
@@ -17,16 +17,16 @@ struct GeoPoint {
 /// Converts between WGS 84 positions and grid coordinates.
 class GeoFrame {
  public:
-  /// @param cell_size_m above 0
+  /// @param origin centre of cell (0, 0) @param cell_size_m above 0
   GeoFrame(GeoPoint origin, double cell_size_m) : origin_(origin), cell_size_m_(cell_size_m) {}
 
-  /// Returns (x, y) of a point on the ellipsoid [cells]; its height above the plane is dropped.
+  /// Returns (x, y) of a point on the ellipsoid [cells], projected vertically onto the plane.
   std::array<double, 2> ToGrid(GeoPoint point) const;
-  /// Returns whether a point is within 60 degrees of the origin. Points more than 90 degrees away
-  /// would be projected back onto the ranch.
+  /// Returns whether a point is within about 60 degrees of arc of the origin. Points more than 90
+  /// degrees away are on the far side of the Earth, and ToGrid could project them into the ranch.
   bool Faces(GeoPoint point) const;
-  /// Returns the geographic position of a point on the plane [cells]; its height above the
-  /// ellipsoid is dropped.
+  /// Returns the latitude and longitude of a point (x, y) on the plane [cells]. Its height above
+  /// the ellipsoid is ignored.
   GeoPoint ToGeo(double x, double y) const;
 
  private:

@@ -7,17 +7,18 @@
 
 namespace aquafarm {
 
-/// A layer of the farm: H rows (y) × W columns (x), row-major. Cell (x, y) is data()[y * W + x]
-/// and grid(y, x).
+/// A layer of the farm: H rows (y) × W columns (x), row-major. The value of cell (x, y) is
+/// grid(y, x), which is data()[y * W + x].
 template <typename T>
 using Grid = Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Returns the position of a cell in row-major data.
 constexpr std::int32_t LinearIndex(Cell cell, std::int32_t width) {
   return cell.y * width + cell.x;
 }
 
-/// Chebyshev distance: the number of moves between two cells on open water (a diagonal is one
-/// move).
+/// Returns the Chebyshev distance: the number of moves between two cells on open water, where a
+/// diagonal is one move.
 constexpr std::int32_t MovesBetween(Cell a, Cell b) {
   const std::int32_t dx = a.x < b.x ? b.x - a.x : a.x - b.x;
   const std::int32_t dy = a.y < b.y ? b.y - a.y : a.y - b.y;

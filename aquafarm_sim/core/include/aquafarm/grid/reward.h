@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The reward terms and their weights, each listed once. The lists serve the farm, scenario files,
-/// messages, pictures and Python. Add a term at the end: saved episodes name only later terms.
+/// The reward terms and their weights. The farm, scenario files, messages, pictures and Python use
+/// the two lists below. Append new terms at the end: saved episodes store the first seven by
+/// position and later ones by name. [decided]: our choice where the paper gives no value, see
+/// docs/model.md.
 
 #include <array>
 #include <string_view>
 
 namespace aquafarm {
 
-/// Calls visit(name, member…) for every reward term, with its member of each of the given records:
-/// RewardTerms or the message RewardTerms.
+/// Calls visit(name, member…) for every reward term. The members are those of the given records,
+/// each the struct or the message RewardTerms.
 template <typename Visit, typename... Records>
 constexpr void VisitRewardTerms(const Visit& visit, Records&... records) {
   visit("crash", records.crash...);
@@ -39,14 +41,14 @@ inline constexpr std::array<std::string_view, kRewardTermCount> kRewardTermNames
 
 /// The reward of one ship in one step, by term (paper §2.5, see docs/model.md).
 struct RewardTerms {
-  float crash{};     ///< the reward of the rock or island hit
-  float disaster{};  ///< the risk at the ship's cell after it acted
+  float crash{};     ///< reward of the rock or island that the ship moved into
+  float disaster{};  ///< risk of disasters and sea at the ship's cell after its action
   float pickup{};
   float drop_off{};  ///< includes health × value of each device delivered
   float illegal{};
   float collision{};
-  float step{};    ///< applied only when no other term applies, except energy
-  float energy{};  ///< -weight × the energy of the step; 0 without EnergySpec
+  float step{};    ///< set only if no other term except energy applies
+  float energy{};  ///< -EnergySpec::weight × energy of the step; 0 without EnergySpec
 
   /// Returns the sum of the terms, added in the order of the list.
   float Total() const {
@@ -57,8 +59,8 @@ struct RewardTerms {
 };
 static_assert(sizeof(RewardTerms) == kRewardTermCount * sizeof(float));
 
-/// Rewards that a scenario sets (paper §2.5). A crash into a rock earns the reward of the rock, and
-/// energy has its weight in EnergySpec.
+/// Rewards that a scenario sets (paper §2.5). RockSpec has the rewards of crashes into rocks, and
+/// EnergySpec has the weight of energy.
 struct RewardWeights {
   float island_crash{-20.0F};
   float pickup{20.0F};
@@ -68,14 +70,14 @@ struct RewardWeights {
   float step{-1.0F};
 };
 
-/// A reward as a key of scenario files.
+/// Key of a reward in scenario files.
 struct RewardKey {
   const char* name;
-  bool is_penalty{};  ///< may not be positive
+  bool is_penalty{};  ///< true if the value must not be positive
 };
 
-/// Calls visit(key, member…) for every weight, with its member of each of the given records:
-/// RewardWeights or the message RewardTable.
+/// Calls visit(key, member…) for every weight. The members are those of the given records, each a
+/// RewardWeights or a message RewardTable.
 template <typename Visit, typename... Records>
 constexpr void VisitRewardWeights(const Visit& visit, Records&... records) {
   visit(RewardKey{"island_crash", true}, records.island_crash...);

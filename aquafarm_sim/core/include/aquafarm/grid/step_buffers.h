@@ -7,9 +7,10 @@
 
 namespace aquafarm {
 
-/// Resizes the arrays of a step's results and points an output at them. Fields that `bits` does not
-/// contain become empty, with null pointers.
-/// @param results arrays as in VisitStepFields @param output pointers as in BatchOutput
+/// Resizes the arrays of a step's results and sets the pointers of an output to them. The array of
+/// a field that `bits` excludes becomes empty, and its pointer null.
+/// @param results arrays, with the members that VisitStepFields lists
+/// @param output pointers, such as BatchOutput
 template <typename Results, typename Output>
 void SizeStepFields(const StepShape& shape, std::uint8_t bits, Results& results, Output& output) {
   VisitStepFields(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The fields of a step's results, listed once. They are the members of every struct that holds
-/// such results, with equal names: BatchOutput (pointers), the StepResults of learners and the
+/// The list of the fields of a step's results. Every struct with such results has a member of the
+/// same name for each field: BatchOutput (pointers), and the StepResults of learners and the
 /// message StepResult (arrays). Every array is flat and row-major.
 
 #include <cstddef>
@@ -12,7 +12,8 @@
 
 namespace aquafarm {
 
-/// Bits by which a request asks for optional fields. The message StepResult has the same.
+/// Bits with which a request selects optional fields; equal to the constants of the message
+/// StepResult.
 enum StepFieldBits : std::uint8_t {
   kIndexField = 1,
   kFeaturesField = 2,
@@ -26,19 +27,20 @@ struct StepShape {
   std::size_t farms{};     ///< N
   std::size_t agents{};    ///< S, per farm
   std::size_t features{};  ///< F, per agent
-  std::size_t planes{};    ///< P · H · W, per agent
+  std::size_t planes{};    ///< P · H · W values, per agent
 };
 
 /// One field of a step's results.
 struct StepField {
-  enum class Rows : std::uint8_t { kFarms, kAgents };  ///< N, or N · S
+  enum class Rows : std::uint8_t { kFarms, kAgents };  ///< N rows, or N · S
   enum class Columns : std::uint8_t { kOne, kTerms, kFeatures, kPlanes };
 
-  const char* name;  ///< of the member
+  const char* name;  ///< name of the member
   Rows rows;
   Columns columns;   ///< values per row
-  std::uint8_t bit;  ///< StepFieldBits; 0: always returned
+  std::uint8_t bit;  ///< one of StepFieldBits; 0: never optional
 
+  /// Returns whether the results of a request with `bits` contain this field.
   bool IsIn(std::uint8_t bits) const { return bit == 0 || (bits & bit) != 0; }
   /// Returns the number of values of the whole field.
   std::size_t Size(const StepShape& shape) const {
@@ -56,7 +58,7 @@ struct StepField {
   }
 };
 
-/// Calls visit(field, member…) for every field, with its member of each of the given structs.
+/// Calls visit(field, member…) for every field. The members are those of the given structs.
 template <typename Visit, typename... Results>
 void VisitStepFields(const Visit& visit, Results&... results) {
   using Columns = StepField::Columns;

@@ -10,12 +10,12 @@ namespace aquafarm {
 
 /// The formats of storm tracks that aquafarm reads.
 enum class TrackFormat : std::uint8_t {
-  kCma,       ///< CMA best track, CHyyyyBST.txt
-  kJma,       ///< JMA / RSMC Tokyo best track, bst_*.txt
-  kAtcf,      ///< ATCF b-deck, bWPnnyyyy.dat
-  kIbtracs,   ///< IBTrACS v04 CSV
-  kBulletin,  ///< typhoon bulletin, including Zhejiang's (tfbh or tfid, points with radius7…)
-  kWeatherService,  ///< storm-track response of a weather service (track with windRadius30 …)
+  kCma,             ///< CMA best track, CHyyyyBST.txt
+  kJma,             ///< JMA / RSMC Tokyo best track, bst_*.txt
+  kAtcf,            ///< ATCF b-deck, bWPnnyyyy.dat
+  kIbtracs,         ///< IBTrACS v04 CSV
+  kBulletin,        ///< typhoon bulletin, such as that of Zhejiang (tfbh or tfid, points)
+  kWeatherService,  ///< storm-track response of a weather service (track, windRadius30)
   kArchive,         ///< archive of aquafarm (tracks/archive.h)
 };
 inline constexpr int kTrackFormatCount = 7;
@@ -23,7 +23,7 @@ inline constexpr int kTrackFormatCount = 7;
 std::string_view ToString(TrackFormat value);
 
 /// Detects the format of a text from its content; nullopt if it is not a track file. CMA and JMA
-/// files start with the same word, so the first point decides between them.
+/// files start with the same word; their second line distinguishes them.
 std::optional<TrackFormat> DetectTrackFormat(const std::string& text);
 
 }  // namespace aquafarm

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Features of the disasters that a ship knows, in slots, the most dangerous disaster first
-/// (view.disaster_slots). The slots replace the features by id, so a learner observes a disaster
-/// that arrives during play exactly as it observes one of the scenario.
+/// Slots of features of the disasters that a ship knows (view.disaster_slots). With slots, the
+/// features are ordered by danger instead of by disaster id: slot 0 describes the most dangerous
+/// disaster, slot 1 the next one, and so on (RankByDanger in view.h). A learner therefore observes
+/// a disaster that arrives during play exactly as it observes one of the scenario.
 ///
-///   slot0  the most dangerous known disaster     number of slots: the scenario's own disasters
-///   slot1  the next one                          plus view.disaster_slots; the least dangerous
-///   ...    0 if there is none                    disasters are left out if there are more
-///
-/// RankByDanger (view.h) defines the order.
+/// The number of slots is the number of disasters in the scenario plus view.disaster_slots. If
+/// there are more known disasters than slots, the least dangerous ones are left out. Unused slots
+/// contain zeros.
 
 #include <string>
 #include <vector>
@@ -18,14 +17,15 @@
 
 namespace aquafarm {
 
-/// Returns the number of slots; 0 without view.disaster_slots.
+/// Returns the number of slots; 0 if view.disaster_slots is 0.
 std::int32_t SlotCount(const Scenario& scenario);
 
 /// Returns the names of the features of all slots, in order.
 std::vector<std::string> SlotNames(const Scenario& scenario);
 
 /// Writes the features of all slots.
-/// @param length_scale 1 / longer side [1/cells] @param out [SlotNames().size()]
+/// @param length_scale 1 / longer side of the map [1/cells]
+/// @param out [SlotNames(*view.scenario).size()]
 void WriteSlots(float length_scale, const View& view, float* out);
 
 }  // namespace aquafarm

@@ -3,14 +3,15 @@
 
 /// Numeric encodings of a view: a tabular index, a feature vector, or H × W planes.
 ///
-/// Tabular index: status_rank · W·H + cell, over the ship's own cell and the status of every
-/// fetchable device. Each device is deployed, aboard this ship, or gone (delivered or aboard
-/// another ship). With capacity C only combinations with at most C devices aboard are counted; for
-/// C = 1 and D devices there are 2^D + D·2^(D−1) combinations. As in the paper, the index does not
-/// contain the disaster. The paper's |S| = 25·25·2³·4 is 20,000 (printed: 128,000) and its
-/// |O| = 25·25·2³ is 5,000 (printed: 32,000).
+/// Tabular index: status_rank · W·H + cell. `cell` is the linear index of the ship's cell, and
+/// `status_rank` numbers the combinations of the status of all fetchable devices. Each device is
+/// deployed, aboard this ship, or gone (delivered or aboard another ship). A ship of capacity C
+/// carries at most C devices, so combinations with more devices aboard have no number. For C = 1
+/// and D devices, 2^D + D·2^(D−1) combinations remain. As in the paper, the index does not contain
+/// the disaster. The paper prints |S| = 128,000 and |O| = 32,000, but its products 25·25·2³·4 and
+/// 25·25·2³ are 20,000 and 5,000.
 ///
-/// Features and planes: feature_names() and plane_names() list the exact order.
+/// feature_names() and plane_names() list the features and planes in order.
 
 #include <cstdint>
 #include <string>
@@ -22,13 +23,14 @@
 
 namespace aquafarm {
 
-/// Encodes views of one scenario. Stateless after construction.
+/// Encodes views of one scenario. Immutable after construction.
 class Encoder {
  public:
   /// @param scenario must outlive the encoder
   explicit Encoder(const Scenario& scenario);
 
-  /// Number of tabular states; 0 if it exceeds kMaxStates.
+  /// Number of tabular states; 0 if it exceeds kMaxStates or if the scenario has more than 14
+  /// fetchable devices.
   std::uint32_t state_count() const { return state_count_; }
   inline static constexpr std::uint64_t kMaxStates = 1ULL << 28U;
   /// Length of a ship's feature vector.
@@ -44,20 +46,21 @@ class Encoder {
   inline static constexpr std::int32_t kPlaneCount = 8;
 
   /// Returns the tabular index in [0, state_count()); state_count() must not be 0. Full and partial
-  /// views give the same index, because both contain the chart and the devices' cells and status.
+  /// views give the same index, because both contain the ship's cell and the status of all devices.
   std::uint32_t Index(const Farm& farm, std::int32_t ship) const;
   std::uint32_t Index(const View& view) const;
   /// A decoded tabular state: the ship's cell and the status of each fetchable device.
   struct TabularState {
     Cell cell{};
-    std::vector<DeviceStatus> status;  ///< kDelivered also represents "aboard another ship"
+    std::vector<DeviceStatus> status;  ///< kDelivered: delivered or aboard another ship
   };
   /// Inverse of Index. @param index in [0, state_count())
   TabularState Decode(std::uint32_t index) const;
 
   /// Writes the feature vector. @param out [feature_count()]
   void Features(const View& view, float* out) const;
-  /// Writes the planes. @param out [plane_count(), H, W] row-major from the south; 255 stands for 1
+  /// Writes the planes. A byte of 255 represents the value 1.
+  /// @param out [plane_count(), H, W] row-major, the southernmost row first
   void Planes(const View& view, std::uint8_t* out) const;
 
  private:
@@ -66,13 +69,13 @@ class Encoder {
   const Scenario& scenario_;
   std::vector<FeatureGroup> groups_;
   FeatureScales scales_;
-  std::vector<std::int32_t> status_rank_;  // by base-3 code; kNone: more aboard than capacity
+  std::vector<std::int32_t> status_rank_;  // by base-3 code; kNone if the capacity is exceeded
   std::vector<std::int32_t> status_code_;  // by rank
   std::uint32_t state_count_{};
   std::int32_t feature_count_{};
   std::int32_t fetchable_{};  // devices that are not self-propelled
   std::size_t planes_size_{};
-  std::vector<std::uint8_t> sea_plane_;  // risk of the sea itself; empty if there is none
+  std::vector<std::uint8_t> sea_plane_;  // [H, W] risk of the sea; empty without `seas.risk`
 };
 
 }  // namespace aquafarm

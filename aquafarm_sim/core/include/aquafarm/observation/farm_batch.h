@@ -27,42 +27,47 @@ struct BatchOutput {
   float* distance{};         ///< [N, S] travelled in the step [km]
   std::uint8_t* outcomes{};  ///< [N, S] Outcome
   ActionMask* legal{};       ///< [N, S] legal actions of the next step
-  std::uint8_t* active{};    ///< [N, S] 0: a delivered self-propelled device, whose agent is done
+  std::uint8_t* active{};    ///< [N, S] 0: the agent is a self-propelled device that is delivered
   std::uint8_t* end_reasons{};  ///< [N] EndReason; kNone while the episode runs
-  std::uint8_t* is_first{};  ///< [N] 1: first observation of an episode, not the result of a step
-  std::uint64_t* hashes{};   ///< [N] state hash
-  std::uint32_t* index{};    ///< [N, S] tabular index
-  float* features{};         ///< [N, S, F]
-  std::uint8_t* planes{};    ///< [N, S, P, H, W]
+  std::uint8_t* is_first{};     ///< [N] 1: the first observation of an episode; no step precedes it
+  std::uint64_t* hashes{};      ///< [N] state hash
+  std::uint32_t* index{};       ///< [N, S] tabular index
+  float* features{};            ///< [N, S, F]
+  std::uint8_t* planes{};       ///< [N, S, P, H, W]
 };
 
-/// Writes the results of farm n of N to the caller's memory.
-/// @param is_first whether this is the first observation of an episode @param view scratch
+/// Writes the results of one farm to row `n` of the caller's buffers.
+/// @param is_first whether this is the first observation of an episode
+/// @param view scratch memory
 void WriteFarm(const Farm& farm, const Encoder& encoder, std::size_t n, bool is_first, View& view,
                const BatchOutput& output);
 
 /// N farms of one scenario, each in its own episode. Not thread-safe.
 class FarmBatch {
  public:
-  /// Farm i of N plays episodes i, i + N, i + 2N, … of a seed.
-  /// @param threads number of threads that step the farms; results do not depend on it. A process
-  ///        forked from one that has stepped with several threads steps with one.
-  /// @throws InputError when the layout cannot be drawn
+  /// Creates N farms, all at episode 0 of seed 0. After Reset(seed, 0, output), farm i plays the
+  /// episodes i, i + N, i + 2N, … of the seed.
+  /// @param farms N, at least 1
+  /// @param threads number of threads that step the farms; results do not depend on it. If the
+  ///        process has stepped farms on several threads and then forks, its children use one
+  ///        thread.
+  /// @throws InputError if the scenario is a family, or if its layout cannot be drawn
   FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farms, std::int32_t threads = 1);
 
   /// Starts the sequence `seed` in all farms, with farm i at episode first_episode + i, and writes
   /// the first observations.
-  /// @param stride episodes between two of a farm; 0: farms(). More if other batches play the
-  ///        episodes in between
+  /// @param stride added to a farm's episode number for its next episode; 0 selects farms(). Use
+  ///        more if other batches play the episodes in between.
   /// @throws InputError when an episode's layout cannot be drawn; call Reset with another episode
   void Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output,
              std::uint64_t stride = 0);
 
   /// Steps every farm. @param actions [N, S], each in [0, kActionCount] (kHold allowed)
-  /// @throws InputError when an episode's layout cannot be drawn; the other farms are then stepped
+  /// @throws InputError when an episode's layout cannot be drawn. With several threads, all other
+  ///         farms have then been stepped; with one thread, those after the failed farm have not.
   void Step(const std::uint8_t* actions, const BatchOutput& output);
 
-  /// Writes the results of the current state again without stepping (after Load).
+  /// Writes the results of the current state without stepping, for example after Load.
   void Write(const BatchOutput& output);
 
   /// N of BatchOutput.
@@ -76,7 +81,7 @@ class FarmBatch {
   const Encoder& encoder() const { return encoder_; }
   /// @param i [0, farms())
   const Farm& farm(std::int32_t i) const { return farms_[static_cast<std::size_t>(i)]; }
-  /// Mutable access to one farm: SetDisaster, Load, single steps.
+  /// Mutable access to one farm, for example to call SetDisaster, Load or Step.
   Farm& farm(std::int32_t i) { return farms_[static_cast<std::size_t>(i)]; }
 
   /// Starts farm i's next episode.
@@ -85,19 +90,21 @@ class FarmBatch {
   /// Starts farm i's next episode and writes its first observation.
   /// @throws InputError when its layout cannot be drawn
   void StartNext(std::int32_t i, const BatchOutput& output);
-  /// Starts episode `episode` of the sequence `seed` in farm i alone and writes its first
-  /// observation. Later episodes of this farm are `stride` apart until the next Reset.
+  /// Starts episode `episode` of the sequence `seed` in farm i only and writes its first
+  /// observation. Sets the stride of this farm.
   /// @throws InputError when its layout cannot be drawn
   void Start(std::int32_t i, std::uint64_t seed, std::uint64_t episode, std::uint64_t stride,
              const BatchOutput& output);
-  /// Episodes between two of farm i; farms() unless Reset or Start has set another number.
+  /// Difference between the numbers of successive episodes of farm i. Initially farms(); Reset,
+  /// Start and set_stride change it.
   std::uint64_t stride(std::int32_t i) const { return strides_[static_cast<std::size_t>(i)]; }
-  /// Sets the number of episodes between two of farm i. @param stride at least 1
+  /// Sets the stride of farm i. @param stride at least 1
   void set_stride(std::int32_t i, std::uint64_t stride);
 
-  /// Serializes all farms; farms restored by Load continue bit-identically.
+  /// Serializes all farms; farms restored by Load continue bit-identically. The bytes do not
+  /// contain the strides.
   std::string Save() const;
-  /// Restores farms written by Save.
+  /// Restores farms written by Save. The strides do not change.
   /// @throws InputError when the bytes are damaged or belong to another version, scenario or number
   ///         of farms; nothing is then changed
   void Load(const std::string& bytes);
@@ -110,7 +117,7 @@ class FarmBatch {
   std::shared_ptr<const Scenario> scenario_;
   std::vector<Farm> farms_;
   Encoder encoder_;
-  std::vector<std::uint64_t> strides_;  // by farm: episodes from one to its next
+  std::vector<std::uint64_t> strides_;  // by farm
   std::vector<View> views_;             // one per thread
   std::int32_t agents_{};
   std::int32_t threads_{};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Consecutive features and their scales, for features.h and tokens.h.
+/// Groups of consecutive features, and the scales of features, for features.h and tokens.h.
 
 #include <string>
 #include <vector>
@@ -14,22 +14,23 @@ inline constexpr float kValueScale = 1.0F / 100.0F;  ///< 1 / max device value o
 
 /// Factors that scale features to about [-1, 1].
 struct FeatureScales {
-  float length{};  ///< 1 / longer side [1/cells]
-  float time{};    ///< max length of an episode [steps]
-  /// 1 / energy of a ship that moves straight, without load and in calm water, for that time
-  /// [1/kWh]; 0 without energy
+  float length{};  ///< 1 / longer side of the map [1/cells]
+  float time{};    ///< HorizonOf(scenario) [steps]
+  /// 1 / energy that a ship without load consumes if it moves straight in calm water for `time`
+  /// [1/kWh]; 0 if the scenario has no energy.
   float energy{};
 };
 
 /// Consecutive features that one function writes.
 struct FeatureGroup {
-  std::string name;                ///< of the group, for messages
-  std::vector<std::string> names;  ///< of its features, in order; their number is the group's count
+  std::string name;                ///< name of the group, for messages
+  std::vector<std::string> names;  ///< names of the features, in order
   /// Writes the values. @param out [names.size()]
   void (*write)(const FeatureScales& scales, const View& view, float* out){};
 };
 
-/// Returns the max length of an episode [steps].
+/// Returns the max length of an episode [steps]: the step limit, or the longest duration of the
+/// scenario's disasters if that is shorter. A disaster set during an episode may extend it.
 float HorizonOf(const Scenario& scenario);
 
 }  // namespace aquafarm

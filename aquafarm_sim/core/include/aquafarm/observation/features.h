@@ -2,7 +2,7 @@
 #pragma once
 
 /// The feature vector of a ship as a table of groups. The table is the only place that defines the
-/// order, the names and the number of the features; Encoder writes one group after the other.
+/// order, the names and the number of the features. Encoder writes the groups in this order.
 
 #include <string>
 #include <vector>

@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Features as entity tokens (view.tokens). They do not depend on the size of the map or on the
-/// number of entities, so one network can play every ranch:
+/// Features as entity tokens (view.tokens). Their number does not depend on the size of the map or
+/// on the number of entities, so one network can play every ranch:
 ///
 ///   ship       1 token    the observing ship, its near surroundings and the risk of its courses
-///   device    10 tokens   devices that are deployed or aboard the observing ship
+///   device    10 tokens   fetchable devices that are deployed or aboard the observing ship
 ///   port       6 tokens
 ///   disaster   4 tokens   known disasters that have not ended
 ///   other      4 tokens   other visible ships
 ///
 /// A slot without an entity holds zeros; feature 0 of each slot except the ship's is its validity
 /// flag. Entities fill the slots in id order. If there are more entities than slots, those nearest
-/// to the ship are kept: devices and ports by water, the others in a straight line.
+/// to the ship are kept. The distance is the number of moves by water for devices and ports, the
+/// distance to the edge of the largest ring for disasters, and the number of moves on open water
+/// for other ships.
 ///
-/// Lengths are in units of kTokenLength cells and clamped to [-4, 4]; risks are divided by the
-/// worst risk of §2.1. Forecast risks assume that each known disaster keeps its motion and its size
-/// until it ends. docs/generalist.md lists every feature.
+/// Lengths are in units of kTokenLength cells and clamped to [-4, 4]. Risks are divided by the
+/// worst risk of §2.1 (of the paper, see docs/model.md). Forecast risks assume that each known
+/// disaster keeps its motion and its size until it ends; ship.risk and ship.course ignore that it
+/// ends. docs/generalist.md lists every feature.
 
 #include <array>
 #include <cstdint>
@@ -32,7 +35,7 @@ inline constexpr std::int32_t kTokenPorts = 6;      ///< slots
 inline constexpr std::int32_t kTokenDisasters = 4;  ///< slots
 inline constexpr std::int32_t kTokenOthers = 4;     ///< slots
 inline constexpr std::int32_t kTokenWindow = 3;     ///< radius of the near surroundings [cells]
-inline constexpr std::int32_t kTokenRoute = 32;     ///< steps of a route whose risk is summed
+inline constexpr std::int32_t kTokenRoute = 32;     ///< max steps of a route whose risk is summed
 
 /// Slots of one kind of entity, consecutive in the feature vector.
 struct TokenGroup {

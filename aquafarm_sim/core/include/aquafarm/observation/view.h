@@ -2,11 +2,13 @@
 #pragma once
 
 /// Observation of a farm by one ship (paper §2.3, see docs/model.md). A full view contains
-/// everything. A partial view contains the chart and the cells and status of all devices; it
-/// contains health, other ships and disasters only within sensor_radius. For disasters outside of
-/// it, the last bulletin and its age apply. Networked agents (shared_sight) use the sensors of all
-/// agents in play and know their cells. A monitoring device in place (deployed, not self-propelled,
-/// health above 0) sees for all ships within monitoring_radius.
+/// everything. A partial view always contains the chart, and the initial cell and the status of
+/// every device. It contains the health of devices, other ships and disasters only within
+/// sensor_radius of the ship. A disaster is within this radius if its edge is. For disasters
+/// outside of it, the view contains the last bulletin and its age. Networked agents (shared_sight)
+/// use the sensors of all agents in play and know their cells. A monitoring device is a sensor of
+/// all ships, with radius monitoring_radius, while it is deployed and its health is above 0, unless
+/// it is self-propelled.
 
 #include <array>
 #include <cstdint>
@@ -30,26 +32,30 @@ struct Sensor {
 };
 
 struct KnownDevice {
-  Cell cell{};
+  Cell cell{};  ///< current cell if it is in sensor range, else its cell at the episode's start
   DeviceKind kind{};
   DeviceStatus status{};
   bool aboard_self{};  ///< aboard the observing ship
   bool self_propelled{};
   bool health_known{};
-  float health{1.0F};  ///< 1 while not known
+  float health{1.0F};  ///< 1 unless health_known
   float value{};
 };
 
 struct KnownDisaster {
-  bool known{};               ///< seen or in a bulletin; if false, all else is meaningless
-  bool visible{};             ///< seen now; if false, from the last bulletin
-  std::int32_t age{};         ///< age of the information [steps]; 0 when visible
-  ObservableDisaster belief;  ///< last known state; its centre is not dead-reckoned
-  /// Forecast positions at view.forecast_leads_h from now; empty without view.disaster_slots.
+  bool known{};        ///< visible or in a bulletin; if false, the other fields are meaningless
+  bool visible{};      ///< in sensor range now; if false, the last bulletin applies
+  std::int32_t age{};  ///< age of the information [steps]; 0 when visible
+  /// State `age` steps ago: the centre is not extrapolated to now. Only steps_left is counted from
+  /// now. If agents receive a forecast, dx and dy are its mean motion from then until
+  /// kForecastSteps after now.
+  ObservableDisaster belief;
+  /// Forecast positions [cells], one per lead time of view.forecast_leads_h, counted from now;
+  /// empty without view.disaster_slots.
   std::vector<std::array<float, 2>> forecast;
 };
 
-/// View of one ship. Its memory is reused from step to step.
+/// View of one ship. Observe reuses its memory from step to step.
 struct View {
   std::int32_t ship{};
   Cell self{};
@@ -66,29 +72,32 @@ struct View {
   std::vector<std::int32_t> by_danger;
   const Scenario* scenario{};
   const Layout* layout{};
-  /// Its own, those of networked agents and of monitoring devices; none in full view.
+  /// Sensors of the ship, of networked agents and of monitoring devices; empty in full view.
   std::vector<Sensor> sensors;
 };
 
-/// Fills `view` with the current observation of `ship`.
+/// Fills `view` with the current observation of `ship`. The view points to the farm's scenario and
+/// layout.
 void Observe(const Farm& farm, std::int32_t ship, View& view);
 
-/// Returns lead time `lead` of view.forecast_leads_h in steps, at least 1.
+/// Returns view.forecast_leads_h[lead] in steps, rounded to the nearest and at least 1.
 std::int32_t LeadSteps(const Scenario& scenario, std::size_t lead);
 
-/// Sets the forecast positions of a disaster to those of its present motion.
+/// Sets known.forecast to the positions that follow from the motion dx, dy of known.belief.
 void ExtrapolateMotion(const Scenario& scenario, KnownDisaster& known);
 
-/// Returns the worst risk of a disaster's rings at any place; 0 if it has no ring.
+/// Returns the worst risk of a disaster's rings, 0 or negative; 0 if no ring has a radius above 0.
 float WorstRisk(const ObservableDisaster& disaster);
 
 /// Fills View::by_danger from the disasters and their forecast positions. The danger of a disaster
 /// for a ship is |worst risk| / (1 + gap / longer side of the map). The gap is the smallest
-/// distance from the ship to the edge of the disaster, now or at one of the lead times; 0 inside.
-/// At equal danger the lower id comes first. [decided], see docs/scenario.md
+/// distance from the ship to the edge of the disaster, at its last known position or at one of the
+/// forecast positions; 0 inside. At equal danger the lower id comes first. The paper does not
+/// define this order; docs/scenario.md explains it.
 void RankByDanger(View& view);
 
-/// Returns the worst risk at a cell according to the view.
+/// Returns the worst risk of the sea and of the disasters of the view at a cell, 0 or negative.
+/// Each disaster is at its last known position.
 inline float KnownRiskAt(const View& view, Cell cell) {
   float worst = view.scenario->SeaRiskAt(cell);
   for (const KnownDisaster& known : view.disasters) {

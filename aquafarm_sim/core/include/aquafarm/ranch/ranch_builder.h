@@ -15,17 +15,19 @@ namespace aquafarm {
 struct BuiltRanch {
   Scenario scenario;
   std::string yaml;                   ///< text of the scenario file, with comments on the sources
-  std::vector<std::string> decided;   ///< decisions, one line each, for people
+  std::vector<std::string> decided;   ///< choices that BuildRanch made, one line each, for people
   std::vector<std::string> warnings;  ///< warnings about the input files
 };
 
 /// Builds a scenario.
-/// @throws InputError for unreadable files, a place without water, or a storm that is not in the
-///   file
+/// @throws InputError for a value out of range, an unreadable or unsuitable file, a place without
+///   water, or a storm that is not in the file
 BuiltRanch BuildRanch(const RanchRequest& request);
 
-/// Draws the layout of a scenario's first episode as text, north up: # island, o rock, P port, d
-/// device, . water.
+/// Draws a layout of the scenario as text, north up: # island, o rock, P port, d device, . water.
+/// The layout is that of episode 0 of the seed Scenario::layout_seed; with LayoutMode::kFixed it is
+/// the layout of all episodes.
+/// @throws InputError when the layout cannot be drawn
 std::string RenderAscii(const Scenario& scenario);
 
 }  // namespace aquafarm

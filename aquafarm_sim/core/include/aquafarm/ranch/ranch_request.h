@@ -10,64 +10,75 @@
 
 namespace aquafarm {
 
-/// A sea field over the ranch, for `seas` and expressions.
+/// A field of the sea that becomes a layer of the scenario's `seas`. Expressions may use it.
 struct SeaLayerRequest {
   std::string name;      ///< name in expressions
   std::string file;      ///< netCDF file
-  std::string variable;  ///< name or standard_name
+  std::string variable;  ///< name or standard_name of the variable in the file
 };
 
-/// Recorded storms, one of which is drawn in every episode.
+/// Recorded storms. Every episode draws one of them.
 struct ArchiveRequest {
-  std::vector<std::string> files;   ///< of tracks; empty: no archive
-  Range<std::int32_t> years{0, 0};  ///< of storms for training
-  /// Of storms for evaluation; if unset, all years after `years`.
+  std::vector<std::string> files;   ///< files of tracks; if empty, no archive is used
+  Range<std::int32_t> years{0, 0};  ///< years of the storms for training
+  /// Years of the storms for evaluation; if unset, all years after years.max.
   std::optional<Range<std::int32_t>> evaluation_years;
-  double within_km{300.0};  ///< max distance of a storm's closest approach to the middle
+  double within_km{300.0};  ///< max distance of a storm's closest approach to the ranch's middle
 };
 
-/// Inputs of BuildRanch. Unset fields get defaults, which are listed in the result.
+/// Inputs of BuildRanch. It chooses values for unset fields and lists them in BuiltRanch::decided.
 struct RanchRequest {
   std::string name{"my_ranch"};
   std::string chart;  ///< GeoJSON, map_server YAML or ASCII grid; empty for open sea
-  /// Centre of the ranch; optional only for a chart in metres without a storm.
+  /// Middle of the ranch. Required with a storm, an archive, port_places, sea fields, or a chart in
+  /// degrees.
   std::optional<GeoPoint> center;
-  std::int32_t width{25};  ///< cells; a chart in metres has its own size
-  std::int32_t height{25};
+  std::int32_t width{25};   ///< [cells]; a chart in metres replaces width, height and cell_size_m
+  std::int32_t height{25};  ///< [cells]
   double cell_size_m{200.0};
-  float sea_level{0.0F};  ///< of an ASCII grid
+  float sea_level{0.0F};  ///< heights of an ASCII grid above this are land
 
   std::string track;  ///< file with the storm; empty for calm weather
   std::string storm;  ///< name or id of the storm; may be empty if the file has only one
   std::string radii;  ///< file with radii for a track without radii; empty if unused
   RingReduction reduction{RingReduction::kEqualArea};
-  /// File of bulletins with forecast points. Agents receive these forecasts, while the storm
-  /// follows the track. If empty, agents receive the present motion of the storm.
+  /// File of bulletins with forecast points. Agents receive these forecasts; the storm itself
+  /// follows the track. The newest forecast continues a track that contains no forecast, unless the
+  /// track is a best track of the CMA or JMA. If empty, agents receive the present motion of the
+  /// storm.
   std::string forecasts;
 
-  ArchiveRequest archive;  ///< instead of `track`
+  ArchiveRequest archive;  ///< alternative to `track`; a request with both is an error
 
   std::vector<std::string> disasters;  ///< other disasters, in the format of presets.h
 
   std::int32_t ports{4};
   std::vector<GeoPoint>
       port_places;     ///< each is moved to the nearest shore water; replaces `ports`
-  bool exact_ports{};  ///< a place of `port_places` on land or outside of the ranch is refused
+  bool exact_ports{};  ///< places of `port_places` on land or outside the ranch are errors
   std::int32_t devices{4};
   DevicePlacement placement{DevicePlacement::kRandom};
   std::int32_t ships{1};
-  double speed_kn{4.0};               ///< of a ship that tows a device: one cell per step
-  std::optional<double> step_s;       ///< replaces speed_kn
-  double lead_h{3.0};                 ///< from the start until the widest ring reaches the ranch
-  std::optional<std::int64_t> start;  ///< UTC of step 0; replaces lead_h
-  std::uint64_t seed{1};
+  /// Speed of a ship that tows a device. It determines the duration of a step, in which the ship
+  /// moves one cell.
+  double speed_kn{4.0};
+  std::optional<double> step_s;  ///< duration of a step [s]; replaces speed_kn
+  /// Hours from the start until the widest ring reaches the ranch. If no ring reaches it, the start
+  /// is 12 hours before the storm is nearest. The start is rounded down to a full hour and is not
+  /// before the first position of the storm.
+  double lead_h{3.0};
+  std::optional<std::int64_t> start;  ///< UTC of step 0 [s since 1970]; replaces lead_h
+  std::uint64_t seed{1};              ///< seed of the layout
 
-  std::vector<SeaLayerRequest> sea;  ///< at the time of the start, or at the first time of the file
-  double sea_depth_m{0.0};
+  /// Fields at the time nearest to the start; without a start, at the first time of the file.
+  std::vector<SeaLayerRequest> sea;
+  double sea_depth_m{0.0};  ///< depth of the fields below the surface
   std::string value;     ///< expression over the layers for the value of each device; empty: random
   std::string sea_risk;  ///< expression over the layers for the risk of each cell; empty if unused
 
-  std::string notices;  ///< file of warnings or anchorage forecasts; those in force are listed
+  /// File of warnings or anchorage forecasts. BuiltRanch::decided lists those that are in force
+  /// during the episode.
+  std::string notices;
 };
 
 }  // namespace aquafarm

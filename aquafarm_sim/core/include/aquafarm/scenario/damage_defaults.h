@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Factors of the damage by kinds for real ranches. The order of the numbers in a row and in a
-/// column follows published reasons; their sizes are our assumption (docs/data.md, Damage by
-/// kinds).
+/// Damage factors for real ranches, by kind of device and kind of disaster. Published reasons
+/// determine which of two factors in a row or column is larger; the values are our assumption
+/// (docs/data.md, Damage by kinds).
 
 #include "aquafarm/scenario/scenario.h"
 
 namespace aquafarm {
 
-/// damage.kinds of the shipped real ranches and of ranches that `aquafarm scenario` makes.
+/// The damage.kinds of the shipped scenarios of real places and of the scenarios that
+/// `aquafarm scenario` writes. Rows: kind of device. Columns: kind of disaster.
 inline constexpr DamageFactors kRealDamage{{
     // typhoon, storm_surge, wave, red_tide, oil_spill, chemical_spill
     {1.5F, 1.5F, 1.5F, 2.0F, 1.5F, 1.5F},     // temporary_breeding

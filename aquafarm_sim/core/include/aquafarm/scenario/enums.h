@@ -8,7 +8,7 @@
 
 namespace aquafarm {
 
-/// The four kinds of breeding equipment of Fig. 1.
+/// The four kinds of breeding equipment of Fig. 1 of the paper.
 enum class DeviceKind : std::uint8_t {
   kTemporaryBreeding,
   kMonitoring,
@@ -17,7 +17,7 @@ enum class DeviceKind : std::uint8_t {
 };
 inline constexpr int kDeviceKindCount = 4;
 
-/// Where a device is: at its place in the sea, on a ship, or in a port.
+/// Whether a device is in the sea, on a ship, or in a port.
 enum class DeviceStatus : std::uint8_t { kDeployed, kAboard, kDelivered };
 inline constexpr int kDeviceStatusCount = 3;
 
@@ -37,7 +37,7 @@ std::string_view ToString(DeviceKind value);
 std::string_view ToString(DeviceStatus value);
 std::string_view ToString(DisasterKind value);
 
-/// Whether all episodes have the layout of the scenario, or each draws its own.
+/// Whether all episodes share the layout of Scenario::layout_seed, or each draws its own.
 enum class LayoutMode : std::uint8_t { kFixed, kPerEpisode };
 inline constexpr int kLayoutModeCount = 2;
 /// How the places of devices are chosen; see `placement` in docs/scenario.md.
@@ -47,10 +47,10 @@ inline constexpr int kDevicePlacementCount = 4;
 /// docs/scenario.md.
 enum class Border : std::uint8_t { kReflect, kWrap, kLeave };
 inline constexpr int kBorderCount = 3;
-/// Whether ships see the whole map, or only what is near them.
+/// Whether ships observe the whole map, or mainly what is near them; see ViewSpec.
 enum class ViewMode : std::uint8_t { kFull, kPartial };
 inline constexpr int kViewModeCount = 2;
-/// Whether each agent receives its own rewards or the sum of its team.
+/// Whether each agent receives its own reward, or all agents receive the sum of all rewards.
 enum class RewardSharing : std::uint8_t { kIndividual, kTeam };
 inline constexpr int kRewardSharingCount = 2;
 /// Returns the name used in scenario files.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Generated ranches: a scenario with `family` describes a family of ranches, of which every
-/// episode draws another one. The scenario's other keys hold for all of them.
+/// Generated ranches. A scenario with the key `family` describes a family of ranches, and every
+/// episode draws another ranch of the family. The other keys of the scenario apply to every ranch,
+/// unless DrawRanch draws their values.
 
 #include <cstdint>
 
@@ -13,20 +14,22 @@ namespace aquafarm {
 /// Max length of an episode on a ranch with generated disasters [steps].
 inline constexpr std::int32_t kMaxRanchSteps = 3000;
 
-/// Draws the ranch of an episode, a pure function of its arguments. Its layout is fixed, so its
-/// file (ToYaml) is an ordinary scenario. Evaluation seeds (rng.h) draw other ranches than training
-/// seeds.
+/// Draws the ranch of an episode; a pure function of its arguments. The ranch has a fixed layout
+/// and no family, so ToYaml writes it as an ordinary scenario. Evaluation seeds (rng.h) draw other
+/// ranches than training seeds.
 ///
-///   map          width and height; island blocks, of which some overlap, and on a share of ranches
-///                a coast along one side; rocks in proportion to the cells
-///   devices      at random, in rows or evenly spread; kinds in random order
-///   disasters    of all kinds, with one to three rings, that wander, grow or shrink; or, on
-///                storm_share of the ranches, the scenario's own disasters, such as archive storms
-///   duration     enough for all trips of the ships, times a factor in [1, 2]
+///   map          width and height; island blocks, which may overlap; on coast_share of the ranches
+///                a coast along one side; rocks in proportion to the number of cells
+///   devices      placed at random, in rows or evenly; kinds in turn, starting with a random kind
+///   disasters    of all kinds, with one to three rings, that wander, grow or shrink; on
+///                storm_share of the ranches the scenario's own disasters instead
+///   duration     of episodes with generated disasters: the time that one ship needs to fetch all
+///                devices, roughly estimated, times a random factor in [1, 2]
 ///
-/// @param family with Scenario::family @param attempt a ranch without a valid layout is drawn again
-///   with the next attempt
-/// @throws InputError when its parts do not fit its map
+/// @param family scenario with Scenario::family
+/// @param attempt from 0; if the layout of the ranch cannot be drawn, the caller draws another
+///   ranch with the next attempt
+/// @throws InputError if the parts of the ranch do not fit on its map
 Scenario DrawRanch(const Scenario& family, std::uint64_t seed, std::uint64_t episode,
                    std::uint32_t attempt);
 

@@ -17,7 +17,8 @@ inline constexpr std::int32_t kMaxDisasters = 64;
 inline constexpr std::int32_t kMaxShips = 64;
 /// Max number of farms that are stepped together.
 inline constexpr std::int32_t kMaxFarms = 4096;
-/// The range of a disaster's risk (paper §2.1, see docs/model.md).
+/// Bounds of the risk in a disaster's rings, [kWorstRisk, kMildestRisk] (paper §2.1, see
+/// docs/model.md).
 inline constexpr float kWorstRisk = -20.0F;
 inline constexpr float kMildestRisk = -5.0F;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// All parameters of a farm, as plain structs. The defaults come from the paper (§) or, where it
-/// gives no value, from docs/model.md ([decided]). Only scenario_yaml.h reads and writes scenario
-/// files.
+/// All parameters of a farm, as plain structs. § marks sections of the paper. [decided] marks
+/// defaults that the paper does not give; docs/model.md explains them. Only scenario_yaml.h reads
+/// and writes scenario files.
 
 #include <array>
 #include <cstdint>
@@ -36,15 +36,16 @@ struct IslandBlock {
   std::int32_t height{1};
 };
 
-/// Rocks: `count` random cells, or exactly the cells in `cells`. Each rock has a fixed crash
-/// reward.
+/// Rocks: `count` random cells, or exactly the cells in `cells`. The crash reward of each rock is
+/// drawn with the layout.
 struct RockSpec {
   Range<std::int32_t> count{20, 40};  // [decided]
-  Range<float> reward{-5.0F, -1.0F};  // §2.5
+  Range<float> reward{-5.0F, -1.0F};  ///< range of the crash rewards (§2.5)
   std::vector<Cell> cells;            ///< explicit rocks; if not empty, count is not used
 };
 
-/// Ports: `count` random water cells at a shore, or exactly the cells in `cells`.
+/// Ports: `count` random water cells, or exactly the cells in `cells`. Random ports are next to an
+/// island, or at the edge of the map if there are no islands.
 struct PortSpec {
   std::int32_t count{4};  // §2.4
   std::vector<Cell> cells;
@@ -59,21 +60,23 @@ struct ShipSpec {
 struct DeviceSite {
   Cell cell{};
   DeviceKind kind{};
-  std::optional<float> value;  ///< if unset, drawn from DeviceSpec::value
+  std::optional<float> value;  ///< if unset, from SeaSpec::device_value or DeviceSpec::value
   bool self_propelled{};
   std::optional<double> insured_value{};  ///< if unset, MoneySpec::device_values of the kind
 };
 
-/// Devices: `count` devices placed by `placement`, with kinds cycled from `kinds`; or `sites`.
+/// Devices. With DevicePlacement::kExplicit they are those of `sites`. Otherwise there are `count`
+/// devices, and device i has kind kinds[i mod kinds.size()].
 struct DeviceSpec {
   DevicePlacement placement{DevicePlacement::kRandom};
   std::int32_t count{3};
   std::vector<DeviceKind> kinds{DeviceKind::kTemporaryBreeding, DeviceKind::kMonitoring,
                                 DeviceKind::kBreedingRelease, DeviceKind::kDeepWaterBreeding};
-  Range<float> value{50.0F, 100.0F};
-  float health{1.0F};              ///< at the start, in (0, 1]
-  std::int32_t self_propelled{0};  ///< the last self_propelled of the count devices move themselves
-  std::vector<DeviceSite> sites;   ///< for DevicePlacement::kExplicit
+  Range<float> value{50.0F, 100.0F};  ///< range from which the value of each device is drawn
+  float health{1.0F};                 ///< health at the start of an episode, in (0, 1]
+  std::int32_t self_propelled{0};     ///< number of self-propelled devices: the last of `count`
+  std::vector<DeviceSite> sites;      ///< for DevicePlacement::kExplicit
+  /// Returns the number of devices.
   std::int32_t Total() const {
     return placement == DevicePlacement::kExplicit ? static_cast<std::int32_t>(sites.size())
                                                    : count;
@@ -83,35 +86,35 @@ struct DeviceSpec {
 /// A forecast issued by an authority.
 struct IssuedForecast {
   float step{};  ///< step of issue; may be negative
-  /// In order of time, all after the step of issue. Either all points have rings, or none has and
-  /// agents receive the true rings.
+  /// Forecast positions in order of time, all after the step of issue. Either all points have
+  /// rings, or no point has rings and agents receive the true rings.
   std::vector<Waypoint> points{};
 };
 
-/// Standard deviations by which a drawn storm differs from the recorded one.
+/// Random differences between a drawn storm and the recorded one (storms/draw_storm.h). Shifts have
+/// mean 0, factors have mean or median 1.
 struct StormPerturbation {
-  double along_km{};   ///< of its positions, along its motion
-  double across_km{};  ///< of its positions, across its motion
-  double start_h{};    ///< largest shift of its closest approach in time [hours], uniform
-  double intensity{};  ///< of the factor of its wind
-  double size{};       ///< of the logarithm of the factor of its radii
+  double along_km{};   ///< standard deviation of the shift along the storm's motion
+  double across_km{};  ///< standard deviation of the shift across the storm's motion
+  double start_h{};    ///< max shift of the closest approach in time [hours]; uniform
+  double intensity{};  ///< standard deviation of the factor of the wind
+  double size{};       ///< standard deviation of the logarithm of the factor of the radii
 };
 
-/// Recorded storms, one of which a disaster follows in each episode (storms/draw_storm.h).
+/// Recorded storms. In each episode the disaster follows one of them (storms/draw_storm.h).
 struct StormsSpec {
-  Range<std::int32_t> years;             ///< of storms for training
-  Range<std::int32_t> evaluation_years;  ///< of storms for evaluation; apart from `years`
+  Range<std::int32_t> years;             ///< years of the storms for training
+  Range<std::int32_t> evaluation_years;  ///< years of the storms for evaluation; not in `years`
   double within_km{300.0};  ///< max distance of the closest approach to the middle of the farm
   double approach_h{24.0};  ///< hours from step 0 to the closest approach
   StormPerturbation perturbation;
   std::string tracks;  ///< the storms in reach, as text of an archive (tracks/archive.h)
-  /// The storms of `tracks` on the farm and the risks of grades 1 to 4, set by the reader of
-  /// scenarios.
+  /// The storms of `tracks` on the farm; set by the reader of scenarios.
   std::shared_ptr<const StormLibrary> library;
-  GradeRisks risks;
+  GradeRisks risks;  ///< risks of the rings for grades 1 to 4; set by the reader of scenarios
 };
 
-/// DisasterInfo of §2.1 and the parameters of its motion.
+/// A disaster (DisasterInfo in §2.1) and the parameters of its motion.
 struct DisasterSpec {
   DisasterKind kind{DisasterKind::kTyphoon};
   std::int32_t grade{3};                            ///< 1 blue … 4 red
@@ -119,32 +122,34 @@ struct DisasterSpec {
   std::vector<float> risks{-20.0F, -10.0F, -5.0F};  ///< each in [-20, -5], worst first
   float speed{0.5F};                                ///< [cells/step]
   std::optional<std::int32_t> heading_deg;  ///< compass bearing of the motion; random if unset
-  float turn_probability{0.1F};             ///< per step, of a turn by +-45 degrees
+  float turn_probability{0.1F};             ///< probability per step of a turn by +-45 degrees
   float radius_growth{0.0F};                ///< [cells/step], added to every radius
   Border border{Border::kReflect};
   std::int32_t duration{1000};                ///< [steps] [decided]
   std::optional<std::array<float, 2>> start;  ///< centre (x, y) [cells]; random if unset
-  std::vector<Waypoint> track;                ///< if not empty, replaces speed and heading
+  std::vector<Waypoint> track;                ///< if not empty, determines position and rings
   std::vector<QuadrantRadii> quadrants{};     ///< as in Waypoint
-  GradeRisks grade_risks{};                   ///< also used for bulletins that arrive later
-  /// Factors of `risks` for grades 1 to 4, instead of grade_risks; empty: grades change no risk.
-  /// A waypoint's own risks stay as they are.
+  /// Risks of the rings for grades 1 to 4; empty if unset. Waypoints without own risks get those of
+  /// their grade, and so do the waypoints of bulletins that arrive during an episode.
+  GradeRisks grade_risks{};
+  /// Factors of `risks` for grades 1 to 4, an alternative to grade_risks; if both are empty, the
+  /// grade does not affect the risks. They do not change the own risks of waypoints.
   std::vector<float> grade_factors{};
-  /// Forecasts issued by an authority, in order of issue. Agents observe the newest one issued; the
-  /// disaster itself follows the track. Requires a track; see forecast.h.
+  /// Forecasts issued by an authority, in order of issue. Agents observe the newest issued
+  /// forecast; the disaster itself follows the track. Requires a track; see forecast.h.
   std::vector<IssuedForecast> forecasts{};
   /// If set, every episode draws a storm and follows it instead of `track`, which then holds the
   /// first storm as recorded.
   std::optional<StormsSpec> storms{};
-  /// Wind within each ring [kn], strongest first, as many as risks; empty: not given. Informative
-  /// only: pictures name the rings by it.
+  /// Min wind in each ring [kn], strongest first, one per risk; empty if unknown. Pictures label
+  /// the rings with it; it has no other effect.
   std::vector<std::int32_t> ring_winds_kt{};
-  /// Name of the storm, such as "In-Fa"; empty: it has none. Informative only: pictures show it.
+  /// Name of the storm, such as "In-Fa"; may be empty. Pictures show it; it has no other effect.
   std::string name{};
 };
 
-/// Returns the risks of the rings for grades 1 to 4: grade_risks, or risks times grade_factors,
-/// clamped to [kWorstRisk, kMildestRisk]. Empty if the grade changes no risk.
+/// Returns the risks of the rings for grades 1 to 4: grade_risks if set, else risks times each of
+/// grade_factors, clamped to [kWorstRisk, kMildestRisk]. Empty if both are unset.
 GradeRisks RisksByGrade(const DisasterSpec& disaster);
 
 /// The rewards of §2.5.
@@ -154,7 +159,7 @@ struct RewardSpec : RewardWeights {
 
 /// Factors of the damage that a kind of disaster does to a kind of device: [device][disaster].
 using DamageFactors = std::array<std::array<float, kDisasterKindCount>, kDeviceKindCount>;
-/// Factors of 1 everywhere: kinds do not matter.
+/// Factors of 1 for all kinds.
 inline constexpr DamageFactors kEqualDamage = [] {
   DamageFactors factors{};
   for (auto& row : factors) {
@@ -164,10 +169,10 @@ inline constexpr DamageFactors kEqualDamage = [] {
 }();
 
 struct DamageSpec {
-  float crash_probability{1.0F};  ///< that a crash damages the devices aboard, [0, 1]
+  float crash_probability{1.0F};  ///< probability that a crash damages the devices aboard, [0, 1]
   float island_damage{0.2F};      ///< health that devices aboard lose in a crash into an island
   float exposure_damage{0.001F};  ///< health lost per step and unit of |risk|
-  /// Factors of exposure_damage. The risk of the sea itself has none.
+  /// Factors of exposure_damage. They do not apply to the risk of the sea.
   DamageFactors kinds{kEqualDamage};
 
   /// Returns the factors for a kind of device, by kind of disaster.
@@ -180,17 +185,17 @@ struct DamageSpec {
 
 /// Energy consumption of a kind of vessel (farm/energy.h).
 struct EnergyFigures {
-  double per_km{};         ///< in calm water without load [kWh/km]
-  double per_device{};     ///< added to a factor of 1 for each device aboard
-  double rough_sea{};      ///< added to a factor of 1 at the worst risk, in proportion to the risk
-  double idle_per_step{};  ///< in each step, moving or not [kWh]
+  double per_km{};         ///< consumption in calm water without load [kWh/km]
+  double per_device{};     ///< relative increase of per_km for each device aboard
+  double rough_sea{};      ///< relative increase of per_km at the worst risk; linear in the risk
+  double idle_per_step{};  ///< added in every step, with or without a move [kWh]
 };
 
 /// Energy consumption of all agents.
 struct EnergySpec {
-  double weight{};  ///< subtracted from the reward per kWh
-  EnergyFigures ships;
-  EnergyFigures self_propelled;  ///< of self-propelled devices; per_device has no effect
+  double weight{};               ///< subtracted from the reward per kWh
+  EnergyFigures ships;           ///< for rescue ships
+  EnergyFigures self_propelled;  ///< for self-propelled devices; per_device has no effect
 };
 
 /// Values and prices in a currency. farm/accounts.h explains what they are used for. They are not
@@ -199,34 +204,35 @@ struct MoneySpec {
   std::string currency{"CNY"};                           ///< name of the unit; has no effect
   std::array<double, kDeviceKindCount> device_values{};  ///< insured value by DeviceKind
   double ship_hour{};       ///< price of an hour in which a rescue ship is not moored in a port
-  double kwh{};             ///< price of a kWh of the energy that all agents consume
-  double at_sea_loss{1.0};  ///< share of a device's remaining value that is lost if it is at sea
-                            ///< when the episode ends, [0, 1]
+  double kwh{};             ///< price of a kWh of energy
+  double at_sea_loss{1.0};  ///< share of a device's remaining value that is lost if the device is
+                            ///< at sea when the episode ends, [0, 1]
 };
 
 /// Observation settings of the agents (§2.3).
 struct ViewSpec {
-  /// Whether features contain routes, which a layout then has.
+  /// Returns whether the features need Layout::routes.
   bool NeedsRoutes() const { return routes || tokens; }
 
   ViewMode mode{ViewMode::kFull};
   float sensor_radius{5.0F};         ///< in partial view [cells]
   std::int32_t bulletin_period{20};  ///< [steps]; 0: no bulletins
   float bulletin_noise{0.0F};        ///< max error of the reported centre on each axis [cells]
-  bool shared_sight{};               ///< agents are networked and share all observations
+  bool shared_sight{};               ///< agents are networked and use each other's sensors
   bool routes{};          ///< features include the shortest routes by water to ports and devices
   bool lookahead_risk{};  ///< features include the forecast risk along each course
   bool tokens{};          ///< features are entity tokens instead (observation/tokens.h)
   bool kinds{};  ///< features include the kinds of devices, and kinds and grades of disasters
-  /// Radius in which a monitoring device in place sees for all ships in partial view [cells]; 0: it
-  /// sees nothing
+  /// Sensor radius of deployed monitoring devices, which observe for all ships in partial view
+  /// [cells]; 0: they observe nothing.
   float monitoring_radius{};
   /// Mean error of a disaster's forecast position after 24, 48 and 72 hours [km]. Agents observe a
-  /// forecast track with this mean error; the disaster itself follows the track. If empty, agents
-  /// observe the current motion instead. See forecast.h.
+  /// forecast track with this mean error; the disaster itself follows its track. If empty, agents
+  /// observe issued forecasts or, without them, the current motion. See forecast.h.
   std::vector<float> forecast_error_km{};
-  /// Slots of the features for disasters that arrive during play; see observation/disaster_slots.h.
-  /// 0: the features contain the scenario's own disasters by id.
+  /// Number of disaster slots in addition to one per disaster of the scenario, for disasters that
+  /// arrive during an episode; see observation/disaster_slots.h. If 0, the features have no slots
+  /// and contain the scenario's own disasters by id.
   std::int32_t disaster_slots{};
   /// Lead times of the forecast positions in a slot [hours], ascending.
   std::vector<float> forecast_leads_h{};
@@ -234,7 +240,7 @@ struct ViewSpec {
 
 /// A field of the sea on the cells of a farm, read from netCDF or given in the scenario.
 struct SeaLayer {
-  std::string name;           ///< used in expressions and topics: a-z, 0-9 and _, a letter first
+  std::string name;           ///< for expressions and topics: a-z, 0-9 and _, a letter first
   std::string units;          ///< units given by the source; may be empty
   std::vector<float> values;  ///< [H, W] from the south-west; NaN: land or unknown
 };
@@ -242,11 +248,11 @@ struct SeaLayer {
 /// Properties of the sea that stay constant during an episode.
 struct SeaSpec {
   std::vector<SeaLayer> layers;
-  /// Risk at each cell independent of disasters, [H, W]: 0, NaN (unknown) or in [-20, -5]; empty
-  /// if unset
+  /// Risk at each cell without disasters, [H, W]: 0, NaN (unknown) or a number in [-20, -5]. Empty
+  /// if unset.
   std::vector<float> risk;
-  /// Value of a device placed at each cell, unless its site sets one, [H, W]; NaN: drawn from
-  /// DeviceSpec::value; empty if unset
+  /// Value of a device that is placed at the cell, [H, W]; NaN: drawn from DeviceSpec::value.
+  /// DeviceSite::value overrides it. Empty if unset.
   std::vector<float> device_value;
 };
 
@@ -262,7 +268,7 @@ struct FamilySpec {
   Range<std::int32_t> capacity{1, 3};
   Range<std::int32_t> disasters{0, 4};
   float storm_share{0.0F};  ///< share of ranches with the scenario's disasters, not generated ones
-  Range<float> exposure_damage{0.0F, 0.002F};  ///< as in DamageSpec
+  Range<float> exposure_damage{0.0F, 0.002F};  ///< range of DamageSpec::exposure_damage
 };
 
 /// A complete description of a farm.
@@ -293,7 +299,8 @@ struct Scenario {
   std::optional<MoneySpec> money;    ///< if unset, episodes have no accounts
   std::optional<FamilySpec> family;  ///< if set, every episode draws another ranch; see family.h
 
-  /// Hash of the canonical file text, set by the reader; equal for equivalent files.
+  /// HashScenario of this scenario, set by the reader; equal for equivalent files. DrawRanch sets a
+  /// hash that identifies the ranch.
   std::uint64_t hash{};
 
   std::int32_t CellCount() const { return width * height; }
@@ -301,7 +308,7 @@ struct Scenario {
   std::int32_t PortCount() const {
     return ports.cells.empty() ? ports.count : static_cast<std::int32_t>(ports.cells.size());
   }
-  /// Risk of the sea at a cell independent of disasters; 0 where there is none.
+  /// Risk of the sea at a cell of the map without disasters, 0 or negative; 0 if unknown or unset.
   float SeaRiskAt(Cell cell) const {
     if (!seas || seas->risk.empty()) return 0.0F;
     const float risk = seas->risk[static_cast<std::size_t>(cell.y * width + cell.x)];

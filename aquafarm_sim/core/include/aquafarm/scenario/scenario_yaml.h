@@ -7,29 +7,31 @@
 
 namespace aquafarm {
 
-/// Reads a scenario file. Unknown keys are rejected.
-/// @throws InputError "ranch.yaml:12: disasters[0].grade: got 7, expected [1, 4]"; the message for
-///         an unknown key lists the valid keys
+/// Reads a scenario file. Prints a notice to stderr for each key that is given by its old name.
+/// @throws InputError for an unreadable or invalid file, for example
+///         "ranch.yaml:12: disasters[0].grade: got 7, expected [1, 4]". Unknown keys are errors
+///         whose message lists the valid keys.
 Scenario LoadScenario(const std::string& path);
 
-/// Reads a scenario from text; `origin_name` replaces the file name in messages.
+/// Reads a scenario from text, without notices. `origin_name` replaces the file name in messages;
+/// paths in the text are relative to its folder.
 Scenario ParseScenario(const std::string& text, const std::string& origin_name);
 
 /// Writes every used parameter of a scenario, in a fixed order and in grid units.
-/// ParseScenario(ToYaml(s)) returns s, and equal scenarios give equal texts. Run folders store this
-/// text.
-///
-/// @param old_names  whether renamed keys get the names of version 0.1.0
+/// ParseScenario(ToYaml(s)) returns s, with defaults for the parameters that s does not use. Equal
+/// scenarios give equal texts. Run folders store this text.
+/// @param old_names whether renamed keys get the names of version 0.1.0
 std::string ToYaml(const Scenario& scenario, bool old_names = false);
 
-/// Hash of the parameters that affect episodes: HashBytes of ToYaml with an empty name and
-/// description and without winds. ParseScenario stores it in Scenario::hash.
+/// Returns a hash of the parameters that affect episodes: HashBytes of ToYaml without the names and
+/// descriptions of the scenario and its disasters and without winds. ParseScenario stores it in
+/// Scenario::hash.
 std::uint64_t HashScenario(const Scenario& scenario);
 
-/// Converts a time to UTC seconds since 1970: YYYY-MM-DDTHH:MM[:SS] and a zone, Z or ±HH:MM. A time
-/// without a zone is refused.
-/// @param name of the option or column, for the message
-/// @throws InputError
+/// Converts a time to UTC seconds since 1970. The format is YYYY-MM-DDTHH:MM[:SS] followed by a
+/// zone, Z or ±HH:MM.
+/// @param name name of the option or column, for the message
+/// @throws InputError if `text` is not such a time or has no zone
 std::int64_t ParseUtc(const std::string& name, const std::string& text);
 
 }  // namespace aquafarm

@@ -5,14 +5,15 @@
 
 namespace aquafarm {
 
-/// Validates one disaster: numbers are finite and in range, radii ascend, and each radius has a
-/// risk. Used for scenario files and for set_disaster.
+/// Validates one disaster, such as one received by set_disaster: numbers are finite and in range,
+/// radii ascend, and each radius has a risk.
 /// @throws InputError "radii[1]: got 2, expected more than radii[0] = 4"
 void ValidateDisaster(const DisasterSpec& disaster);
 
-/// Validates constraints between keys: cells are on the map, objects do not overlap, and counts fit
-/// the map. A Scenario created in code must pass it before it is used to construct a Farm.
-/// @throws InputError with the key path first
+/// Validates all values of a scenario and the constraints between them: cells are on the map, each
+/// cell has at most one object, and counts fit the map. Only island blocks may overlap. A Scenario
+/// created in code must pass this check before it is used to construct a Farm.
+/// @throws InputError whose message begins with the path of the invalid key
 void ValidateScenario(const Scenario& scenario);
 
 }  // namespace aquafarm

@@ -8,15 +8,18 @@
 
 namespace aquafarm {
 
-/// A named input layer of an expression.
+/// An input of an expression.
 struct NamedLayer {
   std::string name;  ///< letters, digits and _; must not start with a digit
   Layer layer;
 };
 
 /// Evaluates an expression in muParser syntax (+ - * / ^, comparisons, ?:, min, max, exp …) at
-/// every cell. Each layer is a variable with the layer's name. NaN inputs give NaN.
-/// @throws InputError "got 'sal * ', expected an expression: …"
+/// every cell. Each layer is a variable with the layer's name. The result is NaN where any layer is
+/// NaN, even if the expression does not use that layer.
+/// @param layers at least one; all of the same shape, which the result has, too
+/// @throws InputError without layers, or for an invalid expression, for example "got 'sal * ',
+///   expected an expression: …"
 Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& layers);
 
 }  // namespace aquafarm

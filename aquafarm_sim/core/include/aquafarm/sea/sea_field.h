@@ -7,9 +7,9 @@
 ///
 /// Packed values are unpacked with scale_factor and add_offset. Values become NaN (land or unknown)
 /// if, in packed form, they equal _FillValue (or netCDF's default for the type) or missing_value,
-/// or lie outside valid_range or valid_min … valid_max. Latitude may ascend or descend, longitude
-/// may be -180 … 180 or 0 … 360, and depth may be positive down or up. Curvilinear grids are
-/// rejected.
+/// or lie outside valid_range or valid_min … valid_max. Latitude may ascend or descend. Longitude
+/// may be in [-180, 180] or [0, 360]. Depth may be positive down or up. Curvilinear grids cause an
+/// error.
 
 #include <array>
 #include <limits>
@@ -27,35 +27,38 @@ inline constexpr float kNoSeaValue = std::numeric_limits<float>::quiet_NaN();
 
 /// Selects the field to read from a file.
 struct SeaFieldChoice {
-  std::string variable;              ///< name or standard_name
-  std::optional<std::int64_t> time;  ///< UTC; selects the nearest time; the first one if unset
-  double depth_m{};                  ///< below the surface; selects the nearest depth
+  std::string variable;  ///< name or standard_name
+  /// UTC [s since 1970]; selects the nearest time. If unset, the first time of the file.
+  std::optional<std::int64_t> time;
+  double depth_m{};  ///< depth below the surface; selects the nearest depth
 };
 
 /// A field on the grid of the file, cropped to a ranch.
 struct SeaField {
   std::string name;                  ///< name of the variable
-  std::string units;                 ///< units attribute of the file
+  std::string units;                 ///< the variable's attribute `units`; "" if absent
   std::optional<std::int64_t> time;  ///< time of the values, UTC; nullopt if the file has no time
   std::optional<double> depth_m;     ///< depth of the values; nullopt without a depth in metres
   std::vector<double> latitude;      ///< ascending [degrees]
   std::vector<double> longitude;     ///< ascending [degrees], shifted to the ranch's range
   Grid<float> value;                 ///< [latitude, longitude]; NaN: land or unknown
-  /// South, north, west and east of the whole file [degrees], longitudes as above
+  /// South, north, west and east of the whole file [degrees], with longitudes shifted as above.
   std::array<double, 4> extent{};
 };
 
 /// A field on the cells of a ranch, [H, W]; NaN where the field has no value nearby.
 using Layer = Grid<float>;
 
-/// Reads the part of a field that covers a ranch of width × height cells.
-/// @throws InputError "sea.nc: so: no such variable; available: …"; always, in a build
-///         without netCDF (CMake: AQUAFARM_WITH_NETCDF=OFF)
+/// Reads the part of a field around a ranch of width × height cells. If the file does not cover the
+/// ranch, reads the nearest values of the file.
+/// @throws InputError for an unusable file or variable, for example "sea.nc: so: no such variable;
+///         available: …". A build without netCDF (CMake: AQUAFARM_WITH_NETCDF=OFF) always throws.
 SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, const GeoFrame& frame,
                       std::int32_t width, std::int32_t height);
 
-/// Interpolates the field bilinearly at the centre of each cell. Where some of the four values are
-/// NaN, returns the mean of the others with the same weights.
+/// Interpolates the field bilinearly at the centre of each cell. Values of NaN are left out of the
+/// weighted mean of the four values. A cell is NaN if all four values are NaN, or if its centre is
+/// more than half a grid step outside the field.
 Layer ToLayer(const SeaField& field, const GeoFrame& frame, std::int32_t width,
               std::int32_t height);
 

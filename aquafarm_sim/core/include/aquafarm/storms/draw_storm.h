@@ -17,12 +17,13 @@ struct DrawnStorm {
   StormErrors errors;
 };
 
-/// Returns the storms that a seed draws from: those of the evaluation years if it is an evaluation
-/// seed (rng.h), else those of the years for training.
+/// Returns the storms from which a seed draws: those of the evaluation years for an evaluation seed
+/// (rng.h), else those of the years for training.
 const std::vector<ArchivedStorm>& StormsOf(const StormsSpec& storms, std::uint64_t seed);
 
-/// Draws one of StormsOf with equal probability. The displaced storm's closest approach to (x, y)
-/// is at approach_h, shifted by at most perturbation.start_h.
+/// Draws one of StormsOf with equal probability, and its displacement. The displaced storm is
+/// closest to (x, y) at storms.approach_h hours after step 0, plus or minus at most
+/// perturbation.start_h.
 /// @param disaster id of the disaster @param x, y middle of the farm [cells]
 DrawnStorm DrawStorm(const StormsSpec& storms, std::uint64_t seed, std::uint64_t episode,
                      std::int32_t disaster, double x, double y);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Reads files that announce hazards for a place and a time instead of for a storm: warnings of a
-/// weather service (JSON with "warning") and anchorage forecasts of Zhoushan (JSON with "anchors").
-/// Both become notices; docs/data.md lists the fields that are lost.
+/// Reads files that announce hazards at a place and a time, without a storm: warnings of a weather
+/// service (JSON with "warning") and anchorage forecasts of Zhoushan (JSON with "anchors"). Both
+/// become notices; docs/data.md lists the fields that are not read.
 
 #include <cstdint>
 #include <optional>
@@ -12,18 +12,18 @@
 
 namespace aquafarm {
 
-/// A warning, or the forecast of a period of some hours.
+/// A warning, or an anchorage forecast for a few hours.
 struct Notice {
   std::string place;                 ///< anchorage, or the authority that warns; UTF-8
-  std::string what;                  ///< as written, such as "大风"; empty for a forecast
-  std::int32_t grade{};              ///< 1 blue … 4 red; 0 if there is no warning
+  std::string what;                  ///< hazard as written, such as "大风"; empty for a forecast
+  std::int32_t grade{};              ///< 1 blue … 4 red; 0 for white and for a forecast
   std::int64_t start{};              ///< UTC [s since 1970]
   std::int64_t end{};                ///< UTC, after start
   std::optional<double> wind_mps;    ///< mean wind
   std::optional<double> gust_mps;    ///< max gust
   std::optional<double> wave_max_m;  ///< upper end of the range of wave heights
-  std::int32_t suitability{};  ///< of the anchorage: 4 suitable … 1 severe, the worst of the
-                               ///< source's four ratings; 0 if not given
+  std::int32_t suitability{};        ///< worst of the four ratings of the anchorage, 4 suitable …
+                                     ///< 1 severe; 0 if not given
 };
 
 struct NoticeFile {
@@ -31,14 +31,14 @@ struct NoticeFile {
   std::vector<std::string> warnings;  ///< repairs: "file:line: what was done"
 };
 
-/// Reads a file of warnings or of anchorage forecasts.
+/// Reads a file of warnings or of anchorage forecasts. Cancelled warnings are left out.
 /// @throws InputError "file:line: warning[0].endTime: got '…', expected a time"
 NoticeFile LoadNotices(const std::string& path);
 
-/// Reads the same from a text; `origin_name` replaces the file name in messages.
+/// Reads a text as LoadNotices reads a file; `origin_name` replaces the file name in messages.
 NoticeFile ParseNotices(const std::string& text, const std::string& origin_name);
 
-/// Returns "大风 of 上海中心气象台, grade 1, from … to …", for people.
+/// Returns a description, such as "大风 of 上海中心气象台, grade 1, from … to …".
 std::string Describe(const Notice& notice);
 
 }  // namespace aquafarm

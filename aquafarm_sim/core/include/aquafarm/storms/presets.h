@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Disasters other than storms with a track (§1), from observed quantities: wave height, warning
-/// level, area, wind or current. docs/data.md lists the source of every number.
+/// Disasters other than storms with a track (paper §1, see docs/model.md), described by observed
+/// quantities: wave height, warning level, area, wind or current. docs/data.md lists the source of
+/// every number.
 ///
 ///   storm:wind_mps=18,radius_km=50                       signal by mean wind
 ///   storm_surge:level=3,radius_km=30                     warning tide level reached
@@ -11,10 +12,12 @@
 ///   oil_spill:area_km2=2,wind_mps=8,wind_from_deg=315,current_mps=0.2,current_to_deg=90
 ///   chemical_spill:…                                     as oil_spill
 ///
-/// Each has a grade and two rings with the risks of its grade. The outer ring has the full area,
-/// the inner ring half of it. Each drifts with the current. Spills also drift with 3 % of the wind
-/// speed, 15 degrees to the right of the wind in the north (to the left in the south). `growth_m_h`
-/// widens both rings; the disaster ends after `duration_h` (default 24).
+/// Each disaster has a grade and two rings with the risks of that grade. The inner ring has half of
+/// the area of the outer ring. The observed quantity determines the grade; for a spill, the key
+/// `grade` (default 3) does. Every disaster drifts with the current. Spills also drift with 3 % of
+/// the wind speed, 15 degrees to the right of the wind in the northern hemisphere, to the left in
+/// the southern. Both radii grow by `growth_m_h` [m/h]. The disaster ends after `duration_h` hours
+/// (default 24).
 
 #include <string>
 #include <vector>
@@ -23,17 +26,18 @@
 
 namespace aquafarm {
 
-/// Conversion from metres and hours to cells and steps.
+/// Scale of a farm, which converts metres and hours to cells and steps.
 struct GridScale {
   double cell_size_m{1000.0};
   double step_duration_s{180.0};
   bool south{};  ///< true if south of the equator
 };
 
-/// Names of the kinds of presets.
+/// Returns the names of the kinds of presets.
 std::vector<std::string> DisasterPresetNames();
 
-/// Parses a disaster from its description. Its centre is drawn anywhere on the enlarged map.
+/// Parses the description of a disaster. DisasterSpec::start remains unset, so that the centre is
+/// drawn in each episode.
 /// @throws InputError "disaster: wave: height_m: got 1, expected [2.5, 30]"; for an unknown kind or
 ///   key, the message lists the valid ones
 DisasterSpec ParseDisasterPreset(const std::string& text, const GridScale& scale);

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Compact text of recorded tracks, the `archive` of a scenario's storms. docs/data.md describes
-/// it.
+/// Archive: a compact text of recorded tracks, from which scenarios draw storms. docs/data.md
+/// describes the format.
 ///
 ///   aquafarm-storms 1
 ///   # a comment
 ///   storm 2106 2 CMA | In-Fa
 ///   202107250600 30 122.2 TY 33 970 34=300,200,200,250 50=100,100,80,100
 ///
-/// A fix has time (UTC), latitude, longitude, grade, wind [m/s] and pressure [hPa], "-" where the
-/// source gives none, and the radii [km] of each ring that the source gives.
+/// A line `storm` has the id, the averaging period of the winds [min], the agency and the name. A
+/// fix has the time (UTC), latitude, longitude, grade, wind [m/s], pressure [hPa], and the radii
+/// [km] of each ring that the source gives. "-" replaces an unknown wind or pressure.
 
 #include <string>
 #include <vector>
@@ -19,12 +20,14 @@
 
 namespace aquafarm {
 
-/// Rounds what an archive stores to the digits that it stores: positions to 0.001 degrees, winds,
-/// pressures and radii to 0.1. Drops what it does not store: motion, forecasts, landfalls.
+/// Returns a track with the content and the precision that an archive stores: times in minutes,
+/// positions to 0.001 degrees; winds, pressures and radii to 0.1; one averaging period for all
+/// fixes. Motion, estimated rings, forecasts and landfalls are left out.
 StormTrack Archived(const StormTrack& track);
 
-/// Writes tracks as the text of an archive. ParseStormFile returns them as Archived does.
-/// @param comment lines at the beginning, each without "#"
+/// Writes tracks as the text of an archive. ParseStormFile reads the tracks of Archived from it and
+/// computes their motion.
+/// @param comment comment lines after the first line, each without "#"
 std::string WriteArchive(const std::vector<StormTrack>& tracks,
                          const std::vector<std::string>& comment = {});
 

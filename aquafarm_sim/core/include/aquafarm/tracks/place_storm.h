@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Places a storm on a farm, displaced by errors: one member of an ensemble, or one episode's draw
-/// from an archive. Without errors it is the storm as recorded. Results are bit-identical on every
-/// machine.
+/// Places a storm on a farm, displaced by errors: as a member of an ensemble, or as the storm that
+/// an episode draws from an archive. Without errors, the result is the recorded storm. Results are
+/// bit-identical on every machine.
 
 #include <vector>
 
@@ -12,35 +12,40 @@
 
 namespace aquafarm {
 
-/// Displacement of one fix of a storm. The default is none.
+/// Displacement of one fix of a storm. The default values do not change the fix.
 struct StormErrors {
   double along_km{};        ///< forward along the direction of motion
   double across_km{};       ///< to the right of the direction of motion
   double shift_s{};         ///< added to the time
   double wind_factor{1.0};  ///< multiplies the wind, before wind_add_mps
-  double wind_add_mps{};
+  double wind_add_mps{};    ///< added to the wind; the sum is at least 0
   double size_factor{1.0};  ///< multiplies every radius
 };
 
-/// Places storms. It keeps buffers: once it has placed a path with as many points, Place into the
-/// same vector does not allocate.
+/// Places storms and reuses memory: Place does not allocate if it has placed a path with as many
+/// points into the same vector before.
 class StormPlacer {
  public:
   /// Computes the waypoints of a displaced storm.
   ///
-  /// A changed wind scales each radius by the ratio of EstimateRadius for the new and the old wind,
-  /// removes rings of winds that the storm no longer reaches, and adds an estimated ring for a wind
-  /// that it newly reaches, scaled as the next weaker one, or by StormPoint::size without one. The
-  /// grade is then that of the new wind. A fix without known wind keeps its rings; so does one with
-  /// StormPoint::keeps_radii, ring by ring. Times stay in order: a shift never moves a fix before
-  /// the previous one.
-  /// @param errors empty (none), one for all fixes, or one per fix of the path
-  /// @param risks of grades 1 to 4, worst first. A row with fewer columns than rings repeats its
-  ///   first risk for the inner rings; a row with more columns uses its last ones
-  /// @param waypoints replaced; steps are relative to step 0 of the path
+  /// If the wind changes, the grade becomes that of the new wind, and the rings change:
+  ///   - A radius is multiplied by the ratio of EstimateRadius for the new and for the old wind.
+  ///   - A ring whose wind the storm no longer reaches gets radius 0.
+  ///   - A ring whose wind the storm newly reaches gets the radius of EstimateRadius times the
+  ///     ratio of recorded to estimated radius of the next weaker ring that has both, else times
+  ///     StormPoint::size.
+  ///   - A ring with StormPoint::keeps_radii and a radius above 0 does not change.
+  /// Rings of a fix without a known wind do not change either. size_factor then multiplies all
+  /// radii. The order of the fixes in time does not change: each fix stays later than the previous
+  /// one.
+  /// @param errors empty for no errors, one entry for all fixes, or one entry per fix of the path
+  /// @param risks of the rings for grades 1 to 4, worst first. If a row has fewer risks than the
+  ///   storm has rings, the innermost rings share its first risk. If it has more, its last risks
+  ///   apply.
+  /// @param waypoints result; one waypoint per fix, with steps relative to step 0 of the path
   void Place(const StormPath& path, const std::vector<StormErrors>& errors, const GradeRisks& risks,
              std::vector<Waypoint>& waypoints);
-  /// Returns them in a new vector.
+  /// Returns the waypoints in a new vector.
   std::vector<Waypoint> Place(const StormPath& path, const std::vector<StormErrors>& errors,
                               const GradeRisks& risks);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Reads published tracks. docs/data.md describes the content of each format and what is lost.
+/// Reads published tracks. docs/data.md describes each format and the fields that are not read.
 
 #include <optional>
 #include <string>
@@ -20,14 +20,16 @@ struct StormFile {
 };
 
 /// Reads a file of tracks and detects its format.
-/// @throws InputError "CH2021BST.txt:12: latitude: got 950, expected [-900, 900]"
+/// @throws InputError if the format is unknown or the content is invalid, for example
+///   "CH2021BST.txt:12: latitude: got 950, expected [-900, 900]"
 StormFile LoadStormFile(const std::string& path);
 
-/// Reads the same from a text; `origin_name` replaces the file name in messages.
+/// Reads a text as LoadStormFile reads a file; `origin_name` replaces the file name in messages.
 StormFile ParseStormFile(const std::string& text, const std::string& origin_name);
 
-/// Returns the track with the given id, or with the given name (case is ignored).
-/// @throws InputError that lists the tracks of the file if no track or more than one matches
+/// Returns the track with the given id or, if no id matches, with the given name. Case is ignored.
+/// @throws InputError if no track matches (the message lists those of the file), or if several
+///   tracks match (the message lists these)
 const StormTrack& FindTrack(const StormFile& file, const std::string& storm);
 
 }  // namespace aquafarm

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Recorded storms near a farm, from which episodes draw one.
+/// Recorded storms near a farm. Episodes draw their storms from them.
 
 #include <cstdint>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace aquafarm {
 
-/// A farm, and the part of a storm that matters to it.
+/// A farm, and the limits in space and time of the storms that are selected for it.
 struct StormSite {
   GeoFrame frame;
   double cell_size_m{};
@@ -20,17 +20,17 @@ struct StormSite {
   double x{};  ///< middle of the farm [cells]
   double y{};
   double within_km{};   ///< max distance of the closest approach to the middle
-  double approach_h{};  ///< from step 0 to the closest approach [hours]
-  double before_h{};    ///< kept before the closest approach [hours]
-  double after_h{};     ///< kept after it [hours]
+  double approach_h{};  ///< time from step 0 to the closest approach [hours]
+  double before_h{};    ///< part of a track to keep before the closest approach [hours]
+  double after_h{};     ///< part of a track to keep after the closest approach [hours]
 };
 
-/// A recorded storm on a farm. Its path has the rings of 64, 50 and 34 kt as circles, and its
-/// closest approach to the middle of the farm at approach_h.
+/// A recorded storm on a farm. The rings of its path are circles of 64, 50 and 34 kt. The storm is
+/// closest to the middle of the farm StormSite::approach_h hours after step 0 of the path.
 struct ArchivedStorm {
   std::string id;
   std::string name;
-  std::int32_t year{};  ///< of its closest approach, UTC
+  std::int32_t year{};  ///< year of the closest approach, UTC
   StormPath path;
 };
 
@@ -40,12 +40,13 @@ struct StormLibrary {
   std::vector<ArchivedStorm> evaluation;
 };
 
-/// Returns the tracks that come within reach of a site, rounded as in an archive, each with the
-/// fixes of the time that matters and one more on both sides. Tracks that it returned are returned
-/// unchanged.
+/// Selects the tracks whose closest approach to the middle of a site is within site.within_km, and
+/// rounds them as in an archive. Keeps the fixes from before_h before to after_h after the closest
+/// approach, and one more fix on both sides. Leaves out tracks without a ring in this time. Applied
+/// to its own result, the function returns it unchanged.
 std::vector<StormTrack> SelectStorms(const std::vector<StormTrack>& tracks, const StormSite& site);
 
-/// Places a track of SelectStorms at its site.
+/// Converts a track of SelectStorms to a storm on the farm of the site.
 ArchivedStorm PlaceAtSite(const StormTrack& track, const StormSite& site);
 
 }  // namespace aquafarm

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A storm in the units of a farm: its rings along its track, in cells and steps. It is computed
-/// once per storm and farm; place_storm.h then displaces it many times at low cost.
+/// A storm in the units of a farm: its track and its rings in cells and steps. The path is computed
+/// once per storm and farm. StormPlacer (place_storm.h) then displaces it many times at low cost.
 ///
 ///   StormTrack ──ToRings──> StormRings ──ToPath──> StormPath ──StormPlacer──> waypoints
 
@@ -20,21 +20,23 @@ inline constexpr std::size_t kMaxStormRings = 3;
 
 /// A fix of a storm on a farm.
 struct StormPoint {
-  double step{};  ///< steps since the start of the path
+  double step{};  ///< steps since step 0 of the path; may be negative
   double x{};     ///< [cells]
   double y{};
   double east{};  ///< (east, north): unit vector of the motion; (0, 1) without motion
   double north{1.0};
   double latitude{};  ///< [degrees]
-  double wind_mps{};  ///< or the lowest wind of the grade; 0 if both are unknown
+  double wind_mps{};  ///< if unknown, the lower limit of the grade; 0 if that is unknown, too
   std::int32_t averaging_min{};
   StormGrade grade{};
   std::array<double, kMaxStormRings> radius{};     ///< [cells], the strongest wind first
-  std::array<double, kMaxStormRings> median_km{};  ///< of EstimateRadius for the wind
+  std::array<double, kMaxStormRings> median_km{};  ///< radius of EstimateRadius for the wind
   std::array<std::array<double, kQuadrantCount>, kMaxStormRings> quadrants{};  ///< [cells]
-  /// By ring: its radii are measured, so that a changed wind does not change them.
+  /// By ring: true if StormErrors of the wind do not change its radii, because they are reported or
+  /// are the larger radii of both ends of an interval (ToFineRings).
   std::array<bool, kMaxStormRings> keeps_radii{};
-  /// Ratio of the storm's radii to EstimateRadius, for rings of winds that it does not reach here.
+  /// Ratio of the storm's radii to EstimateRadius. It scales rings of winds that the storm reaches
+  /// only with a changed wind.
   double size{1.0};
 };
 
@@ -48,20 +50,23 @@ struct StormPath {
   std::vector<StormPoint> points;  ///< in order of time
 };
 
-/// Converts the part of a storm on the farm's side of the globe.
+/// Converts the part of a storm that is within 60 degrees of the frame's origin.
+/// @param storm with at least one waypoint and at most kMaxStormRings rings
 /// @param start_time UTC of step 0 of the path [s since 1970]
 /// @throws InputError for a storm that never comes within 60 degrees of the frame's origin, or that
 ///   leaves this area and comes back
 StormPath ToPath(const StormRings& storm, const GeoFrame& frame, double cell_size_m,
                  double step_duration_s, std::int64_t start_time);
 
-/// Closest approach of a path to a point, linear between fixes.
+/// Closest approach of a path to a point.
 struct PathApproach {
-  double step{};
+  double step{};      ///< step of the path, with a fraction
   double distance{};  ///< [cells]
 };
+/// Returns the closest approach of a path to a point. The path is linear between fixes.
+/// @param path with at least one point
 /// @param x, y the point [cells]
-/// @param along, across displacement of every fix, relative to its motion [cells]
+/// @param along, across displacement of every fix: forward and to the right of its motion [cells]
 PathApproach ClosestApproach(const StormPath& path, double x, double y, double along = 0.0,
                              double across = 0.0);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The wind rings of a storm along its track: recorded radii or estimated ones (wind_radii.h), the
-/// continuation of a track by a forecast, and the passage of the rings over a place.
+/// The wind rings of a storm along its track, with recorded or estimated radii (wind_radii.h). Also
+/// the continuation of a track by a forecast, and the passage of the rings over a place.
 
 #include <array>
 #include <cstdint>
@@ -19,11 +19,11 @@ namespace aquafarm {
 /// Shape of a ring on the farm.
 enum class RingReduction : std::uint8_t {
   kEqualArea,  ///< a circle of the same area: its radius is the root mean square
-  kLargest,    ///< a circle with the largest radius: on the safe side
+  kLargest,    ///< a circle with the largest radius of the quadrants, to be on the safe side
   kQuadrants,  ///< the quadrants are kept
 };
 inline constexpr int kRingReductionCount = 3;
-/// "equal_area", "largest", "quadrants".
+/// Returns "equal_area", "largest" or "quadrants".
 std::string_view ToString(RingReduction value);
 
 /// A fix with its wind rings.
@@ -31,53 +31,56 @@ struct StormWaypoint {
   std::int64_t time{};  ///< UTC [s since 1970]
   GeoPoint position;
   StormGrade grade{};
-  std::vector<double> radii_km;  ///< ascending, the strongest wind first; 0 if no such wind blows
+  std::vector<double> radii_km;  ///< ascending, the strongest wind first; 0: none or unknown
   bool estimated{};              ///< true if at least one radius is estimated
-  std::int32_t averaging_min{};  ///< of wind_mps; see EstimateRadius
-  /// Quadrants of each ring (NE, SE, SW, NW) with kQuadrants; radii_km are then their maxima.
+  std::int32_t averaging_min{};  ///< averaging period of wind_mps [min]; see EstimateRadius
+  /// With kQuadrants the radii of each ring by quadrant (NE, SE, SW, NW), else empty. radii_km are
+  /// their maxima.
   std::vector<std::array<double, 4>> quadrants_km;
   std::optional<double> pressure_hpa;
   std::optional<double> wind_mps;
-  bool forecast{};     ///< predicted, not observed; between two waypoints: at least one of them is
-  bool silent{};       ///< radii and wind are unknown and radii_km are 0; between two waypoints: at
-                       ///< least one of them is silent
-  bool is_reported{};  ///< the radius of the weakest wind is recorded, or derived from one
-  /// By ring, see StormPoint; empty: none. ToRings leaves this and `size` as they are.
+  bool forecast{};     ///< predicted, not observed; after At, if one of the two waypoints is
+  bool silent{};       ///< radii and wind are unknown and radii_km are 0; after At, if one of the
+                       ///< two waypoints is silent
+  bool is_reported{};  ///< the radius of the weakest wind is recorded, or derived from such a one
+  /// By ring, see StormPoint; false for all rings if empty. ToRings does not set it, nor `size`.
   std::vector<bool> keeps_radii;
   double size{1.0};  ///< see StormPoint
 };
 
 /// A storm as rings of wind.
 struct StormRings {
-  std::string name;                   ///< of the storm; empty: it has none
-  std::vector<std::int32_t> wind_kt;  ///< the strongest first; as many as radii per waypoint
+  std::string name;                   ///< name of the storm; may be empty
+  std::vector<std::int32_t> wind_kt;  ///< winds of the rings, the strongest first
   std::vector<StormWaypoint> waypoints;
   std::int32_t estimated{};  ///< waypoints with an estimated radius
-  std::int32_t silent{};     ///< waypoints without known radii, wind and grade
+  std::int32_t silent{};     ///< waypoints with StormWaypoint::silent
 
-  /// Returns the storm at a time, interpolated between two waypoints as in Farm; nullopt outside
-  /// the track.
+  /// Returns the storm at a time; nullopt outside the track. Position and radii are interpolated
+  /// linearly, as in Farm; grade, wind and pressure are those of the previous waypoint.
+  /// @param time UTC [s since 1970]
   std::optional<StormWaypoint> At(std::int64_t time) const;
 };
 
 /// Reduces a track to rings. A ring of a stronger wind never extends beyond one of a weaker wind.
-/// Missing radii are estimated from the wind, or from the lower limit of the grade if the wind is
-/// unknown.
-/// @param winds_kt of the rings, the strongest first; empty: 64, 50 and 34, or 50 and 30 if the
-///   track has rings of 30 kt only. A ring of 34 kt is derived from a recorded one of 30 kt, if
-///   there is one.
+/// Missing radii are estimated from the wind or, if the wind is unknown, from the lower limit of
+/// the grade. If the weakest wind is 34 kt, fixes with a ring of 30 kt and none of 34 kt get a ring
+/// of 34 kt that is derived from that of 30 kt.
+/// @param winds_kt winds of the rings, the strongest first. If empty: 64, 50 and 34, or 50 and 30
+///   if the track has rings of 30 kt but none of 34 kt.
 /// @returns one waypoint for each fix of the track
 StormRings ToRings(const StormTrack& track, RingReduction reduction,
                    const std::vector<std::int32_t>& winds_kt = {});
 
-/// Copies radii to the fixes of `track` without radii from another track of the same storm at the
-/// same time, interpolated between fixes at most six hours apart. It adds the radii of bulletins to
-/// best tracks, which have none.
+/// Copies the radii of another track of the same storm to those fixes of `track` that have none.
+/// The radii are interpolated in time between fixes at most six hours apart. This adds the radii of
+/// bulletins to best tracks without radii.
 /// @returns the number of fixes that received radii
 std::int32_t BorrowRings(const StormTrack& from, StormTrack& track);
 
-/// Returns the newest forecast of a track that extends beyond its fixes, from the agency listed
-/// first; nullptr if there is none or if it was issued more than 24 hours before the last fix.
+/// Returns the newest of the forecasts that extend beyond the last fix of a track and were issued
+/// at most 24 hours before it; nullptr if there is none. Of several with the same time of issue,
+/// returns the first one.
 const StormForecast* NewestForecast(const StormTrack& track);
 
 /// Continuation of a track without a forecast.
@@ -87,35 +90,39 @@ enum class NoForecast : std::uint8_t {
              ///< motion stands still
 };
 
-/// Returns the recorded fixes of a track, followed by the fixes of the newest forecast, marked with
-/// StormFix::forecast. A forecast point without wind and radii keeps those of the previous point.
+/// Returns the fixes of a track, followed by the later fixes of its newest forecast, which are
+/// marked with StormFix::forecast. A forecast point without wind and radii gets those of the
+/// previous point.
+/// @param track with at least one fix
+/// @param fallback continuation if NewestForecast returns nullptr
 StormTrack WithForecast(const StormTrack& track, NoForecast fallback);
 
 /// The period for which a storm is known.
 struct StormKnowledge {
   std::int64_t
       recorded_until{};        ///< UTC of the last recorded fix [s since 1970]; 0 if there is none
-  std::int64_t known_until{};  ///< UTC of the last fix; later than recorded_until with a forecast
-  std::int64_t issued{};       ///< UTC at which the forecast was issued; 0 without one
-  std::string agency;          ///< of the forecast; may be empty
+  std::int64_t known_until{};  ///< UTC of the last fix, including those of WithForecast
+  std::int64_t issued{};       ///< UTC at which the forecast was issued; 0 without a forecast
+  std::string agency;          ///< agency of the forecast; may be empty
 };
-/// Derives it from a track `whole` that WithForecast made of `recorded`.
+/// Returns the period for which a storm is known.
+/// @param whole result of WithForecast for `recorded`
 StormKnowledge KnowledgeOf(const StormTrack& recorded, const StormTrack& whole);
-/// Returns "recorded until …, then forecast until … (issued … by 中国)", "known until … only", or
-/// with persistence "… ; no forecast: it is assumed to keep its motion until …".
+/// Returns a description, such as "recorded until …, then forecast until … (issued … by 中国)" or
+/// "known until … only".
 std::string Describe(const StormKnowledge& knowledge);
 
 /// The passage of a storm near a place.
 struct Passage {
   std::int64_t nearest_time{};   ///< time of the closest approach, UTC [s since 1970]
   double nearest_km{};           ///< distance of the centre at that time
-  double widest_h{};             ///< duration for which the widest ring was over the place [hours]
-  std::int64_t first{};          ///< start of that duration; 0 if widest_h is 0
-  std::int64_t last{};           ///< end of that duration
-  std::int32_t worst_wind_kt{};  ///< wind of the strongest ring that passed over the place; 0 if
-                                 ///< there was none
+  double widest_h{};             ///< duration for which the widest ring is over the place [hours]
+  std::int64_t first{};          ///< first time at which the ring is over the place; 0 if never
+  std::int64_t last{};           ///< last time at which the ring is over the place; 0 if never
+  std::int32_t worst_wind_kt{};  ///< wind of the strongest ring that passes over the place; 0 if
+                                 ///< no ring does
   bool nearest_forecast{};       ///< nearest_time is in the forecast part of the track
-  bool nearest_at_end{};         ///< nearest_time is the last known time: the storm may come nearer
+  bool nearest_at_end{};         ///< nearest_time is the last known time; the storm may come nearer
   bool over_at_start{};          ///< the widest ring is over the place at the first known time
   bool over_at_end{};            ///< the widest ring is over the place at the last known time
   /// First and last time at which wind and radii are unknown and the centre is so near that the

@@ -14,18 +14,19 @@ namespace aquafarm {
 /// that quadrant.
 using QuadrantRadii = std::array<float, 4>;
 
-/// A timed waypoint of a disaster. Between two waypoints everything except grade is interpolated.
+/// A timed waypoint of a disaster. Positions, radii and risks are interpolated between waypoints;
+/// the grade is that of the last waypoint passed.
 struct Waypoint {
   float step{};  ///< steps since the episode's start; may be negative
   float x{};     ///< [cells]
   float y{};
   std::int32_t grade{1};
-  std::vector<float> radii{};  ///< [cells], ascending; one per risk of the disaster
+  std::vector<float> radii{};  ///< [cells], ascending; one per risk of the disaster; 0: no ring
   std::vector<float> risks{};  ///< one per radius
   /// Radii by quadrant, one entry per ring; `radii` then holds the largest radius of each ring.
   /// Empty if all rings are circles.
   std::vector<QuadrantRadii> quadrants{};
-  /// Max sustained wind near the centre, for pictures only: it has no effect on the farm.
+  /// Max mean wind near the centre [m/s]. Pictures show it; it has no effect on the farm.
   std::optional<float> wind_mps{};
 };
 

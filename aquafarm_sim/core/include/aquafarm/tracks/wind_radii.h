@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Radius of the winds of a storm from its greatest wind and its latitude.
+/// Estimates the radius of a storm's wind rings from its max wind and its latitude.
 ///
 ///   ln r = a + b sqrt(V / w - 1) + c (|latitude| - 25)          r in km, V and w in one unit
 ///
-/// r is the radius of the circle with the area of the ring of winds of at least w. b and c depend
-/// on w, a on w and on the authority, which is recognized by the averaging period of its winds.
+/// r is the radius of a circle with the area in which winds of at least w blow. V is the max mean
+/// wind of the storm. b and c depend on w. a depends on w and on the authority, which the averaging
+/// period of the wind identifies.
 ///
-/// b and c are fitted to 5,891 rings of 169 storms, 2015 to 2021 (JMA, 30 and 50 kt). a of the CMA
-/// also reproduces the median errors of the former estimate over 24,494 bulletin rings.
-/// docs/data.md states errors and sources; tools/fit_wind_radii.py makes the fit again.
+/// b and c are fitted to 5,891 rings of 169 storms of the JMA, 30 and 50 kt, 2015 to 2021. a of the
+/// CMA corrects an earlier estimate by its median errors over 24,494 rings of bulletins.
+/// docs/data.md states errors and sources. tools/fit_wind_radii.py repeats the fit.
 
 #include <cstdint>
 
@@ -18,31 +19,32 @@
 
 namespace aquafarm {
 
-/// Estimate of a radius with its uncertainty: ln(radius) has the standard deviation log_sigma.
+/// Estimate of a radius. The standard deviation of ln(radius) is log_sigma.
 struct RadiusEstimate {
   double median_km{};  ///< 0 if the wind does not blow anywhere in the storm
   double log_sigma{};  ///< 0 if median_km is 0
 };
 
-/// Estimates the radius of the winds of at least `wind_kt`.
+/// Estimates the radius within which winds of at least `wind_kt` blow.
 /// @param wind_kt 30, 34, 50 or 64
-/// @param storm_wind_mps greatest mean wind of the storm. A wind of at least 98 % of wind_kt counts
-///   as reaching it: the lower limits of the grades are rounded (TS from 17.2 m/s, which is 33.4
-///   kt)
+/// @param storm_wind_mps max mean wind of the storm. The storm reaches wind_kt if this wind is at
+///   least 98 % of it, because the lower limits of the grades are rounded (TS from 17.2 m/s, which
+///   is 33.4 kt). Else the estimate is 0.
 /// @param latitude [degrees], north or south
-/// @param averaging_min averaging period of the wind: 10 (JMA), 1 (JTWC), else as the CMA
+/// @param averaging_min averaging period of the wind [min]: 10 selects the JMA, 1 the JTWC, another
+///   number the CMA
 RadiusEstimate EstimateRadius(std::int32_t wind_kt, double storm_wind_mps, double latitude,
                               std::int32_t averaging_min);
 
-/// Returns the log-standard deviation of recorded radii of a wind about EstimateRadius, by the
-/// storm's greatest wind; that of the weakest storms if it does not reach `wind_kt` or is unknown.
+/// Returns RadiusEstimate::log_sigma of EstimateRadius for the storm's wind; if that is unknown
+/// (NaN or 0) or does not reach `wind_kt`, for a storm wind of `wind_kt`.
 double SizeSigma(std::int32_t wind_kt, double storm_wind_mps, double latitude,
                  std::int32_t averaging_min);
 
 /// Adds the ring of a wind, marked as estimated, to a fix that has no ring of this wind: a circle
 /// with the median radius of EstimateRadius.
 /// @param wind_kt 30, 34, 50 or 64
-/// @returns whether a ring was added; false if the wind is unknown
+/// @returns whether a ring was added; false if the fix has such a ring or its wind is unknown
 bool EstimateRing(StormFix& fix, std::int32_t wind_kt);
 
 }  // namespace aquafarm

@@ -26,7 +26,7 @@ std::optional<double> Rounded(const std::optional<double>& value) {
   return Rounded(*value, 10.0);
 }
 
-// YYYYMMDDHHMM
+// Returns a time as YYYYMMDDHHMM.
 std::string TimeText(std::int64_t time) {
   std::string text = internal::FormatTime(time).substr(0, 16);
   text.erase(std::remove_if(text.begin(), text.end(),
@@ -68,7 +68,7 @@ StormGrade ReadGrade(std::string_view word, const ParseContext& place) {
   place.Fail("grade: got " + internal::Quoted(word) + ", expected one of " + internal::List(names));
 }
 
-// 34=300,200,200,250
+// Parses a ring such as "34=300,200,200,250".
 WindRing ReadRing(std::string_view word, const ParseContext& place) {
   WindRing ring;
   const std::size_t equals = word.find('=');
@@ -113,7 +113,7 @@ StormFix ReadFix(const std::vector<std::string_view>& words, ParseContext& place
   return fix;
 }
 
-// storm ID AVERAGING_MIN AGENCY | NAME
+// Parses a line "storm ID AVERAGING_MIN AGENCY | NAME".
 StormTrack ReadHeader(std::string_view line, std::int32_t& averaging_min, ParseContext& place) {
   const std::size_t bar = line.find('|');
   const std::vector<std::string_view> words = internal::SplitWords(line.substr(0, bar));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ATCF b-decks: comma-separated rows padded with blanks, one to three rows per time, one per wind
-// radius. Trailing fields of a row may be missing. (science.nrlmry.navy.mil, abrdeck.html)
+// Reads ATCF b-decks: comma-separated rows padded with blanks. Each time has one to three rows, one
+// for each wind whose radii are given. Trailing fields of a row may be missing. Source:
+// science.nrlmry.navy.mil, abrdeck.html
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -43,7 +44,7 @@ std::string_view At(const Fields& fields, Field field) {
   return field < fields.size() ? fields[field] : std::string_view();
 }
 
-// Parses "123N" or "1423E" in tenths of a degree.
+// Parses an angle such as "123N" or "1423E", in tenths of a degree, and returns degrees.
 double ReadAngle(std::string_view text, char positive, char negative, std::int32_t max,
                  const char* name, const ParseContext& place) {
   const char side = text.empty() ? ' ' : text.back();
@@ -55,10 +56,11 @@ double ReadAngle(std::string_view text, char positive, char negative, std::int32
   return (side == positive ? tenths : -tenths) / 10.0;
 }
 
-// AAA is a circle. NEQ and similar codes name the first quadrant; the others follow clockwise. A
-// semicircle, such as NES, has two radii: its own and that of the other half. Each eighth of the
-// circle gets its radius. A quadrant gets the root mean square of its two eighths, which keeps the
-// area. Returns nullopt for an unknown code.
+// Returns the radii by quadrant for a radius code; nullopt if the code is unknown. AAA is a circle.
+// Codes such as NEQ name the first quadrant, and the other quadrants follow clockwise. Codes such
+// as NES name a semicircle; the second radius is that of the other half. The radii are first
+// assigned to eighths of the circle. A quadrant then gets the root mean square of its two eighths,
+// which preserves the area.
 std::optional<std::array<double, kQuadrantCount>> Quadrants(std::string_view code,
                                                             const std::array<double, 4>& radius) {
   constexpr std::array<std::string_view, 8> kTowards{"NN", "NE", "EE", "SE",
@@ -103,13 +105,14 @@ void ReadRing(const Fields& fields, StormFix& fix, ParseContext& place) {
   }
   const auto quadrants = Quadrants(code, radius);
   if (!quadrants) {
-    place.WarnOnce("radius code", "radius code: got " + Quoted(code) +
-                                      ", expected AAA, a quadrant as NEQ or a semicircle as NES; "
-                                      "the radii are ignored");
+    place.WarnOnce("radius code",
+                   "radius code: got " + Quoted(code) +
+                       ", expected AAA, a quadrant such as NEQ or a semicircle such as NES; "
+                       "the radii are ignored");
     return;
   }
   if (AddRing({wind_kt, *quadrants, false}, fix.rings)) return;
-  place.Warn("the radii of " + std::to_string(wind_kt) + " kt are there twice, the second are " +
+  place.Warn("the radii of " + std::to_string(wind_kt) + " kt occur twice; the second ones are " +
              "left out");
 }
 
@@ -145,35 +148,37 @@ StormFix ReadFix(const Fields& fields, ParseContext& place) {
   return fix;
 }
 
-// A time has one row for each wind radius. The rows differ only in the radii.
+// Returns whether a row belongs to the fix of the previous row. The rows of a time differ only in
+// their radii.
 bool IsSame(const StormFix& fix, const StormFix& known) {
   return fix.time == known.time && fix.position.latitude == known.position.latitude &&
          fix.position.longitude == known.position.longitude && fix.wind_mps == known.wind_mps &&
          fix.pressure_hpa == known.pressure_hpa;
 }
 
-// Number of fields of a row through its last radius, and through the radius of the greatest wind.
+// Number of fields of a row that ends with the comma after the last radius, and of one that ends
+// with the comma after the radius of the max wind.
 constexpr std::size_t kThroughRadii = kRadius4 + 2;
 constexpr std::size_t kThroughMaxWind = kMaxWindRadius + 2;
 
-// The line and the number of fields of a row that ends before the radius of the greatest wind.
+// Line and number of fields of a row that may be too short.
 using NarrowRow = std::pair<std::int32_t, std::size_t>;
 
-// Detects truncated rows. A row that ends before the last radius is truncated if other rows of the
-// deck are longer. A row that ends before the radius of the greatest wind may be truncated.
+// Detects truncated rows. If other rows of the deck are longer, a row that ends before the last
+// radius causes an error, and a row that ends before the radius of the max wind causes a warning.
 // @param widest max number of fields of a row
 void CheckNarrowRows(const std::vector<NarrowRow>& narrow, std::size_t widest,
                      ParseContext& place) {
   for (const auto& [number, size] : narrow) {
     place.line = number;
     if (size < kThroughRadii && widest >= kThroughRadii) {
-      place.Fail("got " + std::to_string(size) + " fields, expected " +
-                 std::to_string(kThroughRadii) + " or more, to a comma after the radii, as " +
-                 "other rows have");
+      place.Fail("got " + std::to_string(size) + " fields, expected at least " +
+                 std::to_string(kThroughRadii) +
+                 ", up to the comma after the radii, as in other rows");
     }
     if (widest < kThroughMaxWind) continue;
-    place.Warn("got " + std::to_string(size) + " fields, the file's others have up to " +
-               std::to_string(widest) + ": was it cut off?");
+    place.Warn("got " + std::to_string(size) + " fields, but other rows have up to " +
+               std::to_string(widest) + ": was the row cut off?");
   }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Typhoon bulletins as JSON: a list of storms, each with its points; some points have forecasts.
-// There is no specification; the structure was derived from about two thousand files. Alternative
-// spellings of the keys are accepted (moveDir for move_dir, r7 for radius7), as are those of
-// Zhejiang's water office (tfid, movedirection, radii as 250|220|200|180).
+// Reads typhoon bulletins (JSON): a list of storms, each with its points. Some points have
+// forecasts. There is no specification; the structure was derived from about two thousand files.
+// Alternative spellings of the keys are accepted (moveDir for move_dir, r7 for radius7). So is the
+// format of Zhejiang's water office (tfid, movedirection, radii as 250|220|200|180).
 #include <algorithm>
 #include <array>
 
@@ -22,9 +22,10 @@ using Json = nlohmann::json;
 constexpr std::int64_t kBeijing_s = 8 * 3600;  // times do not contain a zone
 constexpr std::int32_t kAveraging_min = 2;
 
-// "强台风(STY)", "台风", "Super TY" …
+// Returns the grade that a text such as "强台风(STY)", "台风" or "Super TY" contains; kUnknown if
+// there is none.
 StormGrade GradeOfText(const std::string& text) {
-  // The longer words first: they contain the shorter ones.
+  // Longer words come first, because they contain the shorter ones.
   constexpr std::array<std::pair<std::string_view, StormGrade>, 14> kWords{{
       {"SUPER TY", StormGrade::kSuperTyphoon},
       {"SUPERTY", StormGrade::kSuperTyphoon},
@@ -74,9 +75,10 @@ std::optional<std::array<double, kQuadrantCount>> ParseRadii(const JsonObject& p
     rest.remove_prefix(bar == std::string_view::npos ? rest.size() : bar + 1);
   }
   if (fits) return radius;
-  place.WarnValueOnce(
-      point.KeyOf(keys), Join(point.path(), point.KeyOf(keys)),
-      "got " + Quoted(text) + ", expected four numbers in [0, 3000] as 250|220|200|180" + kIgnored);
+  place.WarnValueOnce(point.KeyOf(keys), Join(point.path(), point.KeyOf(keys)),
+                      "got " + Quoted(text) +
+                          ", expected four numbers in [0, 3000] such as 250|220|200|180" +
+                          kIgnored);
   return std::nullopt;
 }
 
@@ -96,9 +98,9 @@ void ReadRing(const JsonObject& point, std::int32_t wind_kt, JsonObject::Keys wh
   } else if (value != nullptr) {
     place.WarnValueOnce(
         point.KeyOf(quadrants), Join(point.path(), point.KeyOf(quadrants)),
-        std::string("got no object, expected radii as {\"ne\": 250, …}") + kIgnored);
+        std::string("got no object, expected radii such as {\"ne\": 250, …}") + kIgnored);
   }
-  if (valid) AddSaidRing(wind_kt, radius, fix);  // else the ring is unknown and gets estimated
+  if (valid) AddSaidRing(wind_kt, radius, fix);  // without a ring, ToRings estimates the radius
 }
 
 StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
@@ -106,7 +108,7 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
   fix.time = point.NeedTime({"time"}, kBeijing_s);
   fix.position = point.NeedPosition({"lat"}, {"lng", "lon"});
   const double wind = point.TryNumber({"speed"}, 0.0, 150.0).value_or(0.0);
-  if (wind > 0.0) fix.wind_mps = wind;  // 0 means unknown, in old storms
+  if (wind > 0.0) fix.wind_mps = wind;  // 0 means unknown in bulletins of old storms
   fix.averaging_min = kAveraging_min;
   fix.pressure_hpa = CheckedPressure(point.TryNumber({"pressure"}, 0.0, 1100.0),
                                      Join(point.path(), "pressure"), place);
@@ -137,21 +139,21 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
   return fix;
 }
 
-// Returns whether a forecast point is later than the observed point that contains it. Some
-// forecasts were issued before that observed point. @throws FixError if it is too far ahead for a
-// forecast
+// Returns whether a forecast point is not earlier than the observed point that contains the
+// forecast; else warns. Some forecasts were issued before that observed point.
+// @throws FixError if the forecast point is more than 15 days later
 bool IsAhead(std::int64_t time, std::int64_t observed, const std::string& path,
              ParseContext& place) {
   constexpr std::int64_t kMaxDays = 15;
   if (time - observed > kMaxDays * 86400) {
-    place.RefuseFixValue(path, "got " + FormatTime(time) + ", expected a forecast's within " +
-                                   std::to_string(kMaxDays) + " days after " +
-                                   FormatTime(observed));
+    place.RefuseFixValue(path,
+                         "got " + FormatTime(time) + ", expected the time of a forecast, within " +
+                             std::to_string(kMaxDays) + " days after " + FormatTime(observed));
   }
   if (time < observed) {
     place.WarnValueOnce("forecast before", path,
-                        "got " + FormatTime(time) + ", before " + FormatTime(observed) +
-                            ", whose forecast it is; left out");
+                        "got " + FormatTime(time) + ", expected a time after " +
+                            FormatTime(observed) + ", the issue; the point is left out");
   }
   return time >= observed;
 }
@@ -181,7 +183,7 @@ void ReadForecasts(const JsonObject& point, std::int64_t issued, StormTrack& tra
       track.forecasts.push_back(std::move(forecast));
     } else {
       place.WarnValueOnce("no forecast", one.path(),
-                          "got no points after its issue, the forecast is left out");
+                          "got no points after its issue; the forecast is left out");
     }
   }
 }
@@ -190,7 +192,7 @@ void ReadLandfalls(const JsonObject& storm, StormTrack& track, ParseContext& pla
   const Json* land = storm.TryList({"land"});
   for (std::size_t i = 0; land != nullptr && i < land->size(); ++i) {
     const Json& each = (*land)[i];
-    const bool zhejiangs = each.contains("landtime");  // Zhejiang lists other events here, too
+    const bool zhejiangs = each.contains("landtime");  // may be another event than a landfall
     if (zhejiangs || IsBlank(each)) continue;
     try {
       const JsonObject entry(each, At(Join(storm.path(), "land"), i), place);

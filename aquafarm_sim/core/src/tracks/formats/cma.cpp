@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CMA best track, CHyyyyBST.txt: one header per storm, then its points. Fields are separated by
-// blanks, not by columns, because a header of 2018 is shifted. (tcdata.typhoon.org.cn/zjljsjj.html)
+// Reads CMA best tracks, CHyyyyBST.txt: one header per storm, then its points. Lines are split at
+// blanks instead of fixed columns, because a header of 2018 is shifted. Source:
+// tcdata.typhoon.org.cn/zjljsjj.html
 #include <algorithm>
 #include <array>
 
@@ -13,8 +14,9 @@ namespace {
 
 constexpr std::int32_t kAveraging_min = 2;
 
-// 66666 BBBB CCC DDDD EEEE F G name date. BBBB is 0000 for every storm before 2017. EEEE may be two
-// numbers, "7127,7128". The serial number DDDD is unique in each file.
+// Parses a header "66666 BBBB CCC DDDD EEEE F G name date". CCC is the number of points, DDDD a
+// serial number that is unique in each file, and EEEE the number of the storm, or two numbers such
+// as "7127,7128". BBBB, which is 0000 for every storm before 2017, is not read.
 BestTrackHeader ReadHeader(std::string_view line, ParseContext& place) {
   const std::vector<std::string_view> words = SplitWords(line);
   constexpr std::size_t kBeforeName = 7;
@@ -43,12 +45,12 @@ BestTrackHeader ReadHeader(std::string_view line, ParseContext& place) {
   if (header.track.name == "(nameless)") header.track.name.clear();
   if (blank_name) {
     place.WarnOnce("name", "name: got nothing, expected a name or (nameless); the storm is " +
-                               header.track.id + " without a name");
+                               header.track.id + " and has no name");
   }
   return header;
 }
 
-// YYYYMMDDHH I LAT LONG PRES WND [OWD]
+// Parses a point "YYYYMMDDHH I LAT LONG PRES WND [OWD]".
 StormFix ReadPoint(std::string_view line, ParseContext& place) {
   const std::vector<std::string_view> words = SplitWords(line);
   if (words.size() != 6 && words.size() != 7) {
@@ -90,8 +92,8 @@ StormFix ReadPoint(std::string_view line, ParseContext& place) {
 
 namespace {
 
-// Columns are fixed and numbers are right-aligned. A point that is shorter than others with as many
-// fields has therefore lost digits of its last number.
+// Warns about points that may be cut off. Numbers are right-aligned in fixed columns, so a point
+// that is shorter than others with as many fields has lost digits of its last number.
 void WarnOfShortPoints(std::string_view text, ParseContext& place) {
   constexpr std::size_t kMaxWords = 7;
   const auto each = [&](auto&& act) {
@@ -111,8 +113,8 @@ void WarnOfShortPoints(std::string_view text, ParseContext& place) {
   });
   each([&](std::size_t words, std::size_t size) {
     if (size == longest[words]) return;
-    place.Warn("got a point of " + std::to_string(size) + " columns, the file's others have " +
-               std::to_string(longest[words]) + ": was it cut off?");
+    place.Warn("got a point of " + std::to_string(size) + " columns, but other points have " +
+               std::to_string(longest[words]) + ": was the line cut off?");
   });
 }
 

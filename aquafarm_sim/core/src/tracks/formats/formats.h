@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The readers of tracks, one for each format. They report errors and warnings to the parse
-/// context.
+/// The readers of tracks, one for each format. They add warnings to the parse context and throw
+/// InputError for invalid files.
 
 #include <array>
 #include <string_view>
@@ -25,7 +25,7 @@ std::vector<StormTrack> ReadWeatherService(std::string_view text, ParseContext& 
 /// The reader of a format.
 struct TrackReader {
   TrackFormat format;
-  bool is_json;  ///< reads what CleanJson returns; errors name the lines of values
+  bool is_json;  ///< whether `read` requires the result of CleanJson
   std::vector<StormTrack> (*read)(std::string_view text, ParseContext& place);
 };
 

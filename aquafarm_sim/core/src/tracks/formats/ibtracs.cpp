@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// IBTrACS v04 CSV: names in row 1, units in row 2, then one row per fix. Columns are found by name.
-// A missing value is a blank. (IBTrACS v04 column documentation)
+// Reads IBTrACS v04 CSV: names in row 1, units in row 2, then one row per fix. Columns are found by
+// name. A missing value is a blank. Source: IBTrACS v04 column documentation.
 #include <array>
 #include <map>
 
@@ -15,8 +15,8 @@ namespace {
 
 using Fields = std::vector<std::string_view>;
 
-// Returns the averaging period of the winds of an agency that WMO_WIND is taken from [min]. IBTrACS
-// does not convert them (its technical details, table of agencies).
+// Returns the averaging period [min] of WMO_WIND by the agency that gives it (WMO_AGENCY); 0 if
+// unknown. IBTrACS does not convert winds. Source: IBTrACS technical details, table of agencies.
 std::int32_t AveragingOf(std::string_view agency) {
   if (agency == "newdelhi") return 3;
   if (agency.substr(0, 7) == "hurdat_" || agency == "atcf" || agency == "cphc") return 1;
@@ -59,7 +59,8 @@ double Degrees(std::string_view text, const char* name, double min, double max,
                   Format(min) + ", " + Format(max) + "]");
 }
 
-// All four quadrants come from the first agency with a radius of this wind.
+// Reads the rings. The four quadrants of a ring come from the first agency that has a radius of
+// this wind.
 void ReadRings(const Columns& columns, const Fields& fields, StormFix& fix, ParseContext& place) {
   constexpr std::array<const char*, kQuadrantCount> kQuadrants{"NE", "SE", "SW", "NW"};
   for (const std::int32_t wind_kt : {34, 50, 64}) {
@@ -79,8 +80,8 @@ void ReadRings(const Columns& columns, const Fields& fields, StormFix& fix, Pars
   }
 }
 
-// WMO_WIND is from the responsible agency. If it is blank, as in provisional tracks, the USA's wind
-// is used.
+// Reads wind, grade, pressure and radius of the max wind. WMO_WIND is the wind of the responsible
+// agency. If it is blank, as in provisional tracks, the wind of the USA is used.
 void ReadStrength(const Columns& columns, const Fields& fields, StormFix& fix,
                   ParseContext& place) {
   auto wind_kt = Number(columns.Get(fields, "WMO_WIND"), "WMO_WIND", 250.0, place);
@@ -153,7 +154,7 @@ std::vector<StormTrack> ReadIbtracs(std::string_view text, ParseContext& place) 
     if (id.empty()) place.Fail("SID: got nothing, expected a storm's identifier");
     if (tracks.empty() || tracks.back().id != id) {
       if (!seen.emplace(id, true).second) {
-        place.Fail("SID: got " + Quoted(id) + " again, expected its rows one after another");
+        place.Fail("SID: got " + Quoted(id) + " again, expected all rows of a storm in one block");
       }
       if (!tracks.empty()) FinishTrack(tracks.back(), left_out, place);
       left_out = {};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// JMA / RSMC Tokyo best track: fixed columns. (jma.go.jp, e_format_bst.html)
+// Reads best tracks of the JMA (RSMC Tokyo), which have fixed columns. Source: jma.go.jp,
+// e_format_bst.html
 #include <cmath>
 
 #include "aquafarm/base/angle.h"
@@ -12,7 +13,7 @@ namespace {
 
 constexpr std::int32_t kAveraging_min = 10;
 constexpr std::int32_t kUnknownGrade = 7;  // "just entering the region": the wind decides
-// Lines end here or are padded to 80 columns.
+// Numbers of columns after which a line may end. Other lines are padded to 80 columns.
 constexpr std::size_t kThroughHeader = 72;
 constexpr std::size_t kThroughWind = 36;
 constexpr std::size_t kThroughRadii = 62;
@@ -23,8 +24,9 @@ std::string_view Columns(std::string_view line, std::size_t first, std::size_t e
   return line.substr(first, end - first);
 }
 
-// The JMA's wind area is a circle whose centre may differ from the storm's: the longest radius
-// points to one side, the shortest to the other. Each quadrant gets the radius at its middle.
+// Returns the radii by quadrant of a wind area of the JMA. The area is a circle whose centre may
+// differ from the storm's: the longest radius points to one side, the shortest to the other. Each
+// quadrant gets the distance from the storm to the circle in the middle of the quadrant.
 std::array<double, kQuadrantCount> Quadrants(std::int32_t direction, double longest,
                                              double shortest) {
   std::array<double, kQuadrantCount> radius{};
@@ -40,7 +42,8 @@ std::array<double, kQuadrantCount> Quadrants(std::int32_t direction, double long
   return radius;
 }
 
-// Blank: not given. All zero: no such wind. A line that ends within the field is truncated.
+// Reads a ring that begins at column `at`. Blank columns mean that the ring is not given; zeros
+// mean that no such wind blows. A line that ends within the ring is truncated and causes an error.
 void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, StormFix& fix,
               ParseContext& place) {
   const std::string_view direction = Columns(line, at, at + 1);
@@ -110,12 +113,12 @@ StormFix ReadPoint(std::string_view line, ParseContext& place) {
     place.Fail("got " + Quoted(line) + ", expected a point: yymmddhh 002 …");
   }
   if (line.size() < kThroughWind) {
-    place.Fail("got a line of " + std::to_string(line.size()) + " columns, expected " +
-               std::to_string(kThroughWind) + " or more of a point, to its wind");
+    place.Fail("got a line of " + std::to_string(line.size()) + " columns, expected at least " +
+               std::to_string(kThroughWind) + " of a point, up to its wind");
   }
   const std::string_view hour = Columns(line, 0, 8);
   StormFix fix;
-  // The file starts in 1951.
+  // The years have two digits. The file starts in 1951.
   fix.time = ReadHour((hour < "51" ? "20" : "19") + std::string(hour), place);
   std::int32_t code = TryWhole(Columns(line, 13, 14), "grade", 2, 9, place).value_or(kUnknownGrade);
   if (code == 8) {
@@ -141,15 +144,15 @@ StormFix ReadPoint(std::string_view line, ParseContext& place) {
   constexpr std::int64_t k1977 = 220924800;
   const bool is_storm = code >= 3 && code <= 5;
   if (is_storm && fix.time >= k1977 && line.size() < kThroughRadii) {
-    place.Fail("got a line of " + std::to_string(line.size()) + " columns, expected " +
-               std::to_string(kThroughRadii) + " or more of a storm, to its radii");
+    place.Fail("got a line of " + std::to_string(line.size()) + " columns, expected at least " +
+               std::to_string(kThroughRadii) + " at the grade of a storm, up to its radii");
   }
   fix.landfall = Columns(line, 71, 72) == "#";
   return fix;
 }
 
-// Points below a padded header are padded, too. Points below a header that ends with its date end
-// with the wind, the radii or the landfall mark.
+// Warns about points that may be cut off. Points after a padded header are padded, too. Points
+// after a header that ends with its date end with the wind, the radii or the landfall mark.
 void WarnOfShortPoints(std::string_view text, ParseContext& place) {
   LineReader lines(text, place);
   std::string_view line;
@@ -159,8 +162,8 @@ void WarnOfShortPoints(std::string_view text, ParseContext& place) {
     const bool filled = header > kThroughHeader;
     const bool ends = line.size() == kThroughWind || line.size() == kThroughRadii;
     if (Trim(line).empty() || line.size() >= kThroughMark || (ends && !filled)) continue;
-    place.Warn("got a point of " + std::to_string(line.size()) + " columns, its header has " +
-               std::to_string(header) + ": was it cut off?");
+    place.Warn("got a point of " + std::to_string(line.size()) + " columns under a header of " +
+               std::to_string(header) + ": was the line cut off?");
   }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Response of a weather service to a storm query: {code, now, track}; every value is a text.
-// (QWeather's storm-track API: windRadius30, 50 and 64 are the winds of force 7, 10 and 12. Its
-// storm-forecast API has forecast in place of track and no radii.)
+// Reads the response of a weather service to a storm query (JSON): {code, now, track}. Every value
+// is a text. In QWeather's storm-track API, windRadius30, windRadius50 and windRadius64 are the
+// radii of the winds of force 7, 10 and 12. Its storm-forecast API has `forecast` instead of
+// `track`, and no radii.
 #include <algorithm>
 #include <array>
 
@@ -51,7 +52,7 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
     if (value != nullptr && !value->is_object()) {
       place.WarnValueOnce(
           key, Join(point.path(), key),
-          std::string("got no object, expected radii as {\"neRadius\": …}") + kIgnored);
+          std::string("got no object, expected radii such as {\"neRadius\": …}") + kIgnored);
       continue;
     }
     if (value != nullptr) {
@@ -80,7 +81,7 @@ const char* KeyOfPoints(const JsonObject& answer) {
   return track == nullptr || track->empty() ? "forecast" : "track";
 }
 
-// Warns about sections that are not read.
+// Warns about keys that are not read.
 void WarnOfUnread(const Json& document, ParseContext& place) {
   constexpr std::array<std::string_view, 11> kKnown{"code", "updateTime", "fxLink",  "isActive",
                                                     "now",  "track",      "refer",   "id",
@@ -91,10 +92,11 @@ void WarnOfUnread(const Json& document, ParseContext& place) {
   }
 }
 
-// A point of type DL only marks a landfall.
+// Returns whether a point only marks a landfall (type DL).
 bool IsLandfall(const JsonObject& point) { return point.TryText({"type"}) == "DL"; }
 
-// A forecast in addition to the track counts as issued with the last fix.
+// Reads the forecast of a response that also has a track. Its time of issue is that of the last
+// fix.
 void ReadForecast(const JsonObject& answer, StormTrack& track, ParseContext& place) {
   const Json* points = answer.TryList({"forecast"});
   if (points == nullptr || points->empty() || track.fixes.empty()) return;

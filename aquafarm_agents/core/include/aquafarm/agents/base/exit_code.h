@@ -9,10 +9,10 @@ enum class ExitCode : int {
   kInternal = 1,      ///< a bug in the suite
   kBadInput = 2,      ///< an argument, scenario, policy or checkpoint was refused
   kStorage = 3,       ///< run folder in use, not writable, or disk full
-  kLost = 4,          ///< the farms were lost and not found again in time; the run is saved
+  kLost = 4,          ///< the farms were unreachable for too long; a training run is saved
   kDiverged = 5,      ///< learning failed; the last valid checkpoint is kept
-  kRankLost = 6,      ///< another rank of the training is missing or ended; checkpoints are kept
-  kInterrupted = 130  ///< Ctrl-C; the run is saved
+  kRankLost = 6,      ///< another rank of the training did not start or ended; checkpoints are kept
+  kInterrupted = 130  ///< stopped with Ctrl-C; a training run is saved
 };
 
 }  // namespace aquafarm::agents

@@ -16,25 +16,30 @@ namespace aquafarm::agents {
 /// Reads options by key, with defaults. Finish() rejects options that were never read.
 class OptionReader {
  public:
-  /// @param text key=value pairs, separated by blanks or commas; an old name of an option counts as
-  ///   its new name
+  /// @param text key=value pairs, separated by blanks or commas; old names of options are replaced
+  ///   by the new ones
   /// @throws InputError on any other syntax and on duplicate keys
   explicit OptionReader(const std::string& text);
 
-  /// Value of `key` in [min, max]; `fallback` is the default.
+  /// Returns the value of `key`, or `fallback` if the text does not contain the key.
+  /// @throws InputError if the value is not a finite number in [min, max]
   double Number(const std::string& key, double fallback, double min, double max);
-  /// Value of `key`, true or false; `fallback` is the default.
+  /// Returns the value of `key`, or `fallback` if the text does not contain the key.
+  /// @throws InputError if the value is neither "true" nor "false"
   bool Flag(const std::string& key, bool fallback);
+  /// Returns the schedule of `key`, or `fallback` if the text does not contain the key.
+  /// @throws InputError as ParseSchedule
   Schedule GetSchedule(const std::string& key, const Schedule& fallback, double min, double max);
+  /// Returns the value of `key` as text, or `fallback` if the text does not contain the key.
   std::string Text(const std::string& key, const std::string& fallback);
 
-  /// @throws InputError naming the first key that was never read, and all valid keys
+  /// @throws InputError if a given key was never read; the message lists the keys that were read
   void Finish() const;
 
-  /// Every option that was read, with its effective value, sorted by key. Checkpoints and run.json
-  /// contain this text.
+  /// Returns every option that was read, with its effective value, as key=value pairs sorted by
+  /// key. Checkpoints and run.json contain this text.
   std::string Resolved() const;
-  /// Replaces the resolved text of `key` by its canonical form.
+  /// Sets the value of `key` in Resolved(), for example to a canonical form.
   void Resolve(const std::string& key, const std::string& value) { resolved_[key] = value; }
 
  private:
@@ -44,13 +49,15 @@ class OptionReader {
   std::map<std::string, std::string> resolved_;
 };
 
-/// Returns options with the current names instead of old ones, sorted by key. For the options that
-/// checkpoints of earlier versions recorded.
-/// @param text as written by OptionReader::Resolved
+/// Returns the options in `text` sorted by key, with old names replaced by the current ones.
+/// Checkpoints of earlier versions contain old names. If a key is given twice, the later value is
+/// kept.
+/// @throws InputError if `text` does not consist of key=value pairs
 std::string CanonicalOptions(const std::string& text);
 
 /// Returns one line for each old name in `text`, for example "option batch is now called
-/// batch_size". @throws InputError as OptionReader
+/// batch_size".
+/// @throws InputError if `text` does not consist of key=value pairs
 std::vector<std::string> RenamedOptions(const std::string& text);
 
 }  // namespace aquafarm::agents

@@ -7,8 +7,8 @@
 ///   linear       start \                          over the first `fraction` of the run
 ///                       \_________ end
 ///   exponential  start · (end/start)^(progress/fraction), then end
-///   harmonic     start / (1 + (start/end - 1) · progress/fraction), then end: decays like 1/t, as
-///                Robbins and Monro (1951) require of a learning rate that averages out the noise
+///   harmonic     start / (1 + (start/end - 1) · progress/fraction), then end. Decays like 1/t; a
+///                learning rate of this form averages out noise (Robbins and Monro 1951)
 
 #include <cstdint>
 #include <string>
@@ -21,26 +21,27 @@ enum class ScheduleKind : std::uint8_t { kConstant, kLinear, kExponential, kHarm
 inline constexpr int kScheduleKindCount = 4;
 std::string_view ToString(ScheduleKind value);
 
+/// A schedule; by default the constant 0.
 struct Schedule {
   ScheduleKind kind{ScheduleKind::kConstant};
   double start{};
   double end{};          ///< ignored by kConstant
-  double fraction{1.0};  ///< of the run, after which `end` is reached, (0, 1]; ignored by
-                         ///< kConstant
+  double fraction{1.0};  ///< progress at which `end` is reached, (0, 1]; ignored by kConstant
 
-  /// Value at `progress` of the run, [0, 1].
+  /// Returns the value at `progress`, the share of the run that is done, in [0, 1].
   double At(double progress) const;
-  /// Whether the value is above 0 at some time of the run.
+  /// Returns whether the value is above 0 at some time of the run.
   bool IsEverPositive() const { return At(0.0) > 0.0 || At(1.0) > 0.0; }
 };
 
-/// Reads "0.1", "linear:1:0.05:0.5" or "exponential:10:0.5:0.5" (kind:start:end:fraction).
+/// Parses a constant, "0.1" or "constant:0.1", or kind:start:end:fraction, for example
+/// "linear:1:0.05:0.5".
 /// @param what prefix of error messages, such as "learning_rate"
-/// @throws InputError if `text` has another form or a number is not in [min, max]; exponential and
-///         harmonic schedules need start and end above 0
+/// @throws InputError if `text` has another form, start or end is not in [min, max], fraction is
+///         not in (0, 1], or start or end of an exponential or harmonic schedule is not above 0
 Schedule ParseSchedule(const std::string& text, const std::string& what, double min, double max);
 
-/// Text from which ParseSchedule reads the same schedule.
+/// Returns the text from which ParseSchedule reads the same schedule.
 std::string ToString(const Schedule& schedule);
 
 }  // namespace aquafarm::agents

@@ -8,7 +8,8 @@
 
 namespace aquafarm::agents {
 
-/// Thrown when a disk or folder is full, not writable or in use. what() is one readable line.
+/// Thrown if a file or folder cannot be written, for example because the disk is full, or if
+/// another process uses the folder. what() is one readable line.
 class StorageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -16,20 +17,22 @@ class StorageError : public std::runtime_error {
 
 /// Writes a temporary file next to `path`, syncs it and renames it, so that `path` always contains
 /// either the complete old file or the complete new one.
-/// @throws StorageError; `path` is then unchanged and the temporary file is removed
+/// @throws StorageError; the temporary file is then removed. `path` is unchanged, unless only the
+///   final sync of its folder failed
 void WriteFileAtomically(const std::string& path, std::string_view bytes);
 
-/// Writes the parts one after another, without joining them in memory.
+/// As above, for a file that consists of `parts` in this order. Does not join them in memory.
 void WriteFileAtomically(const std::string& path, const std::vector<std::string_view>& parts);
 
-/// Removes what WriteFileAtomically leaves in a folder if its process is killed: files that end in
-/// ".tmp". Only for folders that no other process writes to. Errors are ignored.
+/// Removes all files of `folder` that end in ".tmp". WriteFileAtomically leaves such a file if its
+/// process is killed. No other process may write to the folder. Errors are ignored.
 void RemoveTemporaryFiles(const std::string& folder);
 
-/// Contents of a file. @throws InputError if it does not exist or cannot be read
+/// Returns the contents of a file. @throws InputError if it does not exist or cannot be read
 std::string ReadFile(const std::string& path);
 
-/// Error message from errno: "runs/x/policy.ckpt: cannot be written: No space left on device".
+/// Returns an error message with the text of errno, for example "runs/x/policy.ckpt: cannot be
+/// written: No space left on device".
 std::string ErrnoText(const std::string& path, const std::string& what);
 
 }  // namespace aquafarm::agents

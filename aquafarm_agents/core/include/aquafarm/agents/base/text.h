@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Conversion of numbers and lists to and from text.
+/// Conversion between numbers and text, and other functions on text.
 
 #include <string>
 #include <vector>
 
 namespace aquafarm::agents {
 
-/// Parses the complete text as a number.
+/// Parses `text` as a finite number.
 /// @param what prefix of error messages
-/// @throws InputError "gamma: got 'x', expected a number"
+/// @throws InputError "gamma: got 'x', expected a number" if any part of `text` is something else
 double ParseNumber(const std::string& text, const std::string& what);
 
-/// Shortest decimal text that parses back to the same number.
+/// Returns the shortest decimal text that parses back to the same number.
 std::string FormatNumber(double value);
 
-/// Time for readers: "3.4 s", "2 min 05 s", "1 h 02 min".
+/// Returns a duration as text for people: "3.4 s", "2 min 05 s", "1 h 02 min".
 std::string FormatDuration(double seconds);
 
+/// Returns whether `text` ends with `end`.
 bool EndsWith(const std::string& text, const std::string& end);
 
-/// Names separated by commas: "a, b, c".
+/// Returns the names separated by commas: "a, b, c".
 std::string Join(const std::vector<std::string>& names);
 
 }  // namespace aquafarm::agents

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Exploration by curiosity (Fig. 7): the Intrinsic Curiosity Module of Pathak et al. 2017, added
-/// to any value-based learner. The intrinsic reward is high for steps with a poorly predicted
-/// outcome, as far as actions can influence that outcome:
+/// Exploration by curiosity (Fig. 7): the Intrinsic Curiosity Module of Pathak et al. 2017. It adds
+/// an intrinsic reward to the rewards of any learner. The intrinsic reward is high for steps whose
+/// outcome is poorly predicted. φ is trained so that it encodes only what actions influence:
 ///
 ///   s  ── φ ──┬──────────────┬── inverse model ──> the action that led from s to s'; trains φ
 ///   s' ── φ ──┼──────────────┘
-///             └── forward model (with a) ──> φ̂(s'); its error e = ½ ‖φ̂(s') − φ(s')‖² is rewarded
+///             └── forward model (with a) ──> φ̂(s'); the error e = ½ ‖φ̂(s') − φ(s')‖² is rewarded
 ///
-/// The loss is (1 − β) L_inverse + β e, β = 0.2. Only L_inverse trains φ. In Pathak et al. e trains
-/// φ too, which shrinks the features that are hard to predict.
+/// The loss is (1 − β) L_inverse + β e with β = 0.2. Only L_inverse trains φ. In Pathak et al., e
+/// also trains φ, which shrinks features that are hard to predict.
 ///
-/// The learner receives r + w · min(e / ē, 5), where ē is a moving average of e. The weight w is
-/// therefore the mean intrinsic reward of a step, in units of reward, on any farm. (η of Pathak et
-/// al. combines w and 1 / ē; the division by ē follows Burda et al. 2019.)
+/// The learner receives r + w · min(e / ē, 5), where ē is a moving average of e. On any farm, the
+/// weight w is therefore about the mean intrinsic reward of a step, in units of reward. (η of
+/// Pathak et al. corresponds to w / ē. The division by ē follows Burda et al. 2019.)
 
 #include <cstdint>
 #include <memory>
@@ -24,9 +24,9 @@
 
 namespace aquafarm::agents {
 
-/// Wraps a learner with a curiosity module. The result reads features in addition to the
-/// observation types of the learner.
-/// @param exploration of the learner; is_curious() must be true
+/// Returns a learner that passes the results to `learner` with the intrinsic reward added. It
+/// requires features in addition to the observation types of `learner`.
+/// @param exploration options with is_curious() true; `curiosity` is the schedule of w
 std::unique_ptr<Learner> WithCuriosity(std::unique_ptr<Learner> learner,
                                        const EnvironmentSpec& spec, std::uint64_t seed,
                                        const ExplorationOptions& exploration);

@@ -7,9 +7,10 @@
 ///   y = r + γ max over a' of Q_target(s', a')        y = r after termination
 ///   loss = (y − Q(s, a))², or the Huber loss
 ///
-/// and LSTM-DQN (Algorithm 2): DQN with a recurrent network, trained from sequences within one
-/// episode. A sequence starts with the stored recurrent state, after burn_in warm-up steps. All
-/// farms act in one forward pass. DeepOptions lists the options.
+/// and LSTM-DQN (Algorithm 2): DQN with a recurrent network, trained from sequences of steps of one
+/// episode. The network first reads the burn_in steps before a sequence, starting with the
+/// recurrent state that was stored at the first of them. One forward pass computes the actions of
+/// all farms. DeepOptions lists the options.
 
 #include <memory>
 #include <string>
@@ -18,28 +19,32 @@
 
 namespace aquafarm::agents {
 
-/// Returns the ObservationTypeBits that a DQN with these options requires. @throws InputError if an
-/// option is wrong
+/// Returns the ObservationTypeBits that a DQN with these options requires.
+/// @throws InputError if an option is wrong
 std::uint8_t DqnObservationTypes(const std::string& options);
-/// Returns a DQN that has not learnt yet. @throws InputError if an option is wrong
+/// Returns a new DQN learner.
+/// @throws InputError if an option is wrong
 std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
-/// Value decomposition (VDN, Sunehag et al. 2018): one network acts for all agents. The sum of
-/// their values is the team's value, trained from the sum of their rewards. The policy is a DQN
-/// policy.
+/// Returns a learner with value decomposition (VDN, Sunehag et al. 2018): one network computes the
+/// values of each agent, and their sum is the value of the team. The sum is trained with the sum of
+/// the agents' rewards. The policy is a DQN policy.
 ///
 ///   Q_team(s, a) = Σ over agents i of Q(o_i, a_i)
+///
 /// @throws InputError if an option is wrong
 std::unique_ptr<Learner> MakeVdn(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
 /// Returns the greedy policy of a checkpoint of DQN or VDN.
-/// @throws InputError if the policy does not fit farms of `spec`, with the reason
+/// @throws InputError with the reason if the policy does not fit farms of `spec`
 std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 
-// The same functions for LSTM-DQN.
+/// As DqnObservationTypes, for LSTM-DQN.
 std::uint8_t RecurrentDqnObservationTypes(const std::string& options);
+/// As MakeDqn, for LSTM-DQN.
 std::unique_ptr<Learner> MakeRecurrentDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                           const std::string& options);
+/// As MakeDqnPolicy, for LSTM-DQN.
 std::unique_ptr<Policy> MakeRecurrentDqnPolicy(const Checkpoint& checkpoint,
                                                const EnvironmentSpec& spec);
 

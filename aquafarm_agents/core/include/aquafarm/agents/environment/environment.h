@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The only interface between learners and farms: N farms × S agents, in this process or behind ROS
-/// services. Both give bit-identical transitions.
+/// The only interface between learners and farms. An environment has N farms with S agents each;
+/// the farms run in this process or behind ROS services. Both give bit-identical transitions. A
+/// slot is one agent of one farm, with the index farm · S + agent.
 ///
-/// A farm whose episode is over (its end reason is not kNone) ignores the action of the next Step
-/// and starts its next episode. Its slots then have is_first = 1 and reward 0, and hold no
-/// transition.
+/// If the episode of a farm is over (its end reason is not kNone), the next Step ignores the
+/// actions of this farm and starts its next episode. In the results of that Step, the farm has
+/// is_first = 1, its rewards are 0, and its slots hold no transition.
 ///
 /// An agent may be done before its farm: a delivered self-propelled device is no longer active (as
-/// in PettingZoo's parallel API). Its last transition is terminal. Later slots of this agent are
+/// in PettingZoo's parallel API). Its last transition is terminal. The results in its slot are
 /// padding until the next episode.
 
 #include <cstdint>
@@ -27,9 +28,9 @@ class Farm;
 
 namespace aquafarm::agents {
 
-/// Bit mask of observation types. kOwnRewardsBit requests each agent's individual reward where the
-/// scenario gives every agent the team's sum. kStatesBit requests the complete farms; planners use
-/// it.
+/// Bits of a mask of observation types. kOwnRewardsBit requests individual rewards in scenarios
+/// that give every agent the sum of the team's rewards. kStatesBit requests StepResults::states,
+/// which planners use.
 enum ObservationTypeBits : std::uint8_t {
   kIndexBit = kIndexField,
   kFeaturesBit = kFeaturesField,
@@ -51,9 +52,9 @@ struct EnvironmentSpec {
   std::int32_t feature_count{};
   std::vector<std::string> feature_names;  ///< [feature_count] as Encoder::feature_names
   std::int32_t plane_count{};
-  std::int32_t height{};
-  std::int32_t width{};
-  std::int32_t step_limit{};
+  std::int32_t height{};      ///< of the map [cells]
+  std::int32_t width{};       ///< of the map [cells]
+  std::int32_t step_limit{};  ///< max length of an episode [steps]
 };
 
 /// Returns the number of slots: one for each agent of each farm.
@@ -61,11 +62,11 @@ inline std::size_t SlotCount(const EnvironmentSpec& spec) {
   return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
 }
 
-/// Results of one Reset or Step. Owned by the environment and valid until its next call. Arrays are
-/// row-major; step_fields.h lists them.
+/// Results of one Reset, Step or Load. The environment owns them; they are valid until its next
+/// Reset, Step or Load. Arrays are row-major.
 struct StepResults {
-  /// Returns whether the agent in slot farm · S + agent has reached a terminal state, after which
-  /// no value is bootstrapped. False after truncation at the step limit.
+  /// Returns whether the agent in `slot` of `farm` is in a terminal state, whose value is 0. False
+  /// for an active agent whose episode was truncated at the step limit.
   bool IsDone(std::size_t slot, std::size_t farm) const {
     return active[slot] == 0 || IsTerminated(static_cast<EndReason>(end_reasons[farm]));
   }
@@ -75,8 +76,8 @@ struct StepResults {
   std::vector<float> energy;              ///< [N, S] consumed in the step [kWh]
   std::vector<float> distance;            ///< [N, S] travelled in the step [km]
   std::vector<std::uint8_t> outcomes;     ///< [N, S] Outcome
-  std::vector<ActionMask> legal;          ///< [N, S] for the next step
-  std::vector<std::uint8_t> active;       ///< [N, S] 0 from an agent's end to the next episode
+  std::vector<ActionMask> legal;          ///< [N, S] actions that are legal in the next step
+  std::vector<std::uint8_t> active;       ///< [N, S] 0 from an agent's delivery to the next episode
   std::vector<std::uint8_t> end_reasons;  ///< [N] EndReason; kNone while the episode continues
   std::vector<std::uint8_t> is_first;     ///< [N] 1 at an episode's first observation
   std::vector<std::uint64_t> hashes;      ///< [N]; empty unless requested
@@ -87,29 +88,31 @@ struct StepResults {
   std::vector<EpisodeSummary> finished;   ///< episodes that ended in this step, ordered by farm
 };
 
-/// Number of farms and the outputs that the environment must produce.
+/// Number of farms and threads, and the optional results that an environment must produce.
 struct EnvironmentOptions {
   std::int32_t farms{1};
-  std::uint8_t observation_types{kIndexBit};
-  bool hashes{false};
-  std::int32_t threads{1};  ///< threads that step the farms; no effect on results
+  std::uint8_t observation_types{kIndexBit};  ///< mask of ObservationTypeBits
+  bool hashes{false};                         ///< whether to fill StepResults::hashes
+  std::int32_t threads{1};                    ///< threads that step the farms; no effect on results
 };
 
-/// Thrown when the farms behind an environment are unreachable for longer than its time limit.
+/// Thrown when an environment cannot continue with its farms, for example because the sim node has
+/// not answered within the time limit.
 class EnvironmentLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Returns whether `observation_types` request individual rewards where the scenario gives every
-/// agent the team's sum. If so, sets spec.team_reward to false; the farms must then return
-/// kTermsField.
+/// Returns whether `observation_types` contain kOwnRewardsBit and the scenario has a team reward.
+/// If so, sets spec.team_reward to false. The environment must then request kTermsField of the
+/// farms and call UseOwnRewards after each step.
 bool WantsOwnRewards(std::uint8_t observation_types, EnvironmentSpec& spec);
 
-/// Replaces each agent's reward with the sum of its reward terms. @param results with terms
+/// Replaces each agent's reward with the sum of its reward terms.
+/// @param results whose `terms` are filled
 void UseOwnRewards(StepResults& results);
 
-/// A batch of farms, in this process or behind ROS. It is all that learners see of a farm.
+/// A batch of farms, in this process or behind ROS services.
 class Environment {
  public:
   virtual ~Environment() = default;
@@ -117,18 +120,22 @@ class Environment {
   virtual const EnvironmentSpec& spec() const = 0;
 
   /// Starts the episode sequence of `seed`: farm i plays the episodes first_episode + i,
-  /// first_episode + i + N, first_episode + i + 2N, …
+  /// first_episode + i + N, first_episode + i + 2N, … (If several environments share the farms, i
+  /// and N count the farms of all of them.)
+  /// @throws InputError if the layout of an episode cannot be generated
   virtual const StepResults& Reset(std::uint64_t seed, std::uint64_t first_episode = 0) = 0;
 
   /// Takes one step in every farm.
-  /// @param actions [N, S], each in [0, kActionCount); other values are a programming error
+  /// @param actions [N, S], each an Action, kHold included; other values are a programming error
+  /// @throws InputError if the layout of a new episode cannot be generated
   virtual const StepResults& Step(const std::vector<std::uint8_t>& actions) = 0;
 
   /// Serializes all farms, also in the middle of an episode.
   virtual std::string Save() = 0;
   /// Restores saved farms, which continue bit-identically, and returns their current results with
   /// an empty `finished`.
-  /// @throws InputError if the bytes do not match this environment; the farms are then unchanged
+  /// @throws InputError if the bytes do not match this environment; farms in this process are then
+  ///   unchanged
   virtual const StepResults& Load(const std::string& bytes) = 0;
 
   /// Returns true once after the farms were lost and replaced by new ones (a ROS node restarted).

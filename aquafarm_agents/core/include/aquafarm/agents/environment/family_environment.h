@@ -12,19 +12,21 @@
 
 namespace aquafarm::agents {
 
-/// Returns the farm at the start of an episode of a family (scenario/family.h), as drawn by
-/// FamilyEnvironment.
-/// @throws InputError if no ranch with a valid layout is found in a bounded number of attempts
+/// Returns the ranch that FamilyEnvironment plays in an episode of a family (scenario/family.h), at
+/// the start of that episode.
+/// @throws InputError if none of 100 drawn ranches has a valid layout
 Farm MakeRanch(const Scenario& family, std::uint64_t seed, std::uint64_t episode);
 
-/// Environment whose farms play another ranch of a family in every episode. Farm i of N plays
-/// episodes i, i + N, i + 2N, … A new episode allocates memory; a step does not.
+/// Environment whose farms play another ranch of a family in every episode. The start of an episode
+/// allocates memory; other steps do not.
 class FamilyEnvironment final : public Environment {
  public:
-  /// The spec has the largest width and height of the family, and no table and planes.
-  /// @param family with Scenario::family
+  /// spec() contains the largest width and height of the family; its state_count and plane_count
+  /// are 0.
+  /// @param family a scenario whose `family` is set
   /// @param share as in LocalEnvironment
-  /// @throws InputError if observations are requested that depend on the size of the map
+  /// @throws InputError if the index, planes or states are requested, or if the first ranch cannot
+  ///   be drawn (see MakeRanch)
   FamilyEnvironment(std::shared_ptr<const Scenario> family, const EnvironmentOptions& options,
                     const FarmShare& share = {});
 
@@ -34,7 +36,7 @@ class FamilyEnvironment final : public Environment {
   std::string Save() override;
   const StepResults& Load(const std::string& bytes) override;
 
-  /// A farm, for tools that inspect it. Precondition: Reset or Load was called.
+  /// Returns farm i of [0, N), for tools that inspect it. Precondition: Reset or Load was called.
   const Farm& farm(std::int32_t i) const { return *farms_[static_cast<std::size_t>(i)]; }
 
  private:
@@ -53,7 +55,8 @@ class FamilyEnvironment final : public Environment {
   BatchOutput output_;
 };
 
-/// Makes farms in this process: a FamilyEnvironment for a family, else a LocalEnvironment.
+/// Makes an environment in this process: a FamilyEnvironment if the scenario describes a family,
+/// else a LocalEnvironment. @throws InputError as their constructors
 std::unique_ptr<Environment> MakeLocalFarms(std::shared_ptr<const Scenario> scenario,
                                             const EnvironmentOptions& options,
                                             const FarmShare& share = {});

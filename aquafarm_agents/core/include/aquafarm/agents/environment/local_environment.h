@@ -11,19 +11,20 @@
 
 namespace aquafarm::agents {
 
-/// The farms of one environment if several processes share all farms.
+/// Which farms an environment has if several processes divide all farms among themselves.
 struct FarmShare {
-  std::int32_t first{};  ///< index of its first farm among all
-  std::int32_t total{};  ///< number of all farms; 0: the environment has all of them
+  std::int32_t first{};  ///< index of the environment's first farm among all farms
+  std::int32_t total{};  ///< number of all farms; 0 if the environment has all of them
 };
 
 /// Environment whose farms run in this process.
 class LocalEnvironment final : public Environment {
  public:
   /// @param scenario must have passed ValidateScenario
-  /// @param share the farms play the same episodes as in an environment with all farms, and Load
-  ///        takes their part of the saved bytes of all farms
-  /// @throws InputError if no layout can be generated for the scenario
+  /// @param share which of all farms this environment has. They play the same episodes as in an
+  ///        environment with all farms. Load expects the saved bytes of all farms.
+  /// @throws InputError if no layout can be generated for the scenario, if it describes a family,
+  ///         or if the index is requested and the scenario has too many states for a table
   LocalEnvironment(std::shared_ptr<const Scenario> scenario, const EnvironmentOptions& options,
                    const FarmShare& share = {});
 
@@ -32,13 +33,15 @@ class LocalEnvironment final : public Environment {
   const StepResults& Step(const std::vector<std::uint8_t>& actions) override;
   std::string Save() override;
   const StepResults& Load(const std::string& bytes) override;
-  /// Changes the farms, such as by Farm::CopyStateFrom. @param change called for each farm, with
-  /// its index @returns their current results with an empty `finished`
+  /// Calls `change` for each farm, with its index, for example to call Farm::CopyStateFrom.
+  /// @returns the results of the changed farms, with an empty `finished`
   const StepResults& Change(const std::function<void(std::size_t, Farm&)>& change);
-  /// Continues copies of farms of the same scenario, such as StepResults::states. @param farms [N]
+  /// Copies the state of farms of the same scenario, such as StepResults::states, into the farms of
+  /// this environment. Returns their results, with an empty `finished`.
+  /// @param farms [N]
   const StepResults& CopyStatesFrom(const std::vector<const Farm*>& farms);
 
-  /// The farms, for tools that inspect them.
+  /// Returns the farms, for tools that inspect them.
   const FarmBatch& batch() const { return batch_; }
 
  private:
@@ -53,24 +56,29 @@ class LocalEnvironment final : public Environment {
   BatchOutput output_;
 };
 
-/// Returns `share`, or that of all `farms` if its total is 0.
+/// Returns `share`, or the share that contains all `farms` if share.total is 0.
 inline FarmShare WholeOr(const FarmShare& share, std::int32_t farms) {
   return share.total == 0 ? FarmShare{0, farms} : share;
 }
 
-/// Returns the share of a rank of all farms. @param ranks number of processes that train together
-/// @throws InputError if the ranks cannot have equally many farms
+/// Returns which of `farms` farms a rank has.
+/// @param farms number of farms of all ranks
+/// @param rank [0, ranks)
+/// @param ranks number of processes that train together
+/// @throws InputError if `farms` is not a multiple of `ranks`
 FarmShare ShareOfRank(std::int32_t farms, int rank, int ranks);
 
-/// Extracts the `count` farms of a share from the saved bytes of all farms.
-/// @throws InputError if the bytes are damaged or have fewer farms
+/// Extracts the `count` farms of a share from the saved bytes of all farms. Returns `bytes`
+/// unchanged if `count` is the number of all farms.
+/// @throws InputError if the bytes are damaged or contain too few farms
 std::string TakeSavedFarms(const std::string& bytes, const FarmShare& share, std::int32_t count);
 
-/// Joins the saved bytes of environments that share the farms. @param parts in order of the farms
-/// @throws InputError if the bytes are damaged
+/// Joins the saved bytes of several environments into those of one environment with all farms.
+/// @param parts saved bytes of each environment, in the order of their farms
+/// @throws InputError if a part is damaged
 std::string JoinSavedFarms(const std::vector<std::string>& parts);
 
-/// Spec of `farms` farms of a scenario.
+/// Returns the spec of an environment with `farms` farms of a scenario.
 EnvironmentSpec MakeSpec(const Scenario& scenario, const Encoder& encoder, std::int32_t farms);
 
 }  // namespace aquafarm::agents

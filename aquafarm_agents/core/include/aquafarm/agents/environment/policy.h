@@ -13,18 +13,19 @@ class Policy {
  public:
   virtual ~Policy() = default;
 
-  /// The observation types it requires, a mask of ObservationTypeBits.
+  /// Returns the observation types that it requires, a mask of ObservationTypeBits.
   virtual std::uint8_t observation_types() const = 0;
 
-  /// Starts new episodes: resets the recurrent state.
-  /// @param seed of its random numbers, if it draws any
+  /// Prepares for new episodes on `farms` farms: resets the recurrent state.
+  /// @param seed seed of the policy's random numbers, if it draws any
   virtual void Begin(std::uint64_t seed, std::int32_t farms) = 0;
 
-  /// Chooses the actions of the step after `results`. @param actions is resized to [N, S]
+  /// Chooses the actions for the step that follows `results`.
+  /// @param actions is resized to [N, S]
   virtual void Act(const StepResults& results, std::vector<std::uint8_t>& actions) = 0;
 
-  /// Learned V_π at the last Act, [N, S]: V(s) of a critic, else Q(s, a) of the greedy action.
-  /// Empty if the policy has no value estimates.
+  /// Returns the learned value of the state at the last Act, [N, S]: V(s) of a critic, or Q(s, a)
+  /// of the greedy action. Empty if the policy has no value estimates.
   const std::vector<float>& values() const { return values_; }
 
  protected:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Outcomes of devices over the episodes of an evaluation: by id, or by kind if the episodes have
-/// different devices.
+/// Outcomes of the devices in the episodes of an evaluation: by id if every episode has the same
+/// devices, and by kind.
 
 #include <array>
 #include <cstdint>
@@ -15,13 +15,14 @@ namespace aquafarm::agents {
 /// How the episodes ended for one device, or for all devices of a kind.
 struct DeviceTally {
   DeviceKind kind{};
-  std::int64_t devices{};     ///< devices counted: one in each episode in which the farm has it
-  std::int64_t delivered{};   ///< of them in a port at the end of the episode
-  std::int64_t aboard{};      ///< of them on a ship
+  std::int64_t devices{};     ///< number of devices counted, in all episodes
+  std::int64_t delivered{};   ///< number of them in a port at the end of their episode
+  std::int64_t aboard{};      ///< number of them on a ship at the end of their episode
   double delivered_health{};  ///< sum of the health of those in a port
 
   /// Returns the number of devices at sea at the end of the episode.
   std::int64_t Left() const { return devices - delivered - aboard; }
+  /// Counts a device at the end of an episode.
   void Add(const Device& device) {
     kind = device.kind;
     ++devices;
@@ -36,12 +37,12 @@ struct DeviceTally {
 struct DeviceOutcomes {
   std::vector<DeviceTally> by_id;
   std::array<DeviceTally, kDeviceKindCount> by_kind{};
-  /// Each id is the same device in every episode. Set it to false for a family of ranches; Add does
-  /// so where an episode has other kinds or numbers of devices.
+  /// Whether each id refers to the same device in every episode. Set it to false for a family of
+  /// ranches. Add sets it to false if the episodes differ in the number or kinds of devices.
   bool are_same{true};
 
   bool empty() const { return by_id.empty(); }
-  /// Adds the devices of a farm at the end of an episode.
+  /// Counts the devices of a farm at the end of an episode.
   void Add(const std::vector<Device>& ended) {
     const bool is_first = by_id.empty();
     if (!is_first && by_id.size() != ended.size()) are_same = false;

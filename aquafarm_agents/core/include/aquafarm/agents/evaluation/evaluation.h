@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Evaluation of a policy on episodes that are never used in training. Training seeds are
-/// less than 2^63 and evaluation seeds are at least 2^63, so they never overlap.
+/// Evaluation of a policy on episodes that are never used in training: training seeds are less than
+/// 2^63, evaluation seeds are not.
 
 #include <atomic>
 #include <cstdint>
@@ -21,32 +21,35 @@ namespace aquafarm::agents {
 
 /// The bit that distinguishes the seeds of training and of evaluation (base/rng.h).
 using aquafarm::kEvaluationSeedBit;
-/// Seed of the farms for an evaluation with `seed`.
+/// Returns the seed of the farms for an evaluation with `seed`.
 constexpr std::uint64_t EvaluationSeed(std::uint64_t seed) { return seed | kEvaluationSeedBit; }
 
 /// Aggregate results of evaluating one policy.
 struct Evaluation {
   std::uint64_t seed{};                  ///< seed of the farms, with kEvaluationSeedBit
-  std::vector<EpisodeSummary> episodes;  ///< episodes 0, 1, 2, … of the seed, in order
+  std::vector<EpisodeSummary> episodes;  ///< finished episodes of the seed, in order
   double mean_return{};                  ///< per episode
   double return_per_step{};  ///< sum of returns / sum of steps (paper §4.2, see docs/model.md)
   double success_rate{};     ///< fraction of episodes that delivered every device
-  double mean_steps{};
-  double mean_delivered_health{};  ///< over episodes with a delivery; 0 if there are none
-  double mean_crashes{};
-  double mean_steps_in_disaster{};
-  double mean_energy{};    ///< of all ships per episode [kWh]
-  double mean_distance{};  ///< of all ships per episode [km]
-  double wall_s{};
-  bool complete{};  ///< false if it was stopped early
+  double mean_steps{};       ///< per episode
+  /// Health of the delivered devices, averaged over the episodes with a delivery; 0 if there is
+  /// none.
+  double mean_delivered_health{};
+  double mean_crashes{};            ///< per episode
+  double mean_steps_in_disaster{};  ///< ship-steps at a risk, per episode
+  double mean_energy{};             ///< of all ships per episode [kWh]
+  double mean_distance{};           ///< of all ships per episode [km]
+  double wall_s{};                  ///< duration of the evaluation [s]
+  bool complete{};                  ///< false if the evaluation was stopped early
   /// Number of distinct starts of the episodes (layout, ships, devices and disasters). Under a
   /// deterministic policy, episodes with equal starts differ only by later random draws.
   std::size_t distinct{};
   /// Losses over the episodes; unset if the scenario has no `money`, or if accounts are unknown.
   std::optional<Losses> losses;
-  std::optional<double>
-      mean_bound;  ///< mean upper bound of the return (team_bound.h); unset unless requested
-  DeviceOutcomes devices;  ///< outcomes of the devices; empty if unknown
+  /// Mean upper bound of the return (team_bound.h). Evaluate leaves it unset.
+  std::optional<double> mean_bound;
+  /// Outcomes of the devices. Evaluate leaves them empty.
+  DeviceOutcomes devices;
 };
 
 /// Returns the accounts of a farm whose episode has just ended; nullopt without `money`.
@@ -56,18 +59,18 @@ using AccountsOf = std::function<std::optional<Accounts>(std::int32_t farm)>;
 /// does not depend on the number of farms, except for the rounding of a network, which may differ
 /// between batch sizes.
 /// @param stop may be set by a signal handler; null if the evaluation cannot be stopped
-/// @param on_progress called periodically with the number of finished episodes
+/// @param episodes at least 1
+/// @param on_progress called every 5 s with the number of finished episodes
 /// @param policy_seed seed of the policy's random numbers; by default that of the episodes
-/// @param accounts_of returns the accounts of a farm, once for each episode. An empty function
-///        (accounts are not available through ROS services) leaves `losses` unset.
+/// @param accounts_of called once for each episode. If it is empty, `losses` is unset; through ROS
+///        services, accounts are not available
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
                     std::int32_t episodes, const std::atomic<bool>* stop = nullptr,
                     const std::function<void(std::size_t done)>& on_progress = {},
                     std::optional<std::uint64_t> policy_seed = std::nullopt,
                     const AccountsOf& accounts_of = {});
 
-/// Inputs of an evaluation. WriteEvaluation stores them so that the evaluation can be
-/// repeated.
+/// Inputs of an evaluation. WriteEvaluation stores them, so that the evaluation can be repeated.
 struct EvaluationContext {
   std::string policy;  ///< path of the policy file, or name of a built-in policy
   std::string algorithm;
@@ -78,8 +81,8 @@ struct EvaluationContext {
   std::int32_t farms{};
 };
 
-/// Writes `<prefix>.csv` (EpisodeColumns, AddedColumns, with losses also AccountColumns)
-/// and `<prefix>.json`. @throws StorageError
+/// Writes `<prefix>.csv` and `<prefix>.json`. The CSV file has the columns EpisodeColumns,
+/// AddedColumns and, if losses are known, AccountColumns. @throws StorageError
 void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
                      const EvaluationContext& context);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Greedy action and value estimate of a policy with ship 0 moved to each free cell: the arrows of
-/// Fig. 11 and the map of V_π.
+/// Greedy action and value estimate of a policy when ship 0 is moved to each free cell. They give
+/// the arrows of Fig. 11 and the map of V_π.
 
 #include <atomic>
 #include <cstdint>
@@ -25,14 +25,15 @@ struct GreedyAction {
 /// Max number of cells of a farm for which GreedyActions is supported.
 inline constexpr std::int32_t kMaxCells = 10000;
 
-/// Reason why GreedyActions does not support farms of a scenario; empty if it does.
+/// Returns the reason why GreedyActions does not support farms of a scenario; empty if it does.
 std::string WhyNoBestMoves(const Scenario& scenario);
 
-/// Greedy action of ship 0 in every free cell of a farm in its current state, row by row from the
-/// south-west. Other ships keep their cells.
-/// @param policy is reset first: a recurrent policy starts from an empty state
-/// @param stop ends it early with the cells done so far; null if it cannot be stopped
-/// @throws InputError if the policy does not fit
+/// Returns the greedy action of ship 0 in every free cell of a farm in its present state, row by
+/// row from the south-west. Other ships keep their cells. Empty if WhyNoBestMoves gives a reason or
+/// ship 0 is not active.
+/// @param policy is reset before it acts, so that a recurrent policy starts from an empty state
+/// @param stop if set, the cells so far are returned; null if the function cannot be stopped
+/// @throws InputError if the scenario does not have the observation types
 std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t observation_types,
                                         Policy& policy, const std::atomic<bool>* stop = nullptr);
 

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Statistics of the losses of evaluated episodes, with intervals. loss = insured - saved, as in
-/// farm/accounts.h.
+/// Statistics of the losses of evaluated episodes, with intervals. The loss of an episode is the
+/// insured value minus the saved value, see farm/accounts.h.
 ///
 /// - VaR, value at risk: the smallest x with P(loss > x) <= 5 %.
 /// - CVaR, conditional value at risk: the mean loss of the worst 5 % of the episodes. It is
 ///   VaR + E[max(0, loss - VaR)] / 5 % (Rockafellar and Uryasev, "Conditional value-at-risk for
 ///   general loss distributions", Journal of Banking & Finance 26, 2002).
 ///
-/// Episodes with equal starts are not independent, so the standard error is the cluster-robust one
-/// and the intervals are those of a cluster bootstrap: distinct starts are drawn with replacement,
-/// each with all its episodes, and the interval is from the 2.5 % to the 97.5 % percentile (Davison
-/// and Hinkley, "Bootstrap Methods and their Application", 1997, sections 3.8 and 5.3). If all
-/// starts are distinct, these are the ordinary ones. The intervals of CVaR are somewhat short if
-/// few episodes are in the tail. The random numbers are fixed: equal episodes give equal intervals.
+/// Episodes with equal starts are not independent. The standard error is therefore cluster-robust,
+/// and the intervals come from a cluster bootstrap: distinct starts are drawn with replacement,
+/// each with all its episodes, and the interval reaches from the 2.5 % to the 97.5 % percentile
+/// (Davison and Hinkley, "Bootstrap Methods and their Application", 1997, sections 3.8 and 5.3). If
+/// all starts are distinct, these are the ordinary standard error and bootstrap. The intervals of
+/// CVaR are somewhat too short if few episodes are in the tail. Equal episodes with equal seeds
+/// give equal intervals.
 
 #include <array>
 #include <cstddef>
@@ -30,14 +31,14 @@ namespace aquafarm::agents {
 /// VaR and CVaR are of the worst 1 / kTailInverse of the episodes.
 inline constexpr std::size_t kTailInverse = 20;
 
-/// An estimate with its 95 % interval, which is NaN for fewer than two distinct episodes.
+/// An estimate with its 95 % interval, which is NaN for fewer than two distinct starts.
 struct Estimate {
   double value{};
   double low{};
   double high{};
 };
 
-/// Money of evaluated episodes; amounts in the scenario's currency, means per episode.
+/// Losses of evaluated episodes. Amounts of type double are in the scenario's currency.
 struct Losses {
   std::string currency;
   std::size_t episodes{};
@@ -46,31 +47,31 @@ struct Losses {
   std::size_t distinct{};           ///< number of different starts
   std::array<Ledger, kDeviceKindCount> by_kind{};  ///< sums over all episodes
   Cents operating_cost{};                          ///< sum over all episodes
-  double mean_loss{};
-  double standard_error{};  ///< of mean_loss; NaN for fewer than two distinct episodes
+  double mean_loss{};                              ///< per episode
+  double standard_error{};  ///< of mean_loss; NaN for fewer than two distinct starts
   Estimate var;
   Estimate cvar;
-  /// Points (x, P(loss > x)) where the probability changes, x ascending. Before the first x the
-  /// probability is 1.
+  /// Points (x, P(loss > x)) at which the probability changes, in the order of x. Below the first x
+  /// the probability is 1.
   std::vector<std::pair<double, double>> exceedance;
 
-  /// Returns the sum over all kinds and episodes.
+  /// Returns the sums over all kinds and episodes.
   Ledger Total() const;
-  /// Converts a sum over all episodes to a mean per episode in the currency.
+  /// Converts a sum over all episodes to the mean per episode, in the scenario's currency.
   double Mean(Cents sum) const;
 };
 
 /// Returns the statistics of the accounts of episodes.
 /// @param starts [episodes] index of the start of each episode, in [0, episodes)
-/// @param seed of the bootstrap
+/// @param seed seed of the bootstrap
 Losses SummariseLosses(std::vector<Accounts> accounts, std::vector<std::size_t> starts,
                        const std::string& currency, std::uint64_t seed);
 
-/// Names of the columns of AppendAccounts, after a comma each:
+/// Returns the names of the columns of AppendAccounts, each after a comma:
 /// ",start,insured,saved,damaged,lost,operating_cost,energy_cost,monitoring_insured,…"
 std::string AccountColumns();
-/// Appends a comma and the value of each column; amounts have two decimals.
-/// @param start index of the episode's start
+/// Appends the value of each column, after a comma. Amounts have two decimals.
+/// @param start index of the episode's start; see Losses::starts
 void AppendAccounts(std::size_t start, const Accounts& accounts, std::string& text);
 
 /// Returns an amount with two decimals, exactly: "-0.05", "1234.00".

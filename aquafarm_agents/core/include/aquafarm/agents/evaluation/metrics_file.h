@@ -9,44 +9,52 @@
 
 namespace aquafarm::agents {
 
-/// Returns the CSV column names of an EpisodeSummary that files of version 0.1.0 have, with commas
-/// between them.
+/// Returns the names of the CSV columns of an EpisodeSummary that files of every version have,
+/// separated by commas.
 std::string EpisodeColumns();
-/// Returns the column names that were added later, each after a comma. They end each line.
+/// Returns the names of the columns that were added after version 0.1.0, each after a comma. They
+/// follow the older columns of a file.
 std::string AddedColumns();
 
-/// Appends an episode in the order of EpisodeColumns. Numbers parse back to the same bits.
+/// Appends the values of EpisodeColumns. Numbers parse back to the same bits.
 void AppendEpisode(const EpisodeSummary& result, std::string& text);
-/// Appends the first `count` values of AddedColumns, each after a comma; by default all.
+/// Appends the first `count` values of AddedColumns (by default all), each after a comma.
 void AppendAdded(const EpisodeSummary& result, std::string& text, std::size_t count = SIZE_MAX);
 
-/// metrics.csv: one line per episode, `number,total_steps,<EpisodeColumns>,exploration,
-/// learning_rate,loss<AddedColumns>`. A file of an earlier version continues with the columns that
-/// it has. It contains no wall time, so that a resumed run writes the same bytes.
+/// Writes metrics.csv: a line of column names, then one line per episode, `number,total_steps,
+/// <EpisodeColumns>,exploration,learning_rate,loss<AddedColumns>`. A file of an earlier version is
+/// continued with the columns that it has. The file contains no wall time, so that an interrupted
+/// and resumed run writes the same bytes as an uninterrupted one.
 class MetricsFile {
  public:
   /// Creates the file, or truncates an existing one. @throws StorageError
   explicit MetricsFile(std::string path);
-  /// Truncates the file to `size` bytes and continues there.
-  /// @throws InputError if it is shorter or has other columns; StorageError
+  /// Truncates an existing file to `size` bytes and continues there.
+  /// @throws InputError if the file is shorter or has other columns; StorageError if it cannot be
+  ///   opened or truncated
   MetricsFile(std::string path, std::uint64_t size);
+  /// Closes the file. Buffered lines are lost; call Flush before.
   ~MetricsFile();
   MetricsFile(const MetricsFile&) = delete;
   MetricsFile& operator=(const MetricsFile&) = delete;
 
+  /// Appends an episode to the buffer, which is flushed from time to time.
+  /// @param number number of the episode in the training, from 1
+  /// @param total_steps farm steps of the training so far
+  /// @throws StorageError
   void Append(std::uint64_t number, std::uint64_t total_steps, const EpisodeSummary& result,
               const LearnerStatus& status);
   /// Writes all buffered lines to the operating system. @throws StorageError
   void Flush();
-  /// Flushes and syncs to the disk. @throws StorageError
+  /// Flushes, then syncs the file to the disk. @throws StorageError
   void Sync();
-  /// Size in bytes, including lines that are not flushed yet.
+  /// Returns the size of the file [bytes], including lines that are not flushed yet.
   std::uint64_t size() const { return flushed_ + buffer_.size(); }
 
  private:
   std::string path_;
   int file_{-1};
-  std::size_t added_columns_{SIZE_MAX};  // max number of AddedColumns
+  std::size_t added_columns_{SIZE_MAX};  // number of AddedColumns in the file, or more
   std::uint64_t flushed_{};
   std::string buffer_;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Trace of one episode of a policy, and its greedy action in each cell. Fig. 11 draws them as a
-/// coloured route and one arrow per cell.
+/// The route of ship 0 in one episode of a policy, and the policy's greedy action in each cell.
+/// Fig. 11 draws them as a coloured line and one arrow per cell.
 
 #include <atomic>
 #include <functional>
@@ -17,40 +17,42 @@
 
 namespace aquafarm::agents {
 
-/// Makes a new policy for farms of a spec, with empty recurrent state.
+/// Makes a new policy for farms of a spec.
 using MakePolicyFor = std::function<std::unique_ptr<Policy>(const EnvironmentSpec&)>;
 
 /// State of the farm before a step, or at the end of the episode.
 struct RouteStep {
-  Cell cell{};  ///< of ship 0
-  std::int32_t aboard{};
-  std::int32_t delivered{};
-  float episode_return{};  ///< sum of the rewards so far
+  Cell cell{};               ///< of ship 0
+  std::int32_t aboard{};     ///< devices aboard ship 0
+  std::int32_t delivered{};  ///< devices delivered so far, by all ships
+  float episode_return{};    ///< sum of the rewards of all ships so far
   std::vector<Disaster> disasters;
-  std::uint8_t action{};  ///< taken in this step; unused in the last entry
+  std::uint8_t action{};  ///< action of ship 0 in this step; unused in the last entry
 };
 
+/// A recorded episode.
 struct Route {
   std::shared_ptr<const Layout> layout;
-  std::vector<RouteStep> steps;
-  std::vector<std::uint8_t>
-      actions;  ///< [steps, agents] of all agents: enough to replay the episode
+  std::vector<RouteStep> steps;  ///< [number of steps + 1]
+  /// [number of steps, agents] actions of all agents, from which the episode can be replayed
+  std::vector<std::uint8_t> actions;
   EpisodeSummary result;
-  /// Greedy action of ship 0 in every free cell, at the episode's start and right after the first
-  /// pickup (empty if there is no pickup). A recurrent policy starts from an empty state.
+  /// GreedyActions at the start of the episode, and right after the first pickup of ship 0 (empty
+  /// if there is none).
   std::vector<GreedyAction> at_start;
   std::vector<GreedyAction> after_pickup;
 };
 
 /// Plays one episode of EvaluationSeed(seed) with all agents and records the route of ship 0.
-/// @param stop may be set by a signal handler: the route then ends early; null if it cannot be
-///        stopped
+/// @param stop may be set by a signal handler; the route then ends early. Null if the function
+///        cannot be stopped
 /// @throws InputError if the scenario or the policy does not fit
 Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t observation_types,
                  const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
                  const std::atomic<bool>* stop = nullptr);
 
-/// Writes JSON with the chart, one entry per step, and the greedy actions. @throws StorageError
+/// Writes a JSON file with the chart, one entry per step, and the greedy actions.
+/// @throws StorageError
 void WriteRoute(const std::string& path, const Route& route, const EnvironmentSpec& spec);
 
 }  // namespace aquafarm::agents

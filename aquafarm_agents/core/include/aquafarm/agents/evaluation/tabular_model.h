@@ -3,13 +3,15 @@
 
 /// The decision process of a farm's tabular states as matrices (Eqs. 4, 9 and 11).
 ///
-///   row    a state: the ship's cell and the status of each device; the last row is the end
+///   row    a state: the ship's cell and the status of each device. The last row is the end of the
+///          episode
 ///   T      [rows, rows], T_ij = Σ_a π(a | i) P(j | i, a), the transition matrix under a policy
-///   π      [rows, actions]
+///   π      [rows − 1, actions]
 ///
-/// Moves, pickup and drop-off are deterministic, so P(j | i, a) is 0 or 1. Disasters and
-/// damage change rewards, not these states; an episode's other ends (disasters over, step limit)
-/// are left out, so only delivering every device leads to the last row, which leads to itself.
+/// Moves, pickup and drop-off are deterministic, so P(j | i, a) is 0 or 1. Disasters and damage
+/// change rewards, but not these states. The model has no step limit, and episodes do not end with
+/// the disasters. Only the delivery of the last device therefore leads to the last row, which leads
+/// to itself.
 
 #include <array>
 #include <cstdint>
@@ -23,7 +25,7 @@
 
 namespace aquafarm::agents {
 
-/// Probabilities of the actions by row (Eq. 9).
+/// Probability of each action, by row (Eq. 9).
 using PolicyMatrix = std::vector<std::array<double, kActionCount>>;
 
 /// An entry of a sparse matrix.
@@ -33,50 +35,59 @@ struct MatrixEntry {
   double value{};
 };
 
-/// Every state that a farm can be in, and where each action leads.
+/// The states that a ship can reach from the start of an episode, and where each action leads.
 class TabularModel {
  public:
-  /// @throws InputError unless one ship decides, on a fixed layout with a tabular index
+  /// @throws InputError unless the scenario has one ship, no other agent, a fixed layout and few
+  ///   enough states for a table
   explicit TabularModel(const Scenario& scenario);
 
-  /// Number of states and the end.
+  /// Returns the number of rows: that of the states, plus 1 for the end.
   std::size_t rows() const { return states_.size() + 1; }
+  /// Returns the row of the end.
   std::size_t end() const { return states_.size(); }
-  /// Tabular index of each row but the last.
+  /// Returns the tabular index of each row except the last, [rows() - 1].
   const std::vector<std::uint32_t>& states() const { return states_; }
+  /// Returns the row to which an action leads. @param row [0, end())
   std::size_t next(std::size_t row, std::size_t action) const { return next_[row][action]; }
+  /// Returns the legal actions of a state. @param row [0, end())
   ActionMask legal(std::size_t row) const { return legal_[row]; }
 
-  /// Row of a tabular index. @throws InputError if no episode reaches that state
+  /// Returns the row of a tabular index. @throws InputError if no episode reaches that state
   std::size_t RowOf(std::uint32_t state) const;
 
-  /// Transition matrix under a policy (Eq. 4), by row. @param policy [rows() - 1] or more
+  /// Returns the entries of the transition matrix T under a policy (Eq. 4), by row.
+  /// @param policy [rows() - 1] or more
   std::vector<MatrixEntry> Transitions(const PolicyMatrix& policy) const;
 
-  /// V* by value iteration (Eq. 11), [rows()], without a step limit.
+  /// Returns V* by value iteration (Eq. 11), [rows()], without a step limit.
   /// @param discount in [0, 1]
-  /// @throws InputError where rewards depend on more than the tabular state: disasters, damage
+  /// @throws InputError if the iteration does not converge, or if rewards depend on more than the
+  ///   tabular state: with disasters or damage
   std::vector<double> OptimalValues(double discount) const;
 
  private:
-  std::string not_finite_;  // why rewards are no function of state and action; empty: they are
+  std::string not_finite_;  // why rewards do not depend on state and action alone; empty if they do
   std::vector<std::uint32_t> states_;
   std::vector<std::array<std::size_t, kActionCount>> next_;
   std::vector<std::array<float, kActionCount>> reward_;
   std::vector<ActionMask> legal_;
 };
 
-/// Policy matrix of a table of action values: ε-greedy (greedy with ε = 0) or Boltzmann.
+/// Returns the policy matrix of a table of action values: Boltzmann, or ε-greedy (greedy if ε = 0).
 /// @param table [states, kActionCount] by tabular index
 /// @param level ε, or the temperature in units of reward
-/// @param mask_illegal never draws an illegal action
+/// @param mask_illegal whether illegal actions have probability 0
 PolicyMatrix MakePolicyMatrix(const TabularModel& model, const std::vector<float>& table,
                               ExplorationKind kind, double level, bool mask_illegal);
 
 /// Writes PREFIX_policy.mtx and PREFIX_transitions.mtx (Matrix Market, 1-based) and
-/// PREFIX_states.csv (row, tabular index, V*; the latter empty where it is not defined).
-/// @param checkpoint of a table @param policy such as "epsilon_greedy:0.1" or "boltzmann:1"
-/// @throws InputError when policy or scenario do not fit; StorageError
+/// PREFIX_states.csv (row, tabular index, V*). V* is empty if OptimalValues does not support the
+/// scenario.
+/// @param checkpoint checkpoint of a tabular learner
+/// @param policy such as "epsilon_greedy:0.1" or "boltzmann:1"
+/// @param discount discount of V*
+/// @throws InputError if the checkpoint, the policy or the scenario does not fit; StorageError
 void WriteMatrices(const std::string& prefix, const Scenario& scenario,
                    const Checkpoint& checkpoint, const std::string& policy, double discount);
 

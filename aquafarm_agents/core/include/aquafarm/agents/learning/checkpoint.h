@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// File format of a complete learner or of a policy alone. Little-endian:
+/// File format of a learner with its complete state, or of a policy alone. All numbers are
+/// little-endian:
 ///
 ///   magic "aquaCKPT" | u32 format | u32 0 | u64 bytes of index | u64 bytes of sections |
 ///   u64 checksum of all that follows | index (CBOR: metadata and section table) | raw sections
 ///
-/// Files are written by WriteFileAtomically, so a file is never incomplete.
+/// WriteFileAtomically writes the files, so a file is never incomplete.
 
 #include <cstdint>
 #include <map>
@@ -20,14 +21,15 @@
 
 namespace aquafarm::agents {
 
+/// The only format that this version reads and writes.
 inline constexpr std::uint32_t kCheckpointFormat = 2;
 
 /// Metadata of a checkpoint.
 struct CheckpointInfo {
-  std::string kind;          ///< Checkpoint::kTraining or kPolicy
+  std::string kind;          ///< Checkpoint::kTraining or Checkpoint::kPolicy
   std::string algorithm;     ///< such as q_learning
   std::string options;       ///< resolved options of the learner
-  std::string version;       ///< version of the suite that wrote it
+  std::string version;       ///< version of the suite that wrote the file
   std::uint64_t seed{};      ///< seed of the training
   EnvironmentSpec spec;      ///< spec of the training farms, without the YAML text
   std::uint64_t steps{};     ///< farm steps of training so far
@@ -36,31 +38,33 @@ struct CheckpointInfo {
 
 /// Content of a checkpoint file: a learner during a training, or a policy.
 struct Checkpoint : CheckpointInfo {
-  /// A number of a section of named numbers.
+  /// A number in a section of named numbers.
   using Number = std::variant<double, std::uint64_t>;
 
   std::map<std::string, std::string> sections;  ///< raw bytes by name
-  /// Further sections, whose memory belongs to the learner; see LendArray.
+  /// Further sections. They refer to memory of the learner; see LendArray.
   std::map<std::string, std::string_view> lent;
-  /// True if the checkpoint is written before the learner changes, so that large arrays need no
-  /// copy.
+  /// Whether LendArray may refer to the learner's arrays instead of copying them. Set it only if
+  /// the checkpoint is written before the learner changes.
   bool lends{};
 
   inline static constexpr const char* kTraining = "training";
   inline static constexpr const char* kPolicy = "policy";
 
+  /// Returns whether there is a section with this name.
   bool Has(const std::string& name) const {
     return sections.count(name) != 0 || lent.count(name) != 0;
   }
-  /// @throws InputError if there is no such section
+  /// Returns the bytes of a section. @throws InputError if there is no such section
   std::string_view Section(const std::string& name) const;
 
+  /// Sets a section to a copy of `values`.
   template <typename T>
   void SetArray(const std::string& name, const std::vector<T>& values) {
     sections[name] = BytesOf(values);
   }
-  /// As SetArray. If `lends`, the section refers to `values`, which must outlive the checkpoint and
-  /// not change before it is written.
+  /// As SetArray, but if `lends` is true the section refers to `values`, which must then neither
+  /// change nor be destroyed before the checkpoint is written.
   template <typename T>
   void LendArray(const std::string& name, const std::vector<T>& values) {
     if (!lends) return SetArray(name, values);
@@ -68,7 +72,8 @@ struct Checkpoint : CheckpointInfo {
   }
   template <typename T>
   void LendArray(const std::string& name, std::vector<T>&& values) = delete;
-  /// @throws InputError unless the section has exactly `size` values
+  /// Copies a section to `values`.
+  /// @throws InputError if there is no such section or it does not have exactly `size` values
   template <typename T>
   void GetArray(const std::string& name, std::size_t size, std::vector<T>& values) const {
     const std::string_view bytes = Section(name);
@@ -79,12 +84,15 @@ struct Checkpoint : CheckpointInfo {
 
   /// Sets a section of named numbers, as a CBOR map.
   void SetNumbers(const std::string& name, const std::map<std::string, Number>& numbers);
+  /// Returns the numbers of a section by name.
   /// @throws InputError if the section is missing or damaged
   std::map<std::string, Number> GetNumbers(const std::string& name) const;
 
-  /// Adds the sections of a part, such as the learner of one agent, with a prefix.
+  /// Adds the sections of a part, such as the learner of one agent, with `prefix` before their
+  /// names.
   void AddPart(const std::string& prefix, Checkpoint&& part);
-  /// Returns the sections that AddPart added with a prefix, with the metadata of this checkpoint.
+  /// Returns a checkpoint with the sections that AddPart added with `prefix`, and with the metadata
+  /// of this checkpoint.
   Checkpoint Part(const std::string& prefix) const;
 
  private:
@@ -95,7 +103,7 @@ struct Checkpoint : CheckpointInfo {
   static void CheckSize(const std::string& name, std::size_t got, std::size_t expected);
 };
 
-/// Writes a checkpoint file. @throws StorageError; the file is then unchanged
+/// Writes a checkpoint file. @throws StorageError as WriteFileAtomically
 void WriteCheckpoint(const std::string& path, const Checkpoint& checkpoint);
 
 /// Reads a checkpoint file.
@@ -109,7 +117,10 @@ void CheckContinues(const Checkpoint& checkpoint, const std::string& path,
                     const std::string& algorithm, const std::string& options, std::uint64_t seed,
                     const EnvironmentSpec& spec);
 
-/// Checks that a property of a policy is that of the farms it plays on.
+/// Checks that a property of a policy equals that of the farms on which it plays.
+/// @param what name of the property, for the message
+/// @param got value of the policy
+/// @param expected value of the farms
 /// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
 void CheckFit(const Checkpoint& policy, const EnvironmentSpec& spec, const std::string& what,
               const std::string& got, const std::string& expected);

@@ -8,7 +8,7 @@
 
 namespace aquafarm::agents {
 
-/// Every ship holds its cell in every step: the reference for what a rescue saves.
+/// Policy with which every ship holds its cell in every step. Rescues are compared with it.
 class DoNothingPolicy final : public Policy {
  public:
   explicit DoNothingPolicy(const EnvironmentSpec& spec)

@@ -4,13 +4,14 @@
 /// Exploration strategies of learners (Fig. 7).
 ///
 ///   ε-greedy (Eq. 7)   a uniform action with probability ε, else the greedy action
-///   Boltzmann (Eq. 8)  P(a) ∝ exp(Q(a) / T); T → 0 is greedy, T → ∞ uniform. T has the unit of the
-///                      reward. The paper's equation has no temperature, which is T = 1 here
+///   Boltzmann (Eq. 8)  P(a) ∝ exp(Q(a) / T); T → 0 is greedy, T → ∞ is uniform. T has the unit of
+///                      the reward. The paper's equation has no temperature; it is the case T = 1
 ///   entropy            a policy learner samples its own policy and maximizes the return plus
-///                      c · H(π); c follows the schedule
-///   curiosity          any of them, with an intrinsic reward for prediction errors; curiosity.h
+///                      c · H(π)
+///   curiosity          one of the above, with an intrinsic reward for prediction errors; see
+///                      curiosity.h
 ///
-/// ε and T follow a Schedule. Every agent of every farm has its own random stream.
+/// ε, T and c follow a Schedule. Every agent of every farm has its own random stream.
 
 #include <array>
 #include <cstdint>
@@ -28,46 +29,50 @@ namespace aquafarm::agents {
 /// Mask of all actions of the action space.
 inline constexpr ActionMask kAllActions = (1U << kActionCount) - 1;
 
-/// How a learner explores: random actions with probability ε, Boltzmann (Eq. 8), or samples of the
-/// policy with an entropy bonus.
+/// The strategies that the head of this file describes, without curiosity.
 enum class ExplorationKind : std::uint8_t { kEpsilonGreedy, kBoltzmann, kEntropy };
 inline constexpr int kExplorationKindCount = 3;
 std::string_view ToString(ExplorationKind value);
 
+/// An exploration strategy with its schedules.
 struct ExplorationOptions {
   ExplorationKind kind{ExplorationKind::kEpsilonGreedy};
   Schedule level{ScheduleKind::kLinear, 1.0, 0.05, 0.5};  ///< ε, temperature or entropy coefficient
   /// Mean intrinsic reward of a step [reward]; 0 disables curiosity.
   Schedule curiosity{ScheduleKind::kConstant, 0.0};
+  /// Returns whether the intrinsic reward is above 0 at some time of the run.
   bool is_curious() const {
     const bool changes = curiosity.kind != ScheduleKind::kConstant;
     return curiosity.start > 0.0 || (changes && curiosity.end > 0.0);
   }
 };
 
-/// Which learners an exploration is for.
+/// Kinds of learners, with the strategies that they accept.
 enum class ExplorationOf : std::uint8_t {
   kValues,    ///< learners of action values: epsilon_greedy, boltzmann
   kPolicies,  ///< learners of policies: entropy
-  kAny,
+  kAny,       ///< all strategies
 };
 
-/// Reads "epsilon_greedy" or "boltzmann", alone or with a schedule: "epsilon_greedy:0.1",
-/// "boltzmann:exponential:10:0.5:0.5". The prefix "icm+" adds curiosity, optionally with a schedule
-/// of its weight: "icm+epsilon_greedy:0.1", "icm:linear:2:0:0.5+boltzmann". "entropy" is for policy
-/// learners: "entropy:linear:0.02:0:1", "icm+entropy:0.01".
-/// @throws InputError listing the allowed forms
+/// Parses "epsilon_greedy", "boltzmann" or "entropy", alone or with a schedule:
+/// "epsilon_greedy:0.1", "boltzmann:exponential:10:0.5:0.5", "entropy:linear:0.02:0:1". The prefix
+/// "icm+" adds curiosity, optionally with a schedule of its weight: "icm+epsilon_greedy:0.1",
+/// "icm:linear:2:0:0.5+boltzmann".
+/// @param learners kind of the learner that explores
+/// @throws InputError if `text` has another form, names a strategy that `learners` do not accept,
+///   or has a value out of range
 ExplorationOptions ParseExploration(const std::string& text,
                                     ExplorationOf learners = ExplorationOf::kValues);
+/// Returns the text from which ParseExploration reads the same options.
 std::string ToString(const ExplorationOptions& options);
 
-/// Greedy action and its value. Ties go to the lowest action number.
+/// A greedy action and its value.
 struct Best {
   std::uint8_t action{};
   float value{};
 };
 
-/// Greedy action among the allowed ones.
+/// Returns the greedy action among the allowed ones. Ties go to the lowest action number.
 /// @param values [kActionCount]
 /// @param allowed at least one bit of kAllActions
 inline Best BestOf(const float* values, ActionMask allowed) {
@@ -93,8 +98,11 @@ inline Best BestOf(const float* values, ActionMask allowed) {
 /// @param allowed at least one bit of kAllActions
 std::uint8_t DrawAction(ActionMask allowed, RandomStream& stream);
 
-/// Action probabilities of Eq. 8, numerically stable for finite values and temperature > 0;
-/// forbidden actions have probability 0.
+/// Returns the action probabilities of Eq. 8 with temperature T. Forbidden actions have probability
+/// 0. No intermediate result overflows.
+/// @param values [kActionCount], finite
+/// @param allowed at least one bit of kAllActions
+/// @param temperature above 0, on the scale of the values
 std::array<double, kActionCount> BoltzmannProbabilities(const float* values, ActionMask allowed,
                                                         double temperature);
 
@@ -102,17 +110,18 @@ std::array<double, kActionCount> BoltzmannProbabilities(const float* values, Act
 class Explorer {
  public:
   /// @param slots farms × agents; slot i draws from stream i of (seed, exploration)
-  /// @param value_scale scale of the values passed to Choose: values per unit of reward
+  /// @param value_scale scale of the values passed to Choose, per unit of reward
   Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t slots,
            double value_scale = 1.0);
 
-  /// @param progress of the run, [0, 1]
+  /// Sets ε or the temperature from the schedule. @param progress of the run, [0, 1]
   void SetProgress(double progress);
-  /// Current ε or temperature.
+  /// Returns the current ε or temperature.
   double level() const { return level_; }
 
+  /// Returns the exploratory action of an agent.
   /// @param values [kActionCount]
-  /// @param best of the same values and mask
+  /// @param best BestOf(values, allowed)
   std::uint8_t Choose(const float* values, ActionMask allowed, const Best& best, std::size_t slot) {
     if (kind_ == ExplorationKind::kBoltzmann) return ChooseBoltzmann(values, allowed, slot);
     RandomStream& stream = streams_[slot];

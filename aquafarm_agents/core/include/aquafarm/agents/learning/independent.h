@@ -12,19 +12,21 @@
 
 namespace aquafarm::agents {
 
-/// Makes the learner of one agent. @param spec of farms with a single agent
+/// Makes the learner of one agent. `spec` describes farms with a single agent.
 using MakeAgentLearner =
     std::function<std::unique_ptr<Learner>(const EnvironmentSpec& spec, std::uint64_t seed)>;
 
-/// Makes one learner per agent of a farm, each with its own random streams.
-/// @throws InputError from `make`
+/// Makes a learner that consists of one learner per agent of a farm, each with its own random
+/// streams.
+/// @throws InputError as `make`
 std::unique_ptr<Learner> MakeIndependent(const EnvironmentSpec& spec, std::uint64_t seed,
                                          const MakeAgentLearner& make);
 
+/// Makes the policy of one agent from its part of a checkpoint.
 using MakeAgentPolicy =
     std::function<std::unique_ptr<Policy>(const Checkpoint&, const EnvironmentSpec&)>;
 
-/// Makes the policy that combines the policies of all agents.
+/// Makes a policy that consists of one policy per agent, from a checkpoint of independent learners.
 /// @throws InputError with the reason if the policy does not fit farms of `spec`
 std::unique_ptr<Policy> MakeIndependentPolicy(const Checkpoint& checkpoint,
                                               const EnvironmentSpec& spec,

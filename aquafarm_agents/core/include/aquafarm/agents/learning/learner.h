@@ -21,37 +21,40 @@ class LearnerFailed : public std::runtime_error {
 
 /// Training statistics of a learner.
 struct LearnerStatus {
-  float loss{};         ///< moving average of the squared TD error [reward²]; NaN before the first
-  float exploration{};  ///< ε, temperature, or mean entropy of a policy [nats]
+  float loss{};  ///< moving average of the squared error of the values [reward²]; NaN before
+                 ///< the first update
+  float exploration{};  ///< ε, temperature, or the mean entropy of the policy [nats]
   float learning_rate{};
 };
 
-/// Learns from the transitions of N farms × S agents. Independent of the simulator and the
-/// transport.
+/// Learns from the transitions of N farms with S agents each. It does not depend on how the farms
+/// are simulated or reached.
 class Learner {
  public:
   virtual ~Learner() = default;
 
-  /// The observation types it requires, a mask of ObservationTypeBits.
+  /// Returns the observation types that it requires, a mask of ObservationTypeBits.
   virtual std::uint8_t observation_types() const = 0;
-  /// All options with their effective values. Learners with equal options learn identically.
+  /// Returns all options with their effective values, as key=value pairs. Learners of the same
+  /// algorithm with equal options and seeds learn identically on the same farms.
   virtual std::string options() const = 0;
 
-  /// Learns from the transition that ended in `results`, then chooses the next exploratory actions.
-  /// Slots with is_first = 1 hold no transition and are skipped. Only termination stops
-  /// bootstrapping; truncation does not.
+  /// Learns from the transitions that ended in `results`, then chooses the next exploratory
+  /// actions. Farms with is_first = 1 have no transition and are skipped. Targets bootstrap after
+  /// truncation, but not after termination.
   /// @param progress of the run, [0, 1]; drives the schedules
   /// @param actions is resized to [N, S]
-  /// @throws LearnerFailed
+  /// @throws LearnerFailed if learning cannot continue
   virtual void Step(const StepResults& results, double progress,
                     std::vector<std::uint8_t>& actions) = 0;
 
+  /// Returns the current training statistics.
   virtual LearnerStatus status() const = 0;
 
-  /// Snapshot of the current greedy policy. It is independent of the learner's lifetime.
+  /// Returns the current greedy policy as a copy, which the learner no longer changes.
   virtual std::unique_ptr<Policy> GreedyPolicy() const = 0;
 
-  /// Adds the sections that MakePolicy of the same algorithm needs.
+  /// Adds the sections from which Algorithm::make_policy creates the greedy policy.
   virtual void SavePolicy(Checkpoint& checkpoint) const = 0;
   /// Adds the complete state: a learner restored from it continues bit-identically.
   virtual void Save(Checkpoint& checkpoint) const = 0;

@@ -9,20 +9,22 @@
 
 namespace aquafarm::agents {
 
-/// Which actions RANDOM draws from.
+/// The actions among which RANDOM draws.
 enum class RandomActions : std::uint8_t {
   kAll,        ///< every action, legal or not
-  kReachable,  ///< legal actions, without moves onto rocks, islands or off the map (§4.2)
+  kReachable,  ///< legal actions except moves onto a rock, an island or off the map (§4.2)
 };
 inline constexpr int kRandomActionsCount = 2;
 std::string_view ToString(RandomActions value);
 
-/// Reads RANDOM's options: "actions=all" (default) or "actions=reachable". @throws InputError
+/// Parses the options of RANDOM: "actions=all" (the default) or "actions=reachable".
+/// @throws InputError on any other option or value
 RandomActions ParseRandomActions(const std::string& options);
-/// ObservationTypeBits that RANDOM reads with these options. @throws InputError
+/// Returns the ObservationTypeBits that RANDOM requires with these options.
+/// @throws InputError as ParseRandomActions
 std::uint8_t RandomObservationTypes(const std::string& options);
 
-/// RANDOM of §4.2: draws each action of its set with the same probability.
+/// The policy RANDOM of §4.2: draws each action of RandomActions with the same probability.
 class RandomPolicy final : public Policy {
  public:
   explicit RandomPolicy(const EnvironmentSpec& spec, RandomActions actions = RandomActions::kAll)
@@ -41,13 +43,13 @@ class RandomPolicy final : public Policy {
   AgentRng streams_;
 };
 
-/// RANDOM behind the Learner interface. It draws its actions and does not learn.
+/// RANDOM with the interface of a learner. It does not learn.
 class RandomLearner final : public Learner {
  public:
   /// @throws InputError on an unknown option or value
   RandomLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
   std::uint8_t observation_types() const override { return policy_.observation_types(); }
-  /// Empty for `all`, as in checkpoints from before the option existed.
+  /// Returns an empty text for actions=all, as in checkpoints from before the option existed.
   std::string options() const override;
   void Step(const StepResults& results, double progress,
             std::vector<std::uint8_t>& actions) override;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Replay buffer: a ring of time steps (*moments*). Each contains one observation of every agent of
-/// every farm (a *slot*). Every observation is stored once: a transition is a pair of consecutive
-/// time steps, and a sequence is a run of them.
+/// Replay buffer: a ring of time steps. A time step contains one observation for each slot, that
+/// is, for each agent of each farm. Every observation is stored once: a transition consists of two
+/// consecutive time steps, a sequence of several.
 ///
 ///   time step     t            t+1          t+2
 ///   observation   o_t          o_t+1        o_t+2
-///   action        a_t          a_t+1        …         chosen from o_t
-///   reward        r_t          r_t+1        …         that led to o_t
+///   action        a_t          a_t+1        …         a_t was chosen at o_t
+///   reward        r_t          r_t+1        …         r_t was received on the way to o_t
 ///
 /// The last time step of an episode has an end reason. Its action is unused, and the next time step
-/// is the first of another episode. If a time step has is_first = 1 and no end reason precedes it,
-/// the farms were lost in mid-episode: the outcome of the last action before it is unknown.
+/// is the first of another episode. If a time step has is_first = 1 and the one before it has no
+/// end reason, the farms were lost in mid-episode. The outcome of the last action is then unknown.
 
 #include <cstdint>
 #include <string>
@@ -27,11 +27,14 @@ namespace aquafarm::agents {
 /// Sum tree of priorities (Schaul et al. 2016, "Prioritized experience replay").
 class SumTree {
  public:
+  /// All priorities are 0 at first.
   explicit SumTree(std::size_t leaves);
   void Set(std::size_t leaf, float priority);
   float Get(std::size_t leaf) const { return nodes_[leaves_ + leaf]; }
+  /// Returns the sum of all priorities.
   float Total() const { return nodes_[1]; }
-  /// Leaf whose interval of the cumulative priority contains `mass` in [0, Total()).
+  /// Returns the leaf at which the cumulative sum of the priorities first exceeds `mass`.
+  /// @param mass in [0, Total())
   std::size_t Find(float mass) const;
 
  private:
@@ -48,16 +51,17 @@ struct ReplayOptions {
   std::size_t recurrent_size{};    ///< values of an agent's recurrent state; 0 if there is none
 };
 
-/// A transition over n steps, or fewer if the episode ended or was lost.
+/// A transition over n steps, or fewer if the episode ended or the farms were lost.
 struct Transition {
-  std::size_t from{};  ///< row of the observation; see Replay::observation
+  std::size_t from{};  ///< row of the first observation; see Replay::observation
   std::size_t to{};    ///< row of the observation from which the target bootstraps
   std::uint8_t action{};
-  float reward{};    ///< discounted sum over the steps
+  float reward{};    ///< discounted sum of the rewards of the steps
   float discount{};  ///< factor of the value at `to`; 0 after termination
 };
 
-/// A transition of all agents of a farm over n steps, or fewer if their episode ended.
+/// A transition of all agents of a farm over n steps, or fewer if the episode ended or the farms
+/// were lost.
 struct JointTransition {
   std::size_t to{};  ///< row of the farm's first agent at the time step of the bootstrap value
   float discount{};  ///< factor of the value at `to`, for agents that are not done there
@@ -71,8 +75,8 @@ class Replay {
 
   /// Adds a time step.
   /// @param observations [slots, observation_size]
-  /// @param recurrent_state [slots, recurrent_size] recurrent state of each agent before this
-  /// time step
+  /// @param recurrent_state [slots, recurrent_size] of each agent before this time step; may be
+  ///   null if recurrent_size is 0
   void Add(const StepResults& results, const Scalar* observations,
            const float* recurrent_state = nullptr);
   /// Adds the chosen actions to the newest time step. @param actions [slots]
@@ -83,35 +87,40 @@ class Replay {
   std::size_t max_size() const { return max_size_; }
   std::size_t slots() const { return options_.slots; }
 
-  /// True if a transition (or a run of `steps` time steps) begins here: `steps` later time steps
-  /// are stored, the episode is not over, and the next time step belongs to the same episode (it
-  /// does not if the farms were lost in between).
+  /// Returns whether a transition begins at this time step: at least `steps` later time steps are
+  /// stored, the agent is not done, and the next time step belongs to the same episode. (It does
+  /// not if the farms were lost in between.)
   /// @param age number of time steps after the oldest stored one, [0, size())
   bool Begins(std::size_t age, std::size_t slot, std::size_t steps) const {
     return age + steps < size_ && end_reasons_[Row(age, slot)] == 0 &&
            is_first_[Row(age + 1, slot)] == 0;
   }
-  /// True if Begins holds for any agent of a farm. @param first slot of the farm's first agent
+  /// Returns whether Begins holds for any agent of a farm. @param first slot of the farm's first
+  /// agent
   bool BeginsForAny(std::size_t age, std::size_t first, std::size_t steps) const {
     for (std::size_t agent = 0; agent < static_cast<std::size_t>(options_.agents); ++agent) {
       if (Begins(age, first + agent, steps)) return true;
     }
     return false;
   }
-  /// Transition over `steps` steps from a row for which Begins holds.
+  /// Returns the transition over `steps` steps that begins at a time step. Begins must hold there.
+  /// @param discount γ per step
   Transition At(std::size_t age, std::size_t slot, std::size_t steps, float discount) const;
 
-  /// Transition of all agents of a farm over `steps` steps.
+  /// Returns the transition of all agents of a farm over `steps` steps. BeginsForAny must hold
+  /// there.
   /// @param first slot of the farm's first agent
-  /// @param rewards [agents] receives each agent's discounted sum over the steps
+  /// @param discount γ per step
+  /// @param rewards receives the discounted sum of each agent's rewards, [agents]
   JointTransition JointAt(std::size_t age, std::size_t first, std::size_t steps, float discount,
                           float* rewards) const;
 
-  /// Row of a slot of a time step in the arrays. It is stable while the time step is stored.
+  /// Returns the row of the arrays with the data of a slot at a time step. The row does not change
+  /// while the time step is stored.
   std::size_t Row(std::size_t age, std::size_t slot) const {
     return ((oldest_ + age) % max_size_) * options_.slots + slot;
   }
-  /// Age of the time step that contains a row.
+  /// Returns the age of the time step that contains a row.
   std::size_t Age(std::size_t row) const {
     return (row / options_.slots + max_size_ - oldest_) % max_size_;
   }
@@ -128,7 +137,7 @@ class Replay {
   EndReason reason(std::size_t row) const { return static_cast<EndReason>(end_reasons_[row]); }
   bool is_first(std::size_t row) const { return is_first_[row] != 0; }
 
-  /// Memory of the arrays [bytes].
+  /// Returns the size of the arrays [bytes].
   std::size_t bytes() const;
   void Save(Checkpoint& checkpoint) const;
   /// @throws InputError if sections are missing or do not fit

@@ -7,11 +7,13 @@
 
 namespace aquafarm::agents {
 
-/// A learner whose farms may be divided into shards, and these among the ranks of a process group.
+/// A learner whose farms may be divided into shards. The shards may be divided among the ranks of a
+/// process group.
 class ShardedLearner : public Learner {
  public:
-  /// Number of calls of Step between two at which the training may count, save and end. More than
-  /// 1 if there are several shards: every number of ranks then stops at the same step.
+  /// Returns the interval, in calls of Step, at which the trainer counts steps, saves and ends. 1
+  /// with a single shard. With several shards it is the length of a rollout, so that the training
+  /// ends at the same step with any number of ranks.
   virtual std::uint32_t sync_interval() const = 0;
 };
 

@@ -7,7 +7,8 @@
 ///   Q-learning: V(s') = max_a' Q(s', a')         SARSA: V(s') = Q(s', a') of the chosen a'
 ///
 /// The two differ only in V. Both choose a' before the update. Each agent has one table for all
-/// farms; updates are in farm order. A truncated episode bootstraps like any other step.
+/// farms, which it updates in the order of the farms. The last step of a truncated episode
+/// bootstraps like any other step.
 
 #include <cstdint>
 #include <limits>
@@ -20,21 +21,23 @@
 
 namespace aquafarm::agents {
 
-/// Action values [agents, states, kActionCount], row-major.
+/// Table of action values.
 struct QTable {
   std::int32_t agents{};
   std::uint32_t states{};
-  std::vector<float> values;
+  std::vector<float> values;  ///< [agents, states, kActionCount], row-major
 
   QTable() = default;
   /// @throws InputError if the farm has no tabular states or the table would exceed kMaxBytes
   QTable(const EnvironmentSpec& spec, float initial_value);
+  /// Returns the index in `values` of the first action of a state.
   std::size_t Row(std::int32_t agent, std::uint32_t state) const {
     return (static_cast<std::size_t>(agent) * states + state) * kActionCount;
   }
-  /// Returns the size of the table of a farm [bytes]; 0 if it has no tabular states.
+  /// Returns the size of the table for all agents of a farm [bytes]; 0 if the farm has no tabular
+  /// states.
   static std::uint64_t BytesOf(const EnvironmentSpec& spec);
-  /// Max size of a table [bytes].
+  /// Max size of the table for all agents [bytes].
   inline static constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30U;
 };
 
@@ -52,15 +55,16 @@ struct TabularOptions {
   Schedule learning_rate{ScheduleKind::kLinear, 0.5, 0.02, 1.0};
   double gamma{0.97};
   ExplorationOptions exploration;
-  double initial_value{0.0};  ///< of every entry; optimistic (high) values promote exploration
-  bool mask_illegal{false};   ///< mask ILLEGAL actions when acting and bootstrapping
+  double initial_value{0.0};  ///< initial action value; high values promote exploration
+  bool mask_illegal{false};   ///< exclude illegal actions when acting and bootstrapping
 
-  /// Parses "key=value …". @param resolved receives all options with their effective values
-  /// @throws InputError
+  /// Parses "key=value …".
+  /// @param resolved receives all options with their effective values
+  /// @throws InputError if an option is unknown or out of range
   static TabularOptions Parse(const std::string& text, std::string& resolved);
 };
 
-/// A table with its exploration, checkpoints and greedy policy. A derived class adds Step.
+/// Base class of learners with a table. A derived class implements Step.
 class TableLearner : public Learner {
  public:
   /// @throws InputError if the farm has no tabular states, if its table would exceed kMaxBytes, or
@@ -80,14 +84,14 @@ class TableLearner : public Learner {
  protected:
   /// Sets ε or the temperature, and the learning rate. @param progress of the run, [0, 1]
   void SetProgress(double progress);
-  /// Actions that an agent may choose: all, or the legal ones with mask_illegal.
+  /// Returns the actions that an agent may choose: the legal ones with mask_illegal, else all.
   ActionMask ActionMaskOf(ActionMask legal) const {
     return options_.mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
   }
-  /// Updates the reported loss, a moving average of the squared TD error, with that of one step.
+  /// Updates the reported loss, a moving average. @param loss mean squared TD error of one step
   void AddLoss(float loss);
 
-  /// In pending_: the agent is not active, so it has no last action.
+  /// Value in pending_ of an agent that was not active, so that it has no last action.
   inline static constexpr auto kNoAction = std::numeric_limits<std::uint64_t>::max();
 
   std::string resolved_;
@@ -95,11 +99,12 @@ class TableLearner : public Learner {
   std::int32_t farms_;
   QTable table_;
   Explorer explorer_;
-  std::vector<std::uint64_t> pending_;  ///< [N, S] offset into values of the current (s, a)
+  std::vector<std::uint64_t> pending_;  ///< [N, S] index in table_.values of the last (s, a)
   float learning_rate_{};
   float loss_;
 };
 
+/// @tparam Rule QLearningRule or SarsaRule
 template <typename Rule>
 class TabularLearner final : public TableLearner {
  public:
@@ -111,7 +116,7 @@ class TabularLearner final : public TableLearner {
 extern template class TabularLearner<QLearningRule>;
 extern template class TabularLearner<SarsaRule>;
 
-/// Plays the greedy action of a table. Ties go to the lowest action number.
+/// Policy that takes the greedy action of a table. Ties go to the lowest action number.
 class GreedyTabularPolicy final : public Policy {
  public:
   GreedyTabularPolicy(QTable table, bool mask_illegal)

@@ -10,7 +10,8 @@ class WarmStart {
  public:
   virtual ~WarmStart() = default;
   /// Replaces the initial weights by those of a policy or checkpoint of the same algorithm.
-  /// @throws InputError if its observation or its network differs; nothing is then changed
+  /// @throws InputError if the features or the network of the checkpoint differ from those of the
+  ///   learner; the weights are then unchanged
   virtual void LoadWeights(const Checkpoint& checkpoint) = 0;
 };
 

@@ -6,17 +6,18 @@
 ///
 ///   o_i ─ actor i ─ logits ─ Gumbel-softmax ─ a_i       critic i (o_1 … o_S, a_others) → Q_i(a_i)
 ///
-///   critic   y_i = r_i + γ Q_i'(o', a'). The others' a' are the most likely actions of their
-///            target actors; the own a_i' is the best response to them (best_response=false: that
-///            of the own target actor). Huber loss
-///   actor i  maximizes Q_i(o, a) − logit_penalty · mean logits², with a relaxed a_i and the
-///            replayed actions of the others
+///   critic   minimizes the Huber loss of Q_i(o, a) against y_i = r_i + γ Q_i'(o', a'). The next
+///            actions of the other agents are the most likely ones of their target actors. The next
+///            action of agent i is the best response to them; with best_response=false, it is the
+///            most likely one of its target actor
+///   actor i  maximizes Q_i(o, a) − logit_penalty · mean logits², where a_i is relaxed and the
+///            actions of the other agents are the replayed ones
 ///
 /// The critic returns the values of all actions of its agent at once, as in COMA (Foerster et al.
-/// 2018). It is therefore linear in a_i, and its gradient at a relaxed action is exact. One network
-/// serves all agents. Gumbel-softmax (Jang et al. 2017, Maddison et al. 2017) is straight-through:
-/// one-hot in the forward pass, softmax at `temperature` in the backward pass. MADDPG is an
-/// actor-critic method, although the paper lists it among the value-based ones.
+/// 2018). It is therefore linear in a_i, and its gradient at a relaxed action is exact. The critics
+/// of all agents are the same network. Gumbel-softmax (Jang et al. 2017, Maddison et al. 2017) is
+/// straight-through: one-hot in the forward pass, softmax at `temperature` in the backward pass.
+/// MADDPG is an actor-critic method, although the paper lists it among the value-based ones.
 
 #include <memory>
 #include <string>
@@ -25,12 +26,13 @@
 
 namespace aquafarm::agents {
 
-/// Observation types that MADDPG requires with these options. @throws InputError on a wrong option
+/// Returns the observation types that MADDPG requires with these options. @throws InputError on a
+/// wrong option
 std::uint8_t MaddpgObservationTypes(const std::string& options);
 /// Makes a MADDPG learner. @throws InputError on a wrong option
 std::unique_ptr<Learner> MakeMaddpg(const EnvironmentSpec& spec, std::uint64_t seed,
                                     const std::string& options);
-/// Makes a policy that plays the most likely action of every actor.
+/// Makes a policy that takes the most likely action of every actor.
 /// @throws InputError with the reason if the policy does not fit farms of `spec`
 std::unique_ptr<Policy> MakeMaddpgPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 

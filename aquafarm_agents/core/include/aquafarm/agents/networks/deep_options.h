@@ -11,8 +11,8 @@ namespace aquafarm::agents {
 
 /// Architecture of a network and the observation type that it reads.
 enum class NetworkKind : std::uint8_t {
-  kMlp,  ///< the feature vector, two hidden layers
-  kCnn,  ///< the planes, two convolutions and a hidden layer
+  kMlp,  ///< reads the feature vector; two hidden layers
+  kCnn,  ///< reads the planes; two convolutions and a hidden layer
 };
 inline constexpr int kNetworkKindCount = 2;
 std::string_view ToString(NetworkKind value);
@@ -22,22 +22,22 @@ enum class LossKind : std::uint8_t { kHuber, kMse };
 inline constexpr int kLossKindCount = 2;
 std::string_view ToString(LossKind value);
 
-/// Hyperparameters of DQN and LSTM-DQN. Two presets define the defaults: *tuned*, with values tuned
-/// on the shipped farms, and *paper*, Eq. 15 and Algorithm 2 as printed, with every extension
-/// disabled.
+/// Hyperparameters of DQN, VDN and LSTM-DQN. The preset sets the defaults: *tuned* has values tuned
+/// on the shipped farms; *paper* has Eq. 15 and Algorithm 2 as printed, without any extension. The
+/// members are initialized with the tuned defaults of DQN.
 struct DeepOptions {
   NetworkKind network{NetworkKind::kMlp};
-  std::int32_t hidden_size{256};  ///< units of a hidden layer; of the LSTM when recurrent
+  std::int32_t hidden_size{256};  ///< units of each hidden layer; for LSTM-DQN, units of the LSTM
   Schedule learning_rate{ScheduleKind::kLinear, 5e-4, 1e-5, 1.0};  ///< learning rate of Adam
   double gamma{0.97};
   ExplorationOptions exploration{
       ExplorationKind::kEpsilonGreedy, {ScheduleKind::kLinear, 1.0, 0.005, 0.1}, {}};
-  std::int32_t batch_size{64};                            ///< transitions, or sequences, per update
+  std::int32_t batch_size{64};  ///< transitions (LSTM-DQN: sequences) per update
   Schedule train_interval{ScheduleKind::kConstant, 2.0};  ///< farm steps between updates
   std::uint64_t learning_starts{5000};                    ///< farm steps before the first update
   std::uint64_t buffer_size{100000};                      ///< capacity in transitions
   std::uint64_t target_update_interval{250};  ///< updates between hard copies to the target network
-  double tau{0.0};  ///< soft target update rate per update; 0: hard copies
+  double tau{0.0};  ///< rate of the soft target update in each update; 0: hard copies
   LossKind loss{LossKind::kHuber};
   double max_grad_norm{10.0};  ///< max norm of the gradient; 0: no limit
 
@@ -48,35 +48,39 @@ struct DeepOptions {
   double priority_exponent{0.6};    ///< exponent α of Schaul et al. 2016; 0: uniform
   double importance_exponent{0.4};  ///< initial exponent β of Schaul et al. 2016; rises to 1
   double reward_scale{0.05};        ///< factor of the rewards; 1: unscaled
-  /// Rate of the moving average of the weights; the agents then act by the average (Polyak and
-  /// Juditsky 1992). It is the arithmetic mean for the first 1 / rate updates. 0 disables it.
+  /// Rate of a moving average of the weights, by which the agents then act (Polyak and Juditsky
+  /// 1992). For the first 1 / rate updates it is the arithmetic mean. 0 disables it.
   double ema_rate{0.0};
   /// α of advantage learning (Baird 1999; Bellemare et al. 2016): subtracts
   /// α · (max_a Q − Q(s, a)) from the target, so that approximation errors change the greedy action
   /// less often. 0 disables it.
   double action_gap{0.0};
-  /// Penalty on the value of an action during exploration [reward], per earlier use of the action
-  /// in the same situation (cell, load, devices still out) of this episode. 0 disables it.
+  /// Penalty on the value of an action during training [reward], for each time that the action was
+  /// already taken in the same situation (cell, load, remaining devices) of this episode; see
+  /// RepetitionPenalty. 0 disables it.
   double repetition_penalty{0.0};
-  bool mask_illegal{true};   ///< mask ILLEGAL actions when acting and bootstrapping
-  bool mask_blocked{false};  ///< also mask moves onto a charted rock, an island or off the map
+  bool mask_illegal{true};   ///< exclude illegal actions when acting and bootstrapping
+  bool mask_blocked{false};  ///< also exclude moves onto a rock, an island or off the map
 
   // Recurrent networks only (R2D2: Kapturowski et al. 2019).
-  std::int32_t sequence_length{
-      4};                      ///< training steps per sequence; replayed=paper_tuple: 1, burn_in 0
-  std::int32_t burn_in{2};     ///< steps before them that only warm up the recurrent state
-  bool skip_connection{true};  ///< around the LSTM; the paper has none
-  /// Replays single tuples with the stored state of either end, as Algorithm 2 prints it.
+  std::int32_t sequence_length{4};  ///< training steps per sequence; 1 with paper_tuple
+  std::int32_t burn_in{2};  ///< warm-up steps before a sequence, not trained on; 0 with paper_tuple
+  bool skip_connection{true};  ///< skip connection around the LSTM; the paper has none
+  /// The option replayed=paper_tuple: replays single transitions and evaluates each end with the
+  /// recurrent state stored there, as Algorithm 2 prints it.
   bool paper_tuple{};
 
-  /// Learn the sum of all agents' values instead of each individually (VDN); set by the algorithm.
+  /// Train the sum of all agents' values instead of each value (VDN). Set by the algorithm, not by
+  /// an option.
   bool joint{};
 
   std::string device{"auto"};  ///< auto, cpu or cuda
   std::int32_t threads{1};     ///< CPU threads of the network library
 
-  /// Parses "key=value …". @param resolved receives all options with their effective values
-  /// @throws InputError
+  /// Parses "key=value …".
+  /// @param recurrent true for LSTM-DQN
+  /// @param resolved receives all options with their effective values
+  /// @throws InputError if an option is unknown, out of range or does not fit another option
   static DeepOptions Parse(const std::string& text, bool recurrent, std::string& resolved);
 };
 

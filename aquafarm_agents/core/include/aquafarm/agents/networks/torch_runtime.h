@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Runtime settings of the network library: its threads and the libraries that it links.
+/// Settings of libtorch at run time: its threads, and the libraries that it uses.
 
 #include <cstdint>
 #include <string>
 
 namespace aquafarm::agents {
 
-/// Sets the number of threads of the library. A slow BLAS is reported by TakeTorchWarning.
+/// Sets the number of threads of libtorch and of OpenBLAS. Call it before a network is made. If the
+/// BLAS is a slow one, TakeTorchWarning then returns a warning.
 void PrepareTorch(std::int32_t threads);
 
-/// Warning about the network library, returned once after a learner or a policy was made. One
-/// readable line; empty if there is no warning.
+/// Returns the warning of PrepareTorch, one readable line, at the first call after it; empty at
+/// later calls or if there is no warning.
 std::string TakeTorchWarning();
 
-/// Libraries used by the networks, such as "libtorch 1.13.1, OpenBLAS 0.3.21 … SkylakeX". Other
-/// versions or kernels change the last bits of a training. Empty if no network was made.
+/// Returns the libraries used by the networks, such as "libtorch 1.13.1, OpenBLAS 0.3.21 …
+/// SkylakeX, products by avx512". Other versions or kernels change the last bits of a training.
+/// Empty before PrepareTorch is called.
 std::string NetworkLibraries();
 
 }  // namespace aquafarm::agents

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Fetch by value, the rule of an operator without a forecast. Ships choose in id order:
+/// Fetch by value: the rule of an operator who has no forecast. Ships choose in id order:
 ///
-///   a ship with capacity left fetches the most valuable device that no other ship fetches and
-///   that it can still bring to a port before the episode ends; of equal values the nearest one
-///   a ship without such a device returns to the nearest port and unloads there
+///   - A ship with free capacity fetches the most valuable device that it can still bring to a port
+///     before the episode ends and that no other ship is fetching. Of equally valuable devices it
+///     fetches the nearest one.
+///   - A ship without such a device returns to the nearest port.
+///   - A ship with devices aboard unloads in every port that it enters.
 ///
-/// The value is the insured one (farm/accounts.h) if the scenario has money, else the one of
-/// rewards. Routes are the shortest ones by water. Disasters are ignored, except that the episode
-/// ends with them. A ship keeps its device until it is aboard or can no longer be brought home. A
+/// The value of a device is its insured value (farm/accounts.h) if the scenario has money, else the
+/// value that the reward credits (Device::value). Routes are the shortest ones by water. The rule
+/// ignores disasters, except that the episode ends when all of them have ended. A ship fetches the
+/// chosen device until the device is aboard or can no longer be brought home in time. A
 /// self-propelled device sails to the nearest port.
 
 #include <cstddef>
@@ -24,16 +27,16 @@ namespace aquafarm::agents {
 /// Chooses the actions of all agents of one farm.
 class FetchByValue {
  public:
-  /// Chooses the actions of the next step of a farm whose episode is active.
+  /// Chooses the actions of the next step. The episode must not be over.
   /// @param actions [agents]
   void Act(const Farm& farm, std::uint8_t* actions);
 
  private:
   /// The task of one ship.
   struct Errand {
-    std::int32_t device{kNone};       ///< that it fetches
-    std::vector<std::int32_t> moves;  ///< by water to that device, [H, W]
-    std::int32_t waited{};            ///< steps in a row without a free cell on the route
+    std::int32_t device{kNone};       ///< device that the ship fetches; kNone: no device
+    std::vector<std::int32_t> moves;  ///< [H, W] moves by water from each cell to that device
+    std::int32_t waited{};            ///< consecutive steps in which every cell ahead was occupied
   };
   void Begin(const Farm& farm);
   bool CanBringHome(const Farm& farm, std::int32_t device, std::int32_t moves) const;
@@ -44,13 +47,13 @@ class FetchByValue {
 
   std::uint64_t seed_{};
   std::uint64_t episode_{};
-  std::int32_t next_step_{kNone};  ///< kNone: before the first episode
-  std::vector<Errand> errands_;
-  std::vector<std::int32_t> to_port_;  ///< moves by water to the nearest port, [H, W]
-  std::vector<Cell> cells_;            ///< of the ships, after the actions that are already chosen
+  std::int32_t next_step_{kNone};      ///< step at which Act continues; kNone before the first Act
+  std::vector<Errand> errands_;        ///< by ship
+  std::vector<std::int32_t> to_port_;  ///< [H, W] moves by water to the nearest port
+  std::vector<Cell> cells_;            ///< cells of the ships after the actions chosen so far
 };
 
-/// FetchByValue as a Policy. It sees the complete farm, as PlannerPolicy does.
+/// FetchByValue as a Policy. It sees the complete farm, even with a partial view.
 class FetchByValuePolicy final : public Policy {
  public:
   explicit FetchByValuePolicy(const EnvironmentSpec& spec);

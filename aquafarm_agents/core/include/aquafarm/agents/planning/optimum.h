@@ -14,25 +14,31 @@
 
 namespace aquafarm::agents {
 
-/// Means over the episodes that are planned; the other ones are too large (`max_states`).
+/// Comparison over the episodes that could be planned.
 struct OptimumShare {
-  std::size_t planned{};
-  std::size_t too_large{};
-  double mean_return{};
-  double mean_optimum{};
-  double share{};  ///< mean_return / mean_optimum
-  double low{};    ///< 95 % interval of the share, by bootstrap over episodes, in those resamples
-                   ///< whose optimum is more than 0; NaN if there are none
+  std::size_t planned{};    ///< number of planned episodes
+  std::size_t too_large{};  ///< number of episodes with too many states or devices for a plan
+  double mean_return{};     ///< mean return of the policy
+  double mean_optimum{};    ///< mean return of the best plans
+  double share{};           ///< mean_return / mean_optimum; 0 if no episode was planned
+  /// Bounds of the 95 % interval of `share`, by bootstrap over episodes. Resamples whose mean
+  /// optimum is not positive are left out; NaN if none remains.
+  double low{};
   double high{};
-  std::size_t solvable{};  ///< episodes in which the optimum delivers every device
-  std::size_t solved{};    ///< those of them in which the policy delivered every device
+  std::size_t solvable{};  ///< planned episodes in which the best plan delivers every device
+  std::size_t solved{};    ///< solvable episodes in which the policy also delivered every device
 };
 
-/// Plans each episode with the disasters' true future.
-/// @param episodes of farms with one ship
+/// Compares the returns of a policy with the best plans of the same episodes. The plans use the
+/// disasters' true future.
+/// @param episodes played by the policy, on farms with one ship
 /// @param make_farm makes the farm at the start of an episode
-/// @param max_states of (cell, devices) of a plan; larger episodes are left out
-/// @param seed of the bootstrap @param stop ends early if set; may be null
+/// @param max_states max number of states of a plan (Planner::state_count); an episode with more
+///   states counts as too large
+/// @param seed of the bootstrap
+/// @param stop ends the comparison early if set; may be null
+/// @throws InputError if the mean return of the best plans is not positive, for several agents, or
+///   if the planner refuses the rewards
 OptimumShare CompareWithOptimum(
     const std::vector<EpisodeSummary>& episodes,
     const std::function<Farm(std::uint64_t seed, std::uint64_t episode)>& make_farm,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Types shared by the planners: the assumed future, tasks, plans, and cells reserved by other
-/// ships.
+/// Types that the planners share: the assumed future, tasks, plans, and reserved cells.
 
 #include <cstdint>
 #include <unordered_map>
@@ -12,28 +11,32 @@
 
 namespace aquafarm::agents {
 
-/// Max number of (cell, devices) states of one plan.
+/// Max number of states of one plan. A state is a cell of the ship and a status of each device.
 inline constexpr std::size_t kMaxPlanStates = 50'000'000;
+/// Max number of devices that the planner of one ship supports.
+inline constexpr std::int32_t kMaxPlanDevices = 12;
 
-/// The future of the disasters that a plan assumes.
+/// Which future of the disasters a plan assumes.
 enum class Foresight : std::uint8_t {
   kOracle,       ///< the true future
-  kPersistence,  ///< the scenario's forecast, else straight motion with the present heading
+  kPersistence,  ///< the forecast in force; without one, straight motion with the present heading
 };
 
-/// Cells reserved by ships with earlier plans, so that a plan avoids them. For each step they
-/// contain the ship's cell and the cell that it blocks because ships move in order. Ports are never
-/// blocked.
+/// Cells and steps reserved for ships that already have a plan. The plan of another ship avoids
+/// them. In each step a ship reserves its own cell. It also reserves its cell of the next step
+/// against ships with a higher id, and its cell of the previous step against ships with a lower id,
+/// because ships move in id order. A planner does not query cells of ports, since any number of
+/// ships may share a port.
 class Reservations {
  public:
   void Clear() { taken_.clear(); }
   /// Reserves `path[k]` for ship `id` at step first + k; k = 0 is the present step.
   void Add(std::int32_t id, std::int32_t first, const std::vector<std::int32_t>& path);
-  /// Returns whether ship `id` in `cell` at `step` would conflict with another ship's reservation.
+  /// Returns whether another ship's reservation excludes ship `id` from `cell` at `step`.
   bool IsTaken(std::int32_t id, std::int32_t step, std::int32_t cell) const;
 
  private:
-  // The ship is there at the step (offset 0), one step later (+1), or was one step before (-1).
+  // `ship` occupies the cell at the step of the key plus `offset`, which is -1, 0 or 1.
   struct Visit {
     std::int32_t ship;
     std::int32_t offset;
@@ -47,24 +50,28 @@ class Reservations {
 
 /// The part of a farm's work that one ship does.
 struct Task {
-  std::int32_t ship{0};
-  /// Devices that it fetches or carries, or the device that it is; at most `max_devices` of
-  /// Planner.
+  std::int32_t ship{0};  ///< id of the ship
+  /// Ids of the devices that the ship fetches or carries; for a self-propelled device its own id.
+  /// At most as many as the `max_devices` of the Planner.
   std::vector<std::int32_t> devices;
-  /// Last step of a plan that only avoids risks because the ship has no work; else 0.
+  /// Last step of the plan of a ship without devices, which only avoids risks. 0: the plan ends
+  /// with the last delivery or with the episode.
   std::int32_t until{0};
-  const Reservations* others{};  ///< nullptr if no ship is in the way
+  const Reservations* others{};  ///< cells that the plan avoids; nullptr: it avoids none
 };
 
-/// Sets the assumed motion of a farm's disasters from now on.
-/// @returns the tracks that they follow
+/// Changes disasters so that MoveDisaster moves them as the plan assumes, along the returned
+/// tracks.
+/// @param disasters a copy of the farm's present disasters; kOracle does not change it
+/// @returns the assumed track of each disaster
 std::vector<Track> Foresee(const Farm& farm, Foresight foresight, std::vector<Disaster>& disasters);
 
-/// Actions from a farm's present step on.
+/// Actions of one ship from a farm's present step on.
 struct Plan {
-  std::vector<std::uint8_t>
-      actions;               ///< one per step, until the episode ends or the work is complete
-  double expected_return{};  ///< from the present step on, in the assumed future
+  /// One action per step, until the work is complete, the episode ends or Task::until is reached.
+  /// Empty if there is no plan.
+  std::vector<std::uint8_t> actions;
+  double expected_return{};  ///< return from the present step on, in the assumed future
 };
 
 }  // namespace aquafarm::agents

@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Plans for one ship by dynamic programming over (time, cell, devices aboard and delivered). With
-/// the true future of the disasters the plan has the exact max return of a seeded episode: the
-/// clairvoyant optimum, the reference of paper §4.2 (see docs/model.md). If it plans again at each
-/// step (receding horizon), from the issued forecast or, without one, from the disaster's present
-/// heading, it uses only what an operator knows at that time.
+/// Plans for one ship by dynamic programming over time and states. A state is the cell of the ship
+/// and a status of each device. With the true future of the disasters the plan has the exact max
+/// return of a seeded episode: the clairvoyant optimum, the reference of paper §4.2 (see
+/// docs/model.md). A policy may also plan again at each step (receding horizon) from the issued
+/// forecast or, without a forecast, from each disaster's present heading. The plan then uses only
+/// what an operator knows at that time, except that it knows which crashes cause damage.
 ///
-/// Health is computed exactly. The health of a deployed device depends only on time; aboard, its
-/// loss accumulates along the route. Each pickup is therefore planned as paid or unpaid. Paid: the
-/// value is credited at pickup, losses are subtracted as they occur, and the device must be
-/// delivered. Unpaid: it may be delivered for the drop-off reward only. The better of the two
-/// equals the value clamped at zero.
+/// Health is computed exactly. The health of a deployed device depends only on time. The health of
+/// a device aboard depends on the route. Each pickup is therefore planned in two ways, paid and
+/// unpaid. Paid: the value is credited at pickup, losses are subtracted as they occur, and the
+/// device must be delivered. Unpaid: neither value nor losses count, and the device may be
+/// delivered for the drop-off reward alone. The better of the two has the exact value of the
+/// device, which is never negative.
 ///
 /// The search runs forward in time and keeps the max return so far of each state. It prunes a state
-/// that cannot beat the best complete plan: completing the work needs a min number of moves, and
-/// each step earns at most the best reward that any cell has in that step.
+/// if an upper bound of its return does not exceed the return of the best complete plan found so
+/// far. The bound uses the min number of moves that complete the work, and the best reward that any
+/// cell has in each step.
 
 #include <cstdint>
 #include <memory>
@@ -28,27 +31,28 @@ namespace aquafarm::agents {
 
 class PlannerSolver;
 
-/// Plans for farms of one scenario; reuses its memory for each plan.
+/// Plans for farms of one scenario. Reuses its memory for each plan.
 class Planner {
  public:
   /// @param scenario must outlive the planner
-  /// @param max_devices of a task; 0: all devices of the scenario
-  /// @throws InputError if the reward of steps or of illegal actions is positive, or if there are
-  ///   too many devices or states (kMaxPlanStates)
+  /// @param max_devices max number of devices of a task; 0: the number of devices of the scenario
+  /// @throws InputError if the reward of steps or of illegal actions is positive, if max_devices is
+  ///   more than 12, or if there are more than kMaxPlanStates states
   explicit Planner(const Scenario& scenario, std::int32_t max_devices = 0);
   ~Planner();
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;
 
-  /// Number of (cell, devices) states, at most kMaxPlanStates.
+  /// Number of states, at most kMaxPlanStates.
   std::size_t state_count() const;
 
-  /// Returns the best plan from the farm's present state; empty if its episode is over.
-  /// @param risks of the steps after the farm's present one; see risk_source.h
+  /// Returns the best plan from the farm's present state. The plan is empty if the episode is over,
+  /// or if reserved cells (Task::others) exclude every plan.
+  /// @param risks risks of the steps after the farm's present one
   Plan Solve(const Farm& farm, RiskSource& risks, const Task& task);
   /// As above, with the risks of the farm's own disasters.
   Plan Solve(const Farm& farm, Foresight foresight, const Task& task);
-  /// As above, for the only ship of a farm, which does all the work.
+  /// As above, for a farm with one agent, which does all the work.
   Plan Solve(const Farm& farm, Foresight foresight);
 
  private:

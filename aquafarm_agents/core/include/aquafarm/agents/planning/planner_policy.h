@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Planning as a Policy, for farms in this process or behind ROS. It sees the complete farm, even
-/// with a partial view, so it is a reference and not a fair comparison for learners that see less.
+/// The planner as a Policy for farms with one agent. It sees the complete farm, even with a partial
+/// view. It is therefore a reference, not a fair competitor of learners that see less.
 
 #include <memory>
 #include <string>
@@ -13,12 +13,13 @@
 
 namespace aquafarm::agents {
 
-/// The *receding-horizon* policy (kPersistence) plans again at each step, on the newest forecast. A
-/// disaster without one keeps its heading. The *clairvoyant* policy (kOracle) knows the future: it
-/// plans once per episode, and again if the farm deviates from the plan.
+/// The *receding-horizon* policy (kPersistence) plans again at each step, from the newest forecast.
+/// It assumes that a disaster without a forecast keeps its heading. The *clairvoyant* policy
+/// (kOracle) knows the future: it plans once per episode, and again if the farm deviates from the
+/// plan.
 class PlannerPolicy final : public Policy {
  public:
-  /// @throws InputError if the farm is too large or not supported (see Planner)
+  /// @throws InputError as the constructor of Planner
   PlannerPolicy(const EnvironmentSpec& spec, Foresight foresight);
   std::uint8_t observation_types() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;
@@ -28,11 +29,11 @@ class PlannerPolicy final : public Policy {
   /// Remaining plan of one farm.
   struct PlanState {
     Plan plan;
-    std::size_t next{};  // index of the next action of the plan
+    std::size_t next{};  // index of the next action in plan.actions
     std::uint64_t seed{};
     std::uint64_t episode{};
-    std::int32_t step{};
-    Cell cell{};  // expected cell of the ship at `step`
+    std::int32_t step{};  // expected step of the farm at the next Act
+    Cell cell{};          // expected cell of the ship at that step
   };
   std::uint8_t Follow(const Farm& farm, PlanState& course);
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The future risks that a plan assumes. A planner reads them from a RiskSource and never moves
-/// disasters itself, so the same exact search runs on the true future, on a forecast, and on the
-/// mean of an ensemble of futures.
+/// The future risks that a plan assumes. Planner reads them from a RiskSource and does not move
+/// disasters itself. The same exact search therefore runs on the true future, on a forecast, and on
+/// the mean of an ensemble of futures.
 ///
 /// Mean of an ensemble: disasters do not react to ships, so the expected reward of a fixed plan is
-/// its reward under the mean layers below. The same holds for damage while health is not clamped at
-/// 0: the loss of health is linear in the risk.
+/// its reward under the mean layers. The same holds for damage as long as no health reaches 0,
+/// because the loss of health is linear in the risk.
 
 #include <cstdint>
 #include <vector>
@@ -18,13 +18,14 @@
 
 namespace aquafarm::agents {
 
-/// Risks of one step, [H, W].
+/// Risks of one step. All layers are [H, W].
 struct RiskLayers {
   Grid<float> risk;  ///< risk at each cell; 0 or negative
-  /// Reward of a step without any other term: the risk below 0, else the step reward.
+  /// Reward of a step that ends in the cell and has no pickup, drop-off, crash or illegal action:
+  /// the risk if it is negative, else the step reward.
   Grid<float> quiet;
-  /// Risk that damages each kind of device (Farm::DamagingRiskAt). An empty layer stands for
-  /// `risk`.
+  /// By kind of device: the risk that damages it (Farm::DamagingRiskAt). If a layer is empty,
+  /// `risk` applies.
   DamagingRisks by_kind;
 
   /// Returns the risk that damages a kind of device.
@@ -38,7 +39,7 @@ struct RiskLayers {
 /// if exposure causes no damage.
 std::vector<DeviceKind> KindsThatMatter(const Farm& farm);
 
-/// Risks by step.
+/// Provides the risks of each step.
 class RiskSource {
  public:
   RiskSource() = default;
@@ -47,16 +48,17 @@ class RiskSource {
   virtual ~RiskSource() = default;
 
   /// Returns the risks of a step, after the disasters have moved. The reference is valid until the
-  /// next call. @param step after the farm's present step, at most last_step()
+  /// next call.
+  /// @param step after the farm's present step, at most last_step()
   virtual const RiskLayers& At(std::int32_t step) = 0;
-  /// Returns the last step of a plan, after which the disasters or the episode have ended.
+  /// Returns the last step that a plan may have. The episode ends with this step at the latest.
   virtual std::int32_t last_step() const = 0;
-  /// Returns an upper bound of `quiet` at all cells and steps.
+  /// Returns an upper bound of RiskLayers::quiet over all cells and steps.
   virtual float best_quiet() const = 0;
 };
 
-/// The risks of a farm's disasters and sea in the steps after its present one. Keeps the layers of
-/// the first steps, so that several searches compute them once.
+/// The risks of a farm's disasters and sea in the steps after its present one. It stores the layers
+/// of the first steps (up to 64 MiB), so that several searches compute them once.
 class DisasterRisk final : public RiskSource {
  public:
   /// @param farm must outlive the object and must not step while the object is in use
@@ -73,16 +75,17 @@ class DisasterRisk final : public RiskSource {
   std::vector<Track> tracks_;
   std::int32_t moved_to_{};
   std::int32_t last_step_{};
-  std::vector<RiskLayers> kept_;  // of the steps after the farm's present one
+  std::vector<RiskLayers> kept_;  // layers of the first steps after the farm's present one
   std::size_t max_kept_{};
-  std::vector<Disaster> after_kept_;  // state of the disasters after the last kept step
-  RiskLayers layers_;                 // of step moved_to_; used if that step is not in kept_
+  std::vector<Disaster> after_kept_;  // state after the last step in kept_
+  RiskLayers layers_;                 // layers of step moved_to_
 };
 
 /// Risk layers that the caller provides, for example the mean of an ensemble.
 class RiskField final : public RiskSource {
  public:
-  /// @param first_step step of layers[0] @param layers at least one, all of one shape
+  /// @param first_step step of layers[0]
+  /// @param layers by step; at least one, all of the same shape
   RiskField(std::int32_t first_step, std::vector<RiskLayers> layers);
   const RiskLayers& At(std::int32_t step) override;
   std::int32_t last_step() const override;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Cooperative planning, the classical baseline for several agents (cooperative A*, Silver 2005,
-/// after an assignment step):
+/// Cooperative planning for several agents: an assignment step, then cooperative A* (Silver 2005).
 ///
-///   1. assign the devices to ships so that the last ship finishes as early as possible
-///   2. ship by ship, compute the best plan for its devices (planner.h) that avoids the ships
-///      planned before
-///   3. repeat both if a disaster changes its heading, or if a ship deviates from its plan or has
-///      completed it
+///   1. Assign the devices to ships, so that the last ship is estimated to finish as early as
+///      possible.
+///   2. For one ship after the other, compute the best plan for its devices (planner.h) that avoids
+///      the ships planned before.
+///   3. Repeat both steps if a disaster differs from the assumed future, if a ship deviates from
+///      its plan, or if a ship has completed its plan.
 ///
-/// Self-propelled devices plan their own routes. Step 1 considers distances only: neither energy
-/// nor the kinds and damage of devices; step 2 considers all of them. The result is not optimal;
-/// team_bound.h bounds it, with energy, kinds and damage.
+/// Self-propelled devices plan their own routes. Step 1 considers only distances. Step 2 also
+/// considers energy, the kinds of devices, and damage. The result is not optimal; team_bound.h has
+/// an upper bound of the return.
 
 #include <cstdint>
 #include <memory>
@@ -27,15 +27,15 @@ namespace aquafarm::agents {
 class TeamPlanner {
  public:
   /// @param scenario must outlive the planner
-  /// @throws InputError as Planner
+  /// @throws InputError as the constructor of Planner, for the max number of devices of one ship
   TeamPlanner(const Scenario& scenario, Foresight foresight);
   ~TeamPlanner();
   TeamPlanner(TeamPlanner&&) noexcept;
 
-  /// Plans of one farm from step `start` on.
+  /// Plans of all agents of one farm, and the future that they assume.
   struct PlanState {
-    std::vector<std::vector<std::uint8_t>> actions;  ///< by agent, from step `start` on
-    std::vector<std::vector<std::int32_t>> path;     ///< by agent: its cell before each action
+    std::vector<std::vector<std::uint8_t>> actions;  ///< by agent: actions from step `start` on
+    std::vector<std::vector<std::int32_t>> path;     ///< by agent: linear cells from `start` on
     std::uint64_t seed{};
     std::uint64_t episode{};
     std::int32_t start{};
@@ -44,12 +44,16 @@ class TeamPlanner {
     std::int32_t foreseen{};
   };
 
-  /// Chooses the actions of the next step of a farm whose episode is active. Plans again if
-  /// necessary.
+  /// Chooses the actions of the next step, and plans again if necessary. The episode must not be
+  /// over.
+  /// @param course plans of this farm; empty before the first call
   /// @param actions [agents]
   void Act(const Farm& farm, PlanState& course, std::uint8_t* actions);
 
-  /// Assigns devices: for each agent the ids of those that it fetches, carries or is.
+  /// Assigns the undelivered devices to agents. A ship gets the devices that it carries and those
+  /// that it fetches next, at most the average number per ship plus two. A self-propelled device
+  /// gets itself.
+  /// @returns ids of devices, by agent; a device that no ship has room for is missing
   std::vector<std::vector<std::int32_t>> Assign(const Farm& farm) const;
 
  private:
@@ -57,10 +61,10 @@ class TeamPlanner {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The team planner as a Policy. It sees the complete farm, as PlannerPolicy does.
+/// TeamPlanner as a Policy. It sees the complete farm, even with a partial view.
 class TeamPlannerPolicy final : public Policy {
  public:
-  /// @throws InputError if the farm is too large or not supported (see Planner)
+  /// @throws InputError as the constructor of TeamPlanner
   TeamPlannerPolicy(const EnvironmentSpec& spec, Foresight foresight);
   std::uint8_t observation_types() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;

@@ -8,15 +8,17 @@
 ///   δ_t = r_t + γ V(s_{t+1}) − V(s_t),   A_t = Σ_l (γλ)^l δ_{t+l}        (GAE, Schulman 2016)
 ///   ρ_t = π(a_t | s_t) / π_old(a_t | s_t)
 ///   minimize  −min(ρ_t A_t, clip(ρ_t, 1 − ε, 1 + ε) A_t) + c_v (V(s_t) − V_target)² / 2 − c_e H(π)
+///   V_target = A_t + V(s_t) at the time of collection
 ///
 /// Only termination stops bootstrapping. A truncated episode is bootstrapped with the value of its
 /// last observation. Masked actions have probability 0 in π and π_old.
 ///
-/// MAPPO (Yu et al. 2022, arXiv:2103.01955) is PPO for several agents: one policy plays all of
-/// them, each by its own observation, and V depends on the observations of all agents of the farm.
-/// V is needed only for learning, so a ship can act by its own observation alone.
+/// MAPPO (Yu et al. 2022, arXiv:2103.01955) is PPO for several agents. One policy chooses the
+/// actions of every agent from the agent's own observation. V depends on the observations of all
+/// agents of the farm. V is needed only for learning, so a trained ship acts on its own
+/// observation.
 ///
-/// With the option `teacher` the policy also imitates a teacher at first (kickstarting).
+/// With the option `teacher` the policy also imitates a teacher (kickstarting).
 
 #include <memory>
 #include <string>
@@ -26,21 +28,26 @@
 
 namespace aquafarm::agents {
 
-/// Observation types (ObservationTypeBits) that PPO reads. @throws InputError if an option is wrong
+/// Returns the observation types (ObservationTypeBits) that the learner reads.
+/// @throws InputError if an option is wrong
 std::uint8_t PpoObservationTypes(const std::string& options);
 std::uint8_t MappoObservationTypes(const std::string& options);
-/// Makes the planner of farms, which teacher_policy=planner imitates.
+/// Makes the policy that teacher_policy=planner imitates.
 using PlannerMaker = std::unique_ptr<Policy> (*)(const EnvironmentSpec&);
-/// Makes a learner that has not learnt yet.
-/// @param make_planner may be null if no option asks for a planner
-/// @throws InputError if an option is wrong, or if the planner does not support the farms
+/// Makes an untrained learner.
+/// @param make_planner may be null unless the options select teacher_policy=planner
+/// @throws InputError if an option is wrong, if the options do not fit the features of `spec`, if
+///   the number of farms is not a multiple of the shards, or if the planner does not support the
+///   farms
 std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options, PlannerMaker make_planner = nullptr);
 std::unique_ptr<Learner> MakeMappo(const EnvironmentSpec& spec, std::uint64_t seed,
                                    const std::string& options, PlannerMaker make_planner = nullptr);
 /// Makes the learner of one rank of a process group.
-/// @param spec of the farms of this rank
-/// @throws InputError if an option is wrong, or if the planner does not support the farms
+/// @param spec spec of the farms of this rank
+/// @param group must outlive the learner
+/// @throws InputError as above, if the number of shards is not a multiple of the ranks, or if the
+///   exploration contains icm
 std::unique_ptr<ShardedLearner> MakePpoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
                                                const std::string& options, ProcessGroup& group,
                                                PlannerMaker make_planner = nullptr);
@@ -48,7 +55,8 @@ std::unique_ptr<ShardedLearner> MakeMappoOfRanks(const EnvironmentSpec& spec, st
                                                  const std::string& options, ProcessGroup& group,
                                                  PlannerMaker make_planner = nullptr);
 /// Makes the policy of a checkpoint of PPO or MAPPO.
-/// @throws InputError if the policy does not fit farms of `spec`; the message names the difference
+/// @throws InputError if the policy does not fit farms of `spec`, with the difference, or if the
+///   checkpoint is damaged
 std::unique_ptr<Policy> MakePpoPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 
 }  // namespace aquafarm::agents

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Processors of the ranks of one host. A rank with processors of its own polls while it waits for
-/// another (docs/decisions/ranks.md).
+/// Processors of the ranks of one host. A rank that shares no processor with another rank polls
+/// while it waits for an exchange (docs/decisions/ranks.md).
 
 #include <sched.h>
 
 namespace aquafarm::agents {
 
-/// Returns the processors of rank `rank`: a share of `all`, disjoint from those of the other ranks
-/// and of equal size, as mpirun and srun assign them. Returns `all` if the ranks outnumber them.
+/// Returns the processors of rank `rank`. Every rank gets the same number of the processors in
+/// `all`, and no two ranks share one, as with mpirun and srun. Returns `all` if there are more
+/// ranks than processors.
+/// @param rank [0, ranks)
 inline cpu_set_t ProcessorsOf(const cpu_set_t& all, int rank, int ranks) {
   const int share = CPU_COUNT(&all) / ranks;
   if (share == 0) return all;

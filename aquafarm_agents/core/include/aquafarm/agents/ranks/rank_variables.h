@@ -6,26 +6,30 @@
 
 namespace aquafarm::agents {
 
-/// Place of this process among the processes of one training, as its launcher describes it.
+/// Rank of this process among the processes of one training, as its launcher specifies it.
 struct RankVariables {
   int rank{};            ///< [0, world_size)
-  int world_size{1};     ///< 1: this process trains alone
-  std::string launcher;  ///< variable that holds the number of processes; empty if there is none
+  int world_size{1};     ///< number of processes; 1: this process trains alone
+  std::string launcher;  ///< name of the variable with world_size; empty without a launcher
   std::string master_addr{"127.0.0.1"};  ///< host of rank 0
   int master_port{29500};                ///< TCP port that rank 0 opens
 };
 
-/// Returns the value of an environment variable, nullptr if it is not set.
+/// Returns the value of an environment variable; nullptr if it is not set.
 using GetVariable = std::function<const char*(const char*)>;
 
-/// Reads the variables of torchrun (RANK, WORLD_SIZE), Open MPI's mpirun, MPICH's mpiexec or
-/// Slurm's srun, in this order, and MASTER_ADDR and MASTER_PORT.
+/// Reads the variables of the first of these launchers that has set them: torchrun (RANK,
+/// WORLD_SIZE), Open MPI's mpirun, MPICH's mpiexec, Slurm's srun. With several processes it also
+/// reads the address of rank 0:
 ///
-/// Without MASTER_ADDR rank 0 is on this host if all ranks are, or on the first host of a Slurm
-/// step. Without MASTER_PORT the port follows from the job (PMIX_NAMESPACE of Open MPI, PMI_JOBID
-/// of mpiexec, SLURM_JOB_ID and SLURM_STEP_ID of srun), one of 10,000, so that two jobs on one host
-/// seldom meet. It is 29500 if the launcher sets none of these.
-/// @throws InputError naming the variable, its value and the expected range
+///   MASTER_ADDR   host of rank 0. If not set: the first host of a Slurm step, else 127.0.0.1
+///   MASTER_PORT   port that rank 0 opens. If not set: one of the 10,000 ports from 20000 on, which
+///                 a hash of the job's name selects, so that two jobs on one host rarely use the
+///                 same port. The name is in PMIX_NAMESPACE (Open MPI), PMI_JOBID (mpiexec), or
+///                 SLURM_JOB_ID and SLURM_STEP_ID (srun). Without a name the port is 29500
+///
+/// @throws InputError if a variable has a wrong value, if only one of RANK and WORLD_SIZE is set,
+///   or if MASTER_ADDR is not set although the ranks are on several hosts
 RankVariables ReadRankVariables(const GetVariable& get);
 
 }  // namespace aquafarm::agents

@@ -13,13 +13,13 @@
 
 namespace aquafarm::agents {
 
-/// A storm as an authority forecasts it, or as it was recorded later (a hindcast).
+/// A storm as an authority forecasts it, or, in a hindcast, as it was recorded later.
 struct CentralForecast {
   StormPath path;              ///< in steps of the ensemble; step 0 is the start of the plan
-  std::vector<double> lead_h;  ///< lead time of each point [h]; 0 or negative if it was observed
+  std::vector<double> lead_h;  ///< lead time of each point; 0 or negative if it was observed
   /// Lead time of the last report with radii; minus infinity if all radii are estimated.
   double size_report_h{-std::numeric_limits<double>::infinity()};
-  GradeRisks risks;  ///< of grades 1 to 4
+  GradeRisks risks;  ///< risks of the rings for grades 1 to 4
 };
 
 /// Size and resolution of an ensemble.
@@ -27,11 +27,11 @@ struct EnsembleOptions {
   std::int32_t members{1000};
   std::uint64_t seed{1};
   ForecastErrors errors;
-  std::int32_t width{};  ///< of the ranch [cells]
-  std::int32_t height{};
+  std::int32_t width{};   ///< of the ranch [cells]
+  std::int32_t height{};  ///< of the ranch [cells]
   double cell_size_km{};
-  double step_s{};       ///< length of a step
-  std::int32_t steps{};  ///< steps 0 … steps - 1 at times 0 … (steps - 1) · step_s
+  double step_s{};       ///< duration of a step
+  std::int32_t steps{};  ///< number of steps; step i is at the time i · step_s
 };
 
 }  // namespace aquafarm::agents

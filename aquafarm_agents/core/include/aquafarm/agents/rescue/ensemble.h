@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Many possible futures of one storm, and what each of them does to a ranch.
+/// Many possible futures (members) of one storm, and the effects of each on a ranch.
 ///
 ///   central forecast ──> + errors that grow with lead time (forecast_errors.h) ──> members
 ///   member ──> rings of wind over the cells in each step ──> arrival of each ring at each cell,
 ///              probability of each ring by step and cell, exposure of the devices
 ///
-/// Member i of a seed is the same in every ensemble, however many members the ensemble has.
+/// For a given forecast and seed, member i does not depend on the number of members.
 
 #include <array>
 #include <cstdint>
@@ -20,26 +20,27 @@
 
 namespace aquafarm::agents {
 
-/// Mean and spread of the members at one point of the central forecast.
+/// Spread of the members about one point of the central forecast.
 struct EnsembleSpread {
-  double time_s{};  ///< after the start of the plan
-  double lead_h{};
-  std::array<double, 2> center{};  ///< of the central forecast [cells]
-  double along_km{};               ///< standard deviation
-  double across_km{};
+  double time_s{};                 ///< after the start of the plan
+  double lead_h{};                 ///< lead time of the point
+  std::array<double, 2> center{};  ///< centre of the storm in the central forecast [cells]
+  double along_km{};               ///< standard deviation of the position along the track
+  double across_km{};              ///< standard deviation of the position across the track
   double radius70_km{};  ///< 70 % of the members are at most this far from the central forecast
-  double wind_mps{};     ///< standard deviation
-  double size_log{};     ///< standard deviation of the logarithm of the radii's factor
+  double wind_mps{};     ///< standard deviation of the wind
+  double size_log{};     ///< standard deviation of the logarithm of the factor of all radii
 };
 
-/// The members. All arrays are computed by the constructor.
+/// The members. The constructor computes all arrays.
 class Ensemble {
  public:
-  /// Step that stands for "not within the known time".
+  /// Arrival of a ring that does not arrive within the known time.
   static constexpr std::int16_t kNoArrival = std::numeric_limits<std::int16_t>::max();
 
-  /// @param sites cells whose exposure is needed
-  /// @throws InputError if there are too many steps or members
+  /// @param sites cells of the map for which Exposure is computed
+  /// @throws InputError if the number of members, steps or rings, or the memory for them, is out of
+  ///   range
   Ensemble(const CentralForecast& forecast, const EnsembleOptions& options,
            const std::vector<Cell>& sites);
 
@@ -61,19 +62,21 @@ class Ensemble {
     const auto at = static_cast<std::size_t>(step);
     return exposure_.data() + (site * static_cast<std::size_t>(steps()) + at) * count;
   }
-  /// Number of members whose ring covers each cell at a step, [H, W].
+  /// Number of members in which a ring covers each cell at a step, [H, W].
   const std::uint16_t* Covered(std::int32_t ring, std::int32_t step) const {
     const auto cells = static_cast<std::size_t>(options_.width * options_.height);
     return covered_.data() + static_cast<std::size_t>(ring * steps() + step) * cells;
   }
-  /// Number of members whose ring covers at least one cell at a step.
+  /// Number of members in which a ring covers at least one cell at a step.
   std::int32_t Touching(std::int32_t ring, std::int32_t step) const {
     return touching_[static_cast<std::size_t>(ring * steps() + step)];
   }
   /// Spread at the points of the central forecast.
   const std::vector<EnsembleSpread>& spread() const { return spread_; }
 
-  /// Mean layers of all members, for the exact planner: layer i belongs to step first_step + i.
+  /// Returns the mean layers of all members for the planner (risk_source.h), without layers by kind
+  /// of device. Layer i belongs to step first_step + i.
+  /// @param first_step [0, steps())
   /// @param step_reward reward of a step without risk
   RiskField MeanRisk(std::int32_t first_step, float step_reward) const;
 
@@ -84,7 +87,7 @@ class Ensemble {
   std::vector<float> exposure_;         // [sites, steps, members]
   std::vector<std::uint16_t> covered_;  // [rings, steps, cells]
   std::vector<std::int32_t> touching_;  // [rings, steps]
-  std::vector<float> risk_sum_;         // [steps, cells], over the members
+  std::vector<float> risk_sum_;         // [steps, cells] sum of the risks of all members
   std::vector<EnsembleSpread> spread_;
 
   friend class EnsembleBuilder;

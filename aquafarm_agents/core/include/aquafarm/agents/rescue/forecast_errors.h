@@ -11,22 +11,22 @@
 /// Positions: China Meteorological Administration in 2015 (Verification on forecasts of tropical
 /// cyclones over western North Pacific in 2015, Meteorological Monthly 43(4), 2017, abstract).
 /// Winds: middle of the range of four centres in 2012 (Chen, Yu and Cao 2013, Meteorological
-/// Monthly 39(10), 1350-1358, abstract); at lead time 0 the National Meteorological Centre in 2021
-/// (Verification on typhoon forecasts … in 2022, Meteorological Monthly 50(5), 2024, abstract).
-/// Between and after these lead times errors are linear.
+/// Monthly 39(10), 1350-1358, abstract). Winds at lead time 0: National Meteorological Centre in
+/// 2021 (Verification on typhoon forecasts … in 2022, Meteorological Monthly 50(5), 2024,
+/// abstract). Errors are linear between these lead times, and continue linearly after the last one.
 ///
-/// Assumed, because the sources give mean errors alone: errors are normal, of the same size along
-/// and across the track, and correlated along the track by exp(-difference of lead times / 48 h).
-/// An error along the track is an error of the time of arrival.
+/// The sources contain only mean errors. The following is assumed: errors are normal, have the same
+/// size along and across the track, and are correlated by exp(-difference of lead times / 48 h). An
+/// error along the track is an error of the time of arrival.
 ///
-/// **Radii.** All radii of a storm have one log-normal factor. Without reported radii it has the
-/// spread of recorded radii about EstimateRadius (tracks/wind_radii.h) for the storm's strength at
-/// each time: 0.45 below 48 kt, 0.41 below 64 kt, 0.35 above. After a report with radii the spread
-/// grows from the error of the report to that value: the logarithm of a storm's size, relative to
-/// EstimateRadius and in units of this spread, returns to 0 with exp(-time / 165 h). This is fitted
-/// to the JMA's best tracks of 2015 to 2021: the correlation of the 30 kt radii of one storm is
-/// 0.87 after 24 h (2,864 pairs), 0.76 after 48 h, 0.64 after 72 h, 0.55 after 96 h, 0.48 after 120
-/// h (798 pairs).
+/// **Radii.** All radii of a storm are multiplied by one log-normal factor. Without reported radii,
+/// its spread is that of recorded radii about EstimateRadius (tracks/wind_radii.h), by the storm's
+/// strength at each time: 0.45 below 48 kt, 0.41 below 64 kt, 0.35 above. After a report with
+/// radii, the spread grows from the error of the report to this value: the logarithm of a storm's
+/// size, relative to EstimateRadius and in units of this spread, decays with exp(-time / 165 h).
+/// The 165 h are fitted to the JMA's best tracks of 2015 to 2021. The correlation of the 30 kt
+/// radii of one storm is 0.87 after 24 h (2,864 pairs), 0.76 after 48 h, 0.64 after 72 h, 0.55
+/// after 96 h and 0.48 after 120 h (798 pairs).
 
 #include <vector>
 
@@ -34,33 +34,34 @@
 
 namespace aquafarm::agents {
 
-/// Statistics of forecast errors; the defaults are those of the table above.
+/// Statistics of forecast errors. The defaults are those of the table above.
 struct ForecastErrors {
   std::vector<double> position_lead_h{0.0, 24.0, 48.0, 72.0, 96.0, 120.0};
-  std::vector<double> position_km{14.1, 66.2, 119.5, 176.3, 244.3, 328.5};  ///< mean distance
+  std::vector<double> position_km{14.1, 66.2, 119.5, 176.3, 244.3, 328.5};  ///< mean distances
   std::vector<double> wind_lead_h{0.0, 24.0, 48.0, 72.0};
-  std::vector<double> wind_mps{1.4, 4.37, 6.5, 7.78};  ///< mean absolute error
-  double correlation_h{48.0};           ///< e-folding difference of lead times [assumed]
-  double size_factor{1.0};              ///< factor of the spread of radii [assumed]
-  double size_memory_h{kSizeMemory_h};  ///< e-folding time of a storm's size, see above
-  double size_report_error{0.1};        ///< log-standard deviation of a reported radius [assumed]
+  std::vector<double> wind_mps{1.4, 4.37, 6.5, 7.78};  ///< mean absolute errors
+  /// Difference of lead times over which the correlation falls by a factor of e (assumed).
+  double correlation_h{48.0};
+  double size_factor{1.0};              ///< factor of the spread of radii (assumed)
+  double size_memory_h{kSizeMemory_h};  ///< time in which a storm's size decays by a factor of e
+  double size_report_error{0.1};        ///< log-standard deviation of a reported radius (assumed)
   double scale{1.0};                    ///< factor of all errors: 0.5 halves them, 0 removes them
 };
 
-/// Standard deviations at one lead time.
+/// Standard deviations of the errors at one lead time.
 struct ForecastSpread {
-  double position_km{};  ///< along the track, and the same across it
-  double wind_mps{};
+  double position_km{};  ///< of the position along the track; across the track it is the same
+  double wind_mps{};     ///< of the wind
 };
 
-/// Returns the spread at a lead time. A normal error in two directions with standard deviation s
-/// has the mean distance s · sqrt(pi / 2), and a normal error in one direction has the mean
-/// absolute value s · sqrt(2 / pi).
-/// @param lead_h hours after the forecast was issued; a negative one counts as 0
+/// Returns the standard deviations at a lead time. They follow from the mean errors: a normal error
+/// with standard deviation s in each of two directions has the mean distance s · sqrt(pi / 2), and
+/// a normal error in one direction has the mean absolute value s · sqrt(2 / pi).
+/// @param lead_h hours after the issue of the forecast; a negative value counts as 0
 ForecastSpread SpreadAt(const ForecastErrors& errors, double lead_h);
 
-/// Returns the log-standard deviation of a storm's radii, without errors.scale.
-/// @param log_sigma of recorded radii about EstimateRadius
+/// Returns the log-standard deviation of a storm's radii, not multiplied by errors.scale.
+/// @param log_sigma log-standard deviation of recorded radii about EstimateRadius
 /// @param since_report_h hours after the last report with radii; infinity without such a report
 double SizeSpreadAt(const ForecastErrors& errors, double log_sigma, double since_report_h);
 

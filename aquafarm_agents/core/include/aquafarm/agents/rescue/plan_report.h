@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The complete result of a rescue plan, as text for people and as JSON for programs
+/// The complete result of a rescue plan, as text for operators and as JSON for programs
 /// (aquafarm_bringup/python/aquafarm_plan/plan.schema.json).
 
 #include <string>
@@ -14,58 +14,60 @@ namespace aquafarm::agents {
 
 /// Outcome of a plan, and the exit code of aquafarm_plan.
 enum class PlanResult : std::uint8_t {
-  kPlan = 0,             ///< ships leave
-  kNothingSaved = 10,    ///< winds come, and no ship can save anything worth its cost
-  kStormStaysAway = 11,  ///< no member of the ensemble reaches a device in the known time
-  kStormUnknown = 12,    ///< wind and radii are unknown while the storm is near, or the forecast
-                         ///< ended before the present time
-  kBulletinOld = 13,     ///< the bulletin is older than 12 hours; kStormUnknown comes before it
+  kPlan = 0,             ///< the plan saves something
+  kNothingSaved = 10,    ///< winds come, and no trip saves more than it costs
+  kStormStaysAway = 11,  ///< no winds reach a device or a route in the known time in any member
+  kStormUnknown = 12,    ///< wind and radii are unknown while the storm is near, or no winds are
+                         ///< expected and the forecast of an old bulletin has ended
+  kBulletinOld = 13,     ///< the bulletin is 12 hours old or older, and the result is not 12
 };
 
 /// How and from which files a plan was made.
 struct PlanProvenance {
-  std::string command;
-  std::int64_t computed_at{};  ///< UTC [s since 1970]
-  double compute_s{};
-  std::vector<std::pair<std::string, std::string>> inputs;  ///< role and path of the files
+  std::string command;                                      ///< command line
+  std::int64_t computed_at{};                               ///< UTC [s since 1970]
+  double compute_s{};                                       ///< duration of the computation
+  std::vector<std::pair<std::string, std::string>> inputs;  ///< role and path of each input file
 };
 
-/// A case with its plan.
+/// The plan of a case, with its result, deadlines and comparisons.
 struct PlanReport {
-  PlanResult result{};  ///< what the bulletin states, whatever its age
-  bool is_old{};        ///< the bulletin is older than 12 hours
-  std::string text;     ///< the result in one sentence
+  PlanResult result{};  ///< never kBulletinOld
+  bool is_old{};        ///< the bulletin is 12 hours old or older
+  std::string text;     ///< the result in one or two sentences
   RescuePlan plan;
-  std::vector<std::vector<Deadline>> deadlines;  ///< by device, for kDeadlineShares
+  std::vector<std::vector<Deadline>> deadlines;  ///< by device and by kDeadlineShares
   std::vector<WhatIf> what_if;
 
-  /// Returns the result, or kBulletinOld if the bulletin is old and the result is known.
+  /// Returns `result`, or kBulletinOld if the bulletin is old and `result` is not kStormUnknown.
   PlanResult ExitCode() const {
     return is_old && result != PlanResult::kStormUnknown ? PlanResult::kBulletinOld : result;
   }
 };
-/// Chances for which deadlines are given.
+/// Chances for which a report has deadlines.
 inline constexpr std::array<double, 3> kDeadlineShares{0.95, 0.8, 0.5};
 
-/// Plans a case. May add warnings to it.
+/// Makes the plan of a case and its report. May add warnings to the case and sorts them by
+/// severity.
+/// @param ensemble made from the case
 PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble);
 
-/// End of the departures that are worth a try. At most one of the two times is set.
+/// Time until which ships may leave, after the start of the plan. At most one member is set.
 struct LastDeparture {
-  std::optional<double> none_after_s;        ///< after it no ship should leave
-  std::optional<double> not_known_beyond_s;  ///< ships may leave until then; after it the known
-                                             ///< time is too short for a trip
+  std::optional<double> none_after_s;        ///< no ship should leave after this time
+  std::optional<double> not_known_beyond_s;  ///< ships may leave until this time; for later trips
+                                             ///< the known time is too short
 };
-/// Returns the latest deadline of all devices at their sites with a chance of at least 50 %; if one
-/// of these deadlines is open, it is not known after which time no ship should leave. Devices
-/// aboard do not count: their ships come home, they do not leave.
-/// @returns neither time if there is no such deadline, if no winds come, or if the winds are
-/// unknown
+/// Returns the latest of the devices' deadlines with a chance of 50 %. It is set as
+/// not_known_beyond_s if one of these deadlines is open (Deadline::is_open), else as none_after_s.
+/// Devices aboard do not count, because their ships do not leave to fetch them. Neither member is
+/// set if there is no such deadline, if no winds come, or if the winds are unknown.
 LastDeparture LastDepartureOf(const RescueProblem& problem, const PlanReport& report);
 
-/// Returns the plan as text of about a page, in local time and UTC.
+/// Returns the plan as about a page of text. Times are in local time and UTC.
 std::string ToText(const RescueCase& rescue, const PlanReport& report);
 /// Returns the plan as JSON (aquafarm_bringup/python/aquafarm_plan/plan.schema.json).
+/// @throws InputError if an input file, whose hash is part of the JSON, cannot be read
 std::string ToJson(const RescueCase& rescue, const Ensemble& ensemble, const PlanReport& report,
                    const PlanProvenance& provenance);
 

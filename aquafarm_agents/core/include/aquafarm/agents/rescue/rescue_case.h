@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Makes the inputs of a rescue plan from a ranch, a bulletin and lists of devices and ships.
-/// Works without ROS; reads no clock.
+/// Makes the inputs of a rescue plan from a ranch, a storm file, and lists of devices and ships.
+/// The result depends only on these inputs, not on the time of the computer's clock.
 
 #include <cstdint>
 #include <memory>
@@ -17,43 +17,43 @@
 
 namespace aquafarm::agents {
 
-/// Inputs of the operator. Unset fields get defaults, which the assumptions of the case list.
+/// Inputs of the operator. The assumptions of the case list the values used for most unset fields.
 struct RescueRequest {
-  std::string bulletin;  ///< file of bulletins with forecasts
-  std::string storm;     ///< file of a recorded track: the forecast is its later part (a hindcast)
-  std::string storm_name;             ///< in that file; empty if it has one storm
-  std::optional<std::int64_t> at;     ///< start of the plan, UTC [s]; nothing later is known
-  std::optional<std::int64_t> now;    ///< present time, if the plan is made for now
-  std::string devices;                ///< CSV file
-  std::string ships_file;             ///< CSV file
-  std::optional<std::int32_t> ships;  ///< number, instead of the scenario's
-  std::optional<double> speed_kn;     ///< of ships without their own
-  std::optional<std::int32_t> capacity;
-  double depart_s{};           ///< earliest departure after the start
-  double abort_wind_kt{34.0};  ///< winds that stop a ship; see rescue_problem.h
-  double risk_averse{};
-  std::string currency;
-  std::optional<double> utc_offset_h;
-  std::int32_t members{1000};
-  std::uint64_t seed{1};
+  std::string bulletin;  ///< file of bulletins; exactly one of `bulletin` and `storm` must be set
+  std::string storm;     ///< file of a recorded track, whose later part is the forecast (hindcast)
+  std::string storm_name;           ///< storm in this file; may be empty if the file has one storm
+  std::optional<std::int64_t> at;   ///< start of the plan, UTC [s since 1970]; required for `storm`
+  std::optional<std::int64_t> now;  ///< present time, UTC [s since 1970]; unset for a past storm
+  std::string devices;              ///< CSV file; empty: the devices of the scenario
+  std::string ships_file;           ///< CSV file; empty: ships in the ports of the scenario
+  std::optional<std::int32_t> ships;     ///< number of ships; unset: that of the scenario
+  std::optional<double> speed_kn;        ///< speed of ships whose row contains none
+  std::optional<std::int32_t> capacity;  ///< capacity of ships whose row contains none
+  double depart_s{};                     ///< earliest departure, after the start of the plan
+  double abort_wind_kt{34.0};          ///< wind that stops a ship: the ring at or below it is used
+  double risk_averse{};                ///< see RescueProblem
+  std::string currency;                ///< currency of the devices' values; may be empty
+  std::optional<double> utc_offset_h;  ///< local time minus UTC; unset: from the longitude
+  std::int32_t members{1000};          ///< members of the ensemble
+  std::uint64_t seed{1};               ///< seed of the ensemble
   ForecastErrors errors;
 };
 
-/// A sentence for the operator.
+/// A warning or note for the operator.
 struct RescueWarning {
-  std::string code;      ///< for programs: a-z and _
-  std::string severity;  ///< stop, warning or note
-  std::string text;
-  std::string advice;
-  std::int32_t ship{kNone};  ///< index in RescueProblem::ships; kNone: all ships
+  std::string code;          ///< identifier for programs, of a-z and _
+  std::string severity;      ///< stop, warning or note
+  std::string text;          ///< one or more sentences
+  std::string advice;        ///< what the operator should do; may be empty
+  std::int32_t ship{kNone};  ///< index in RescueProblem::ships; kNone: concerns all ships
 };
 
-/// Basis of a number of the plan.
+/// An assumption of the plan, with its basis.
 struct RescueAssumption {
-  std::string what;
-  std::string value;
-  std::string basis;  ///< recorded, forecast, published, estimated, assumed or given
-  std::string source;
+  std::string what;    ///< what is assumed
+  std::string value;   ///< its value, with the unit
+  std::string basis;   ///< recorded, forecast, published, estimated, assumed or given
+  std::string source;  ///< publication, file, option or explanation
 };
 
 /// The storm of a case, for display.
@@ -61,24 +61,24 @@ struct StormRecord {
   std::string name;
   std::string agency;
   std::string file;
-  StormRings rings;     ///< at the points of the track
-  std::int32_t held{};  ///< see FineRings
-  std::int64_t recorded_until{};
-  std::optional<std::int64_t> issued;       ///< of the forecast
-  std::optional<std::int64_t> known_until;  ///< end of the forecast
-  bool is_hindcast{};
-  bool is_persistence{};  ///< without a forecast: the storm is assumed to keep its motion for 24 h
-  double age_h{};         ///< of the last report when the plan begins
-  Passage passage;        ///< of the central forecast over the ranch, after the start of the plan
+  StormRings rings;                         ///< rings at the points of the track
+  std::int32_t held{};                      ///< see FineRings
+  std::int64_t recorded_until{};            ///< time of the last report, UTC [s since 1970]
+  std::optional<std::int64_t> issued;       ///< issue of the forecast, UTC [s since 1970]
+  std::optional<std::int64_t> known_until;  ///< end of the forecast, UTC [s since 1970]
+  bool is_hindcast{};                       ///< the forecast is the storm as recorded later
+  bool is_persistence{};  ///< no forecast: the storm is assumed to keep its motion for 24 h
+  double age_h{};   ///< age of the last report at the present time, or at the start of the plan
+  Passage passage;  ///< of the central forecast near the ranch, after the start of the plan
 };
 
-/// A complete case.
+/// A complete case: all inputs of a plan, and the data for its report.
 struct RescueCase {
   std::shared_ptr<const Scenario> scenario;
   Layout layout;
   GeoFrame frame{{}, 1.0};
-  std::int64_t start{};  ///< UTC of step 0 [s since 1970]
-  std::int32_t utc_offset_min{};
+  std::int64_t start{};           ///< start of the plan, which is step 0, UTC [s since 1970]
+  std::int32_t utc_offset_min{};  ///< local time minus UTC
   RescueProblem problem;
   CentralForecast forecast;
   EnsembleOptions ensemble;
@@ -87,12 +87,15 @@ struct RescueCase {
   std::vector<RescueWarning> warnings;
   std::vector<RescueAssumption> assumptions;
 
+  /// Returns the cells of the devices, in their order.
   std::vector<Cell> Sites() const;
 };
 
-/// Makes a case. @param scenario of the ranch, with grid.origin
-/// @throws InputError "devices.csv:3: F3: got …" for a bad file, a place on land, off the chart or
-///   out of reach, or a storm that is not known at the start of the plan
+/// Makes a case.
+/// @param scenario scenario of the ranch, with grid.origin
+/// @throws InputError "devices.csv:3: F3: got …" if a file is wrong, if a device or ship is on land
+///   or off the chart, if no water leads from a device to a port, or if the storm is not known at
+///   the start of the plan
 RescueCase MakeRescueCase(std::shared_ptr<const Scenario> scenario, const RescueRequest& request);
 
 /// Formats a time as YYYY-MM-DDTHH:MM:SSZ.

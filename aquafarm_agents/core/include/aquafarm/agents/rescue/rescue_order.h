@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Orders to a ship and its positions.
+/// Orders to a ship, and the positions on its route.
 
 #include <cstdint>
 #include <string_view>
@@ -14,26 +14,26 @@ namespace aquafarm::agents {
 
 enum class OrderKind : std::uint8_t { kLeave, kFetch, kDeliver };
 inline constexpr int kOrderKindCount = 3;
-/// "leave", "fetch", "deliver".
+/// Returns "leave", "fetch" or "deliver".
 std::string_view ToString(OrderKind value);
 
 /// An order to a ship.
 struct RescueOrder {
   OrderKind kind{};
-  double time_s{};  ///< after the start of the plan; of leaving, or of completing the order
-  Cell cell{};
-  std::int32_t device{kNone};         ///< fetch
-  std::int32_t port{kNone};           ///< leave, if in a port; deliver
-  std::vector<std::int32_t> devices;  ///< deliver: all devices that are unloaded
-  double km{};                        ///< since the previous order
-  double kwh{};                       ///< since the previous order; 0 without RescueProblem::energy
-  double probability{};               ///< that the order is carried out
+  double time_s{};             ///< departure, or end of handling; after the start of the plan
+  Cell cell{};                 ///< where the order is carried out
+  std::int32_t device{kNone};  ///< fetch: index of the device
+  std::int32_t port{kNone};    ///< deliver, or leave from a port: index of the port; else kNone
+  std::vector<std::int32_t> devices;  ///< deliver: indices of all unloaded devices
+  double km{};                        ///< distance since the previous order
+  double kwh{};          ///< energy since the previous order; 0 without RescueProblem::energy
+  double probability{};  ///< share of the members in which the order is carried out
 };
 
-/// A position of a ship on its way.
+/// A cell on the route of a ship.
 struct TimedCell {
   Cell cell{};
-  double time_s{};  ///< of entering the cell
+  double time_s{};  ///< time at which the ship enters the cell, after the start of the plan
 };
 
 }  // namespace aquafarm::agents

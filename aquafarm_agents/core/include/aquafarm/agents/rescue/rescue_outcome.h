@@ -10,46 +10,51 @@
 
 namespace aquafarm::agents {
 
+/// Route and orders of one ship.
 struct ShipRoute {
-  std::int32_t ship{};
-  double km{};
-  double kwh{};    ///< 0 without RescueProblem::energy
-  double hours{};  ///< from each departure to the delivery before the next one
+  std::int32_t ship{};  ///< index in RescueProblem::ships
+  double km{};          ///< length of the route
+  double kwh{};         ///< energy; 0 without RescueProblem::energy
+  double hours{};       ///< time under way and at work; 0 without RescueProblem::energy
   std::vector<RescueOrder> orders;
   std::vector<TimedCell> path;
 };
 
-/// Outcome of a plan for one device.
+/// Outcome of a plan for one device. Times are after the start of the plan.
 struct DeviceOutcome {
-  std::int32_t ship{kNone};  ///< kNone: it is left behind
-  std::int32_t port{kNone};
-  double fetch_s{};
-  double deliver_s{};
-  double home{};                    ///< probability that it reaches a port
-  std::vector<double> home_before;  ///< by ring: that it is in port before the ring is at its site
+  std::int32_t ship{kNone};  ///< ship that delivers the device; kNone: it is left behind
+  std::int32_t port{kNone};  ///< port of the delivery
+  double fetch_s{};          ///< end of the pickup
+  double deliver_s{};        ///< end of the delivery
+  double home{};             ///< probability that the device reaches a port
+  /// By ring: probability that the device is in port before the ring reaches its site, or that it
+  /// is in port and the ring never reaches its site.
+  std::vector<double> home_before;
   double mean_loss{};
-  double mean_loss_idle{};  ///< if no ship leaves
+  double mean_loss_idle{};  ///< mean loss if no ship leaves
 };
 
+/// Orders of all ships, and their outcome.
 struct RescuePlan {
-  std::vector<ShipRoute> routes;         ///< of the ships that leave
+  std::vector<ShipRoute> routes;         ///< one for each ship that leaves
   std::vector<DeviceOutcome> devices;    ///< by device
-  std::vector<float> loss;               ///< by member, in the currency of the devices' values
-  std::vector<float> loss_idle;          ///< by member, if no ship leaves
-  std::vector<std::uint8_t> home_count;  ///< by member: devices in port at the end
-  double saved{};                        ///< mean value saved, compared with no departure
+  std::vector<float> loss;               ///< by member, in the unit of the devices' values
+  std::vector<float> loss_idle;          ///< by member: loss if no ship leaves
+  std::vector<std::uint8_t> home_count;  ///< by member: number of devices delivered by ships
+  double saved{};                        ///< mean loss if no ship leaves minus mean loss
   double bound{};                        ///< upper bound of `saved` over all plans
-  double cost{};                         ///< of energy and ship-hours
-  /// With risk_averse: the mean of the worst members plus cost is at most this above the least one
-  /// of all sequences of direct trips; infinity if the search was not exhaustive.
+  double cost{};                         ///< cost of energy and ship-hours
+  /// With risk_averse: max amount by which another sequence of direct trips may have a smaller
+  /// objective (mean loss of the worst members plus cost). Infinity if the search was not
+  /// exhaustive.
   double averse_gap{};
-  bool is_exhaustive{};
+  bool is_exhaustive{};  ///< whether the search considered all plans (rescue_plan.h)
 };
 
-/// How a skipper without a plan chooses the next device.
+/// Rule by which a ship without a plan chooses the next device.
 enum class FetchRule : std::uint8_t {
-  kValue,    ///< the most valuable one that is left
-  kNearest,  ///< the nearest one that is left
+  kValue,    ///< the most valuable remaining device
+  kNearest,  ///< the nearest remaining device
 };
 
 }  // namespace aquafarm::agents

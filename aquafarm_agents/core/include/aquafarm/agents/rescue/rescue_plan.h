@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The rescue plan: who fetches what, when, and how likely it succeeds (inputs: rescue_problem.h).
+/// The rescue plan: which ship fetches which devices, when, and with which chance of success. See
+/// rescue_problem.h for the inputs and rules.
 ///
 /// A plan is a sequence of trips for each ship. A ship leaves as soon as it is ready, takes the
-/// shortest routes, fetches up to its capacity, and delivers at the nearest open port or at the one
-/// on the way to the next device. A later departure is never better: in each member winds stop a
-/// ship in a cell from a fixed time on, and a ship that leaves earlier is there earlier.
+/// shortest routes and fetches up to its capacity. It delivers at the nearest open port, or at the
+/// port with the shortest way to another device. A later departure is never better: in each member
+/// winds stop a ship in a cell from a fixed time on, and a ship that leaves earlier is there
+/// earlier.
 ///
-///   per ship: sequences of trips, extended device by device, each with the members in which
+///   for each ship: sequences of trips, extended device by device, each with the members in which
 ///   the ship still works ──> best value per set of devices ──> best disjoint sets of all ships
 ///
-/// Energy and ship-hours with prices (RescueEnergy) are subtracted from the value: a trip that
-/// costs more than it saves is left out. With risk_averse, the search is repeated with weights on
-/// the worst members of the plans found (`averse_gap` states how far from the best plan it may be).
+/// If energy or ship-hours have prices (RescueEnergy), their cost is subtracted from the value
+/// saved. A trip that costs more than it saves is left out. With risk_averse, the search is
+/// repeated with higher weights of the worst members of the plans found so far; `averse_gap` states
+/// how much better another plan may be.
 ///
-/// The value of a plan is additive over devices, so the combination is exact. The search keeps the
-/// best kWidth partial sequences of each length. If there are never more, it is exhaustive
-/// (`is_exhaustive`), and the plan is the best of this class. `bound` is an upper bound of the
-/// value of any plan: it assumes that the fastest ship of each device fetches this device alone,
-/// and fails only in members whose winds are at the device's site before that ship can be there.
+/// The value of a plan is the sum of the values of its devices, so combining the ships adds no
+/// error. The search keeps a limited number of partial sequences and of combinations, the best
+/// ones. If no limit is reached, it is exhaustive (`is_exhaustive`), and the plan is the best plan
+/// of this kind. `bound` is an upper bound of the value of every plan. It assumes that the fastest
+/// ship fetches each device alone, and that it fails only in members whose winds reach the device's
+/// site before that ship can have fetched the device.
 
 #include <cstdint>
 #include <optional>
@@ -30,52 +34,60 @@
 
 namespace aquafarm::agents {
 
-/// Distribution over the members.
+/// Summary of the losses of all members.
 struct LossSummary {
   double mean{};
-  double standard_error{};
-  double q05{};
+  double standard_error{};  ///< of the mean
+  double q05{};             ///< 5 % quantile
   double q50{};
   double q95{};
   double cvar05{};  ///< mean of the worst 5 % of the members
 };
-/// @param losses one per member, at least one
+/// Summarizes losses. @param losses by member, at least one
 LossSummary Summarize(std::vector<float> losses);
-/// Returns the mean of the worst share of the values; the last value of the share may count in
-/// part.
+/// Returns the mean of the largest values whose number is share · losses.size(). If this is not a
+/// whole number, the last value counts in part.
+/// @param losses at least one
 /// @param share in (0, 1]
 double MeanOfWorst(std::vector<float> losses, double share);
 
-/// Rounds of the search with risk_averse, of a plan and of a plan that is only compared with it.
+/// Max rounds of the risk-averse search for a plan.
 inline constexpr int kAverseRounds = 12;
+/// Max rounds of the risk-averse search for a plan that is only compared with another one.
 inline constexpr int kAverseRoundsToCompare = 3;
 
 /// Makes the best plan.
 /// @param averse_rounds max rounds of the search with risk_averse
-/// @throws InputError if the numbers of the problem do not fit together
+/// @throws InputError if a number of the problem is out of range, or if a device, port or ship is
+///   not on water
 RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble,
                       int averse_rounds = kAverseRounds);
 
-/// Plays the orders of a plan in the members of another ensemble with the same ranch and steps.
-/// `bound` and `is_exhaustive` of the result are not set.
+/// Plays the orders of a plan in the members of another ensemble of the same ranch. The result has
+/// no `bound` and no `is_exhaustive`.
+/// @param ensemble made for the sites of `problem`
 RescuePlan PlayRescue(const RescueProblem& problem, const Ensemble& ensemble,
                       const RescuePlan& plan);
 
-/// Returns the plan that follows a rule and ignores storms, for comparison: the ship that is free
-/// first takes the next device, and delivers at the nearest open port when it is full.
+/// Returns a plan for comparison that follows a rule and ignores storms. The ship that is free
+/// first fetches the next device. A ship delivers at the nearest open port when it is full or when
+/// no device is left.
 RescuePlan FetchInOrder(const RescueProblem& problem, const Ensemble& ensemble, FetchRule rule);
 
-/// Latest departure to a device.
+/// Latest departure to fetch a device.
 struct Deadline {
-  double probability{};           ///< min chance that the device comes home
-  std::optional<double> leave_s;  ///< after the start of the plan; nullopt: no departure reaches it
-  bool is_open{};  ///< winds stop the ship in too few members to matter: the end of the known time
-                   ///< alone limits leave_s
-  std::int32_t ship{kNone};
+  double probability{};  ///< required chance that the device comes home
+  /// Time after the start of the plan, in whole seconds; nullopt if no departure has this chance.
+  std::optional<double> leave_s;
+  /// True if only the end of the known time limits leave_s, because winds stop the ship in too few
+  /// members.
+  bool is_open{};
+  std::int32_t ship{kNone};  ///< ship that may leave at leave_s; kNone without leave_s
 };
 /// Returns, by device and probability, the latest departure of any ship that fetches this device
-/// first and brings it to the nearest open port. A ship that leaves at this time succeeds with at
-/// least this probability (share of the members); a ship that leaves a step later does not.
+/// first and brings it to the nearest open port. A ship that leaves at this time succeeds in at
+/// least this share of the members; a ship that leaves a second later does not. A ship with devices
+/// aboard delivers these first.
 std::vector<std::vector<Deadline>> Deadlines(const RescueProblem& problem, const Ensemble& ensemble,
                                              const std::vector<double>& probabilities);
 

@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Inputs of a rescue plan: a ranch with its devices, ships and ports, and an ensemble of storms.
+/// Inputs and rules of a rescue plan. The inputs are a ranch with its devices, ships and ports, and
+/// an ensemble of storms.
 ///
-/// A ship moves at its own speed from cell to cell; a diagonal is √2 cells long, unlike in the
-/// farm, where it takes one step. A pickup and a drop-off take `handling_s` each.
+/// A ship moves at its own speed from cell to cell. A diagonal move is √2 cells long and takes √2
+/// times as long as a straight move, unlike in the farm, where each takes one step. A pickup and a
+/// drop-off take `handling_s` each.
 ///
 /// **When a ship fails.** A ship stops all work of its plan as soon as it is in a cell, at sea or
-/// in port, that winds of `abort_ring` have reached at any time since the start of the plan. It
-/// then fetches and delivers nothing more. Delivered devices are safe. A device that the ship has
-/// not delivered, including one aboard, takes the damage of the whole storm at its own site. A plan
-/// continues neither after the storm nor beyond the time until which the storm is known.
+/// in port, that winds of `abort_ring` have reached at any time since the start of the plan. From
+/// then on it fetches and delivers nothing. Delivered devices are safe. A device that is not
+/// delivered, even if it is aboard, takes the damage of the whole storm at its own site. A ship
+/// does not resume work after the storm, and no trip may end after the time until which the storm
+/// is known.
 ///
 /// **Devices aboard at the start.** A ship that starts with devices aboard always gets the order to
-/// deliver them, also if no winds are expected or if winds stop it in all members. Only a ship in a
-/// port that winds stop in all members stays there. The site of these devices is the cell where the
-/// plan finds the ship.
+/// deliver them, even if no winds are expected or if winds stop it in all members. There are two
+/// exceptions: a ship in a port stays there if winds stop it in all members, and a ship that
+/// reaches no open port gets no order. The site of these devices is the cell of the ship at the
+/// start of the plan.
 ///
-/// **Damage.** Until it is delivered, a device loses in each step the share
+/// **Damage.** Until it is delivered, a device loses in each step of the ensemble the share
 /// `exposure_damage` · |r| · `damage_factor` of its value, where r is the risk at its site. It
 /// never loses more than the value that it still has.
 
@@ -33,43 +37,46 @@
 
 namespace aquafarm::agents {
 
+/// A device of the plan.
 struct RescueDevice {
   std::string name;
-  std::string kind;
-  Cell cell{};
-  double value{};             ///< in a currency, or in units of value
+  std::string kind;           ///< name of its DeviceKind
+  Cell cell{};                ///< its site
+  double value{};             ///< undamaged value, in a currency or in units of the reward
   double damage_before{};     ///< share of the value that was lost before the plan, [0, 1]
-  double damage_factor{1.0};  ///< of its kind in a typhoon (DamageSpec::kinds)
+  double damage_factor{1.0};  ///< factor of its kind in a typhoon (DamageSpec::kinds)
 };
 
+/// A port of the ranch.
 struct RescuePort {
   std::string name;
   Cell cell{};
-  bool is_open{true};  ///< a closed port takes no devices
+  bool is_open{true};  ///< false: ships cannot deliver devices here
 };
 
+/// A ship of the plan.
 struct RescueShip {
   std::string name;
-  Cell cell{};
-  double speed_kn{};  ///< with a device in tow, and without
-  std::int32_t capacity{1};
-  double ready_s{};                    ///< after the start of the plan
-  std::vector<std::int32_t> aboard{};  ///< devices that it carries at the start; may be empty
+  Cell cell{};                         ///< cell at the start of the plan
+  double speed_kn{};                   ///< speed with and without devices aboard
+  std::int32_t capacity{1};            ///< max number of devices aboard
+  double ready_s{};                    ///< earliest departure, after the start of the plan
+  std::vector<std::int32_t> aboard{};  ///< indices of the devices aboard at the start
 };
 
-/// Energy and cost of the ships. The energy is that of the ranch (farm/energy.h) in calm water; in
-/// rough sea a ship needs more:
+/// Energy and cost of the ships. The energy is that of the ranch (farm/energy.h) in calm water.
+/// The additional energy in rough sea is not included.
 ///
 ///   kWh  = per_km · km · (1 + per_device · devices aboard) + idle_kw · hours
 ///   cost = per_kwh · kWh + per_hour · hours
 ///
-/// A ship consumes and costs nothing while it is in a port before a departure.
+/// A ship that waits for its next departure consumes and costs nothing.
 struct RescueEnergy {
   double per_km{};      ///< [kWh/km]
   double per_device{};  ///< added to a factor of 1 for each device aboard
-  double idle_kw{};
-  double per_kwh{};   ///< in the currency of the devices' values; 0: the plan ignores energy
-  double per_hour{};  ///< the same, of a ship under way or at work
+  double idle_kw{};     ///< power of a ship under way or at work, independent of its speed
+  double per_kwh{};     ///< price of a kWh in the currency of the devices' values; 0: no cost
+  double per_hour{};    ///< price of an hour of a ship under way or at work; 0: no cost
 };
 
 /// Inputs of PlanRescue.
@@ -79,14 +86,16 @@ struct RescueProblem {
   std::vector<RescueDevice> devices;  ///< device i is site i of the ensemble
   std::vector<RescuePort> ports;      ///< at least one
   std::vector<RescueShip> ships;
-  double handling_s{};
-  double depart_s{};          ///< earliest departure from a port of a ship that is added
+  double handling_s{};        ///< duration of a pickup or drop-off
+  double depart_s{};          ///< earliest departure of a ship that CompareChanges adds
   std::int32_t abort_ring{};  ///< ring of the ensemble whose winds stop a ship
   double exposure_damage{};   ///< share of the value per step of the ensemble and unit of |risk|
-  double risk_averse{};       ///< 0: max mean; else the share of worst members whose mean counts
-  std::optional<RescueEnergy> energy{};  ///< nullopt: energy and costs are not known
+  /// 0: the plan maximizes the mean value saved. Else in (0, 1]: it minimizes the mean loss of this
+  /// share of the members, the worst ones.
+  double risk_averse{};
+  std::optional<RescueEnergy> energy{};  ///< nullopt: energy and costs are unknown
 
-  /// Returns the ship that starts with a device aboard; kNone if the device lies at its site.
+  /// Returns the ship that starts with a device aboard; kNone if no ship does.
   std::int32_t CarrierOf(std::size_t device) const;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Makes the plan again with one input changed: ships, departure, ports or capacity.
+/// Compares a plan with the plans for one changed input: number of ships, departure, ports or
+/// capacity.
 
 #include <string>
 #include <vector>
@@ -10,20 +11,23 @@
 
 namespace aquafarm::agents {
 
+/// The plan for one changed input, compared with the original plan.
 struct WhatIf {
-  std::string
-      change;  ///< for programs: none, ships+1, ships-1, depart+3h, port_closed:2, capacity+1
-  std::string text;
-  bool is_possible{true};
-  LossSummary loss;
-  double devices_home{};    ///< mean number
-  double all_home{};        ///< probability
-  double difference{};      ///< mean loss minus that of the plan, over the same members
-  double difference_low{};  ///< 95 % interval of it
+  /// Identifier for programs: none, ships+1, ships-1, depart+3h, port_closed:2, capacity+1.
+  std::string change;
+  std::string text;         ///< the change in words
+  bool is_possible{true};   ///< false: there is no such plan, and no number is set
+  LossSummary loss;         ///< loss of the changed plan
+  double devices_home{};    ///< mean number of devices that come home
+  double all_home{};        ///< probability that all devices come home
+  double difference{};      ///< mean loss minus that of the original plan, over the same members
+  double difference_low{};  ///< bounds of the 95 % interval of `difference`
   double difference_high{};
 };
 
-/// Returns the plan itself first, then the changes, smallest mean loss first, impossible ones last.
+/// Returns the original plan, then the possible changes by increasing mean loss, then the
+/// impossible ones.
+/// @param plan the plan for `problem` and `ensemble`
 std::vector<WhatIf> CompareChanges(const RescueProblem& problem, const Ensemble& ensemble,
                                    const RescuePlan& plan);
 

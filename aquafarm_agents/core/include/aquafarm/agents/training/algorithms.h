@@ -8,38 +8,43 @@
 
 namespace aquafarm::agents {
 
-/// All algorithms, in the order in which they are listed to users: those of this package, then
-/// those of other packages (register_learner.h), which the first call loads.
-/// @throws InputError if a learner of another package cannot be loaded
+/// All algorithms in the order in which users see them: the algorithms of this package, then those
+/// of other packages (register_learner.h). The first call loads the other packages.
+/// @throws InputError if a learner of another package cannot be loaded, or if two algorithms have
+///   the same name
 const std::vector<Algorithm>& Algorithms();
 
-/// Finds it by name. @throws InputError "algorithm: got 'dqm', expected one of: random, …"
+/// Finds an algorithm by its name.
+/// @throws InputError "algorithm: got 'dqm', expected one of: random, …"
 const Algorithm& FindAlgorithm(const std::string& name);
 
-/// Returns the steps of a training without a limit: the algorithm's default, or eight per state of
-/// a table if that is more. (Measured for Q-learning, docs/data.md; used for SARSA, too.)
+/// Returns the farm steps of a training without a limit: Algorithm::default_steps. An algorithm
+/// with a table gets at least eight steps per state, rounded up to whole millions. (Measured for
+/// Q-learning, see docs/real_ranches.md; also used for SARSA.)
 std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options);
 
-/// Returns a line about a table that needs at least 256 MB, with its size and the alternative;
-/// empty for smaller tables and for networks.
+/// Returns a line for users about a table that needs at least 256 MB, with its size and an
+/// alternative. Returns an empty text for smaller tables and for networks.
 std::string LargeTableNote(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options);
 
-/// The name for which ChooseAlgorithm selects the algorithm.
+/// Name that users give to let ChooseAlgorithm select the algorithm.
 inline constexpr const char* kAutoAlgorithm = "auto";
 
+/// Result of ChooseAlgorithm.
 struct Choice {
   std::string algorithm;
-  std::string reason;  ///< one line for people
+  std::string reason;  ///< one line for users
 };
 
-/// Selects an algorithm by device intelligence, network and number of squads, as in Fig. 6 of the
-/// paper:
+/// Selects an algorithm by the intelligence of devices, their network and the number of squads
+/// (rescue ships), as in Fig. 6 of the paper:
 ///
-///   non-intelligent devices, one squad        a single-agent learner
-///   several squads, or networked devices      a multi-agent learner
-///   intelligent devices without a network     a single-agent learner for each
+///   one agent                                          a single-agent learner (lstm_dqn)
+///   several squads, or networked intelligent devices   a multi-agent learner (vdn)
+///   intelligent devices without a network              one learner for each agent
+///                                                      (independent_dqn)
 ///
 /// A device is intelligent if it is self-propelled, and networked if view.shared_sight is set.
 Choice ChooseAlgorithm(const EnvironmentSpec& spec);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Policies in Python: a function act(observations, masks) in a file, or a model of
-/// Stable-Baselines3. They run in a process of their own, so that they may use any Python and any
-/// package. aquafarm_agents/scripts/serve_policy.py is that process and describes the messages.
+/// Policies in Python: a function such as act(observations, masks) in a file, or a model of
+/// Stable-Baselines3. Each runs in a separate process, so that it may use any Python and any
+/// package. The process runs aquafarm_agents/scripts/serve_policy.py, which describes the messages.
 
 #include <chrono>
 #include <memory>
@@ -18,37 +18,41 @@ namespace aquafarm::agents {
 /// Returns whether the text is FILE.py, FILE.py:FUNCTION or FILE.zip.
 bool IsPythonPolicy(const std::string& where);
 
-/// A Python process that chooses actions. The program is $AQUAFARM_PYTHON, else the python of the
-/// active virtual environment, else python3. Thread-safe.
+/// A Python process that chooses actions. Its interpreter is $AQUAFARM_PYTHON, else the python of
+/// the active virtual environment, else python3. Thread-safe.
 class PolicyProcess {
  public:
-  /// Max time of an answer, and of sending the observations [s].
+  /// Default of answer_limit_s [s].
   static constexpr int kAnswerLimit_s = 60;
 
-  /// Starts the process and waits until the policy is loaded.
-  /// @throws InputError with the reason in one line
+  /// Starts the process and waits for up to 180 s until the policy is loaded.
+  /// @param where FILE.py, FILE.py:FUNCTION or FILE.zip
+  /// @param answer_limit_s max time of each exchange with the process in Act: of sending an array,
+  ///   and of receiving one [s]
+  /// @throws InputError if the process cannot start or load the policy
   explicit PolicyProcess(const std::string& where, int answer_limit_s = kAnswerLimit_s);
   ~PolicyProcess();
   PolicyProcess(const PolicyProcess&) = delete;
   PolicyProcess& operator=(const PolicyProcess&) = delete;
 
-  /// The observation type that the policy reads, one of ObservationTypeBits.
+  /// The observation type that the policy reads: kIndexBit, kFeaturesBit or kPlanesBit.
   std::uint8_t observation_types() const { return observation_types_; }
 
-  /// Chooses the actions of all agents. @param actions is resized to [N, S]
-  /// @throws InputError if the policy fails or returns no valid actions. After an error that the
-  ///   process did not report itself, such as no answer in time, the connection is closed, and each
-  ///   later call throws the same line.
+  /// Chooses the actions of all agents.
+  /// @param actions is resized to [N, S]
+  /// @throws InputError if the policy fails or returns no valid actions. If the process did not
+  ///   report the error itself, for example because it did not answer in time, the connection is
+  ///   closed, and each later call throws the same error.
   void Act(const EnvironmentSpec& spec, const StepResults& results,
            std::vector<std::uint8_t>& actions);
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Max time of an answer, and the end of the line that is thrown after it.
+  /// A time limit for the process.
   struct Limit {
     int seconds;
-    const char* expected;
+    const char* expected;  ///< end of the error message after this time
   };
 
   std::string ReadLine(const Limit& limit);
@@ -67,11 +71,11 @@ class PolicyProcess {
   int process_{-1};
   std::uint8_t observation_types_{};
   Limit answer_limit_;
-  std::string broken_;  // the error after which the connection was closed; empty before
-  Mutex mutex_;         // held during a request and its answer
+  std::string broken_;  // the error after which the connection was closed; empty while it is open
+  Mutex mutex_;         // locked during a request and its answer
 };
 
-/// Returns a policy that asks `process`, which several policies may share.
+/// Returns a policy that requests its actions from `process`. Several policies may share a process.
 std::unique_ptr<Policy> MakePythonPolicy(std::shared_ptr<PolicyProcess> process,
                                          const EnvironmentSpec& spec);
 

@@ -17,54 +17,56 @@
 namespace aquafarm::agents {
 
 /// Credit assignment in scenarios with a team reward: each agent learns from its individual reward
-/// (`own`), or all agents learn from the sum (`shared`). Reported returns are always the team's.
+/// (`own`), or all agents learn from the sum of the rewards (`shared`). Reported returns are always
+/// the team's.
 inline constexpr std::array<const char*, 2> kCredits{"own", "shared"};
 
-/// Arguments of a training run, with farms in this process or behind ROS services.
+/// Arguments of a training run.
 struct RunOptions {
-  std::string algorithm{"q_learning"};  ///< or kAutoAlgorithm
-  std::string exploration;              ///< empty: default of the algorithm
+  std::string algorithm{"q_learning"};  ///< name of an algorithm, or kAutoAlgorithm
+  std::string exploration;              ///< see ParseExploration; empty: default of the algorithm
   std::string options;                  ///< key=value …; see OptionReader
-  std::string init;                     ///< policy whose weights a learner begins with, or empty
-  std::string credit{"own"};            ///< own or shared; see kCredits
-  std::uint64_t seed{1};
-  std::uint64_t episodes{};  ///< 0 with steps 0: DefaultSteps
-  std::uint64_t steps{};
-  std::string run_dir;
-  bool resume{};
+  std::string init;           ///< policy whose weights the learner starts with; may be empty
+  std::string credit{"own"};  ///< one of kCredits
+  std::uint64_t seed{1};      ///< below 2^63
+  std::uint64_t episodes{};   ///< limit; 0: no limit. If `steps` is 0, too: DefaultSteps
+  std::uint64_t steps{};      ///< limit in farm steps; 0: no limit
+  std::string run_dir;        ///< run folder (run_folder.h)
+  bool resume{};              ///< true: resumes the run in run_dir
   double checkpoint_period_s{30.0};
   double progress_period_s{1.0};
-  std::int32_t evaluation_episodes{1000};  ///< greedy, at the end; 0 disables them
-  std::int32_t random_episodes{100};       ///< of RANDOM, for comparison; 0 disables them
-  std::vector<std::string> arguments;      ///< as given; for run.json
+  std::int32_t evaluation_episodes{1000};  ///< of the greedy policy at the end; 0: no evaluation
+  std::int32_t random_episodes{100};       ///< of the policy RANDOM at the end; 0: none
+  std::vector<std::string> arguments;      ///< command line, for run.json
 };
 
 /// Phase of a training run, as reported to observers.
 enum class RunPhase : std::uint8_t { kStarting, kTraining, kEvaluating, kEnded };
 
+/// Status of a training run, as reported to observers.
 struct RunStatus {
   RunPhase phase{};
-  std::string algorithm;  ///< the selected algorithm once auto has chosen
+  std::string algorithm;  ///< kAutoAlgorithm is replaced as soon as an algorithm is selected
   TrainingProgress progress;
-  Evaluation evaluation;  ///< of the learner; valid if phase is kEnded and has_evaluation is true
+  Evaluation evaluation;  ///< of the greedy policy; valid if has_evaluation is true
   bool has_evaluation{};
   std::string message;       ///< one readable line; empty if there is no message
-  const Learner* learner{};  ///< set during training; valid only during the call
+  const Learner* learner{};  ///< set in phase kTraining; valid only during the call of the observer
 };
 
-/// What a training run ends with.
+/// Result of a training run.
 struct RunReport {
   ExitCode code{};
-  RunStatus status;
-  Evaluation random;
-  std::int32_t farms{};     ///< number of farms; 0 if no environment was made
-  std::string summary;      ///< a few readable lines; of a rank other than 0 only its failure
+  RunStatus status;         ///< the last status
+  Evaluation random;        ///< of the policy RANDOM; without episodes if it was not evaluated
+  std::int32_t farms{};     ///< number of farms of all ranks; 0 if no environment was made
+  std::string summary;      ///< a few readable lines; on ranks other than 0 only an error, or empty
   std::string policy_path;  ///< empty if no policy was written
-  std::int32_t ranks{1};
-  double exchange_fraction{};  ///< of the training time, in exchanges between ranks [0, 1]
+  std::int32_t ranks{1};    ///< number of ranks
+  double exchange_fraction{};  ///< share of the training time in exchanges between ranks, [0, 1]
 };
 
-/// Validates the options before the run starts. @throws InputError
+/// Checks the options before the run starts. @throws InputError if an option is wrong
 void CheckRunOptions(const RunOptions& options);
 
 /// Makes the environment with the observation types that the algorithm requires.
@@ -76,24 +78,25 @@ struct RankedRun {
   MakeEnvironment make_share;  ///< makes the environment with the farms of this rank
 };
 
-/// Default number of shards of a training with several ranks.
+/// Default number of shards of a training with several ranks, if there are not more ranks.
 inline constexpr int kDefaultShards = 8;
 
-/// Trains, saves the policy and evaluates it against RANDOM. Never throws; errors are returned in
-/// the report.
-/// @param make_environment with all farms
-/// @param ranked null if this process trains alone. Rank 0 alone writes the run folder, reports
-///        progress and evaluates.
+/// Trains, saves the policy, and evaluates it and the policy RANDOM. Errors are returned in the
+/// report.
+/// @param make_environment makes the environment with all farms
+/// @param on_status called with each new status; may be empty
+/// @param stop ends the run early if set, for example by a signal handler; may be null
+/// @param ranked null if this process trains alone; only rank 0 writes the run folder and evaluates
 RunReport Train(const RunOptions& options, const MakeEnvironment& make_environment,
                 const std::function<void(const RunStatus&)>& on_status,
                 const std::atomic<bool>* stop, const RankedRun* ranked = nullptr);
 
-/// Checks that the algorithm can be trained by several ranks.
-/// @param source of the number of ranks, such as WORLD_SIZE
-/// @throws InputError with the algorithms that can
+/// Checks that an algorithm can be trained by several ranks.
+/// @param source name of the variable with the number of ranks, such as WORLD_SIZE
+/// @throws InputError if it cannot; the message lists the algorithms that can
 void CheckRanks(const std::string& algorithm, int ranks, const std::string& source);
 
-/// Progress line: "steps 812,000 / 3,000,000  episodes 1,240  return 81.2  …  left 1.2 s".
+/// Returns a line such as "steps 812,000 / 3,000,000  episodes 1,240  return 81.2  …  left 1.2 s".
 std::string DescribeProgress(const TrainingProgress& progress);
 
 }  // namespace aquafarm::agents

@@ -3,13 +3,14 @@
 
 /// Folder with all files of a training run:
 ///
-///   lock           held while a process trains here
-///   scenario.yaml  canonical text of the farm
-///   run.json       algorithm, options, seed, limits, version, scenario hash, arguments
-///   metrics.csv    one line per episode
-///   checkpoints/   the last two, named by their steps
-///   policy.ckpt    the learned policy, written at the end
-///   evaluation.*   the greedy evaluation at the end
+///   lock                 file that a process locks while it trains here; contains its process id
+///   scenario.yaml        canonical text of the scenario
+///   run.json             algorithm, options, seed, limits, version, scenario hash, arguments, …
+///   metrics.csv          one line per episode
+///   checkpoints/         the last two checkpoints, named by their steps
+///   policy.ckpt          the learned policy, written at the end
+///   evaluation.*         evaluation of the greedy policy at the end
+///   evaluation_random.*  evaluation of the policy RANDOM at the end
 
 #include <cstdint>
 #include <optional>
@@ -22,10 +23,11 @@ namespace aquafarm::agents {
 
 class RunFolder {
  public:
-  /// Opens or creates the folder, checks that it is writable and locks it.
-  /// @param resume true to continue the run in the folder, false to start a new one
-  /// @throws StorageError if it is not writable or another process trains here;
-  ///         InputError if it contains a run and `resume` is false, or no run and `resume` is true
+  /// Opens or creates the folder, locks it and checks that it is writable.
+  /// @param resume true to resume the run in the folder, false to start a new run
+  /// @throws StorageError if the folder is not writable or another process trains in it
+  /// @throws InputError if `path` is empty, if the folder contains a run and `resume` is false, or
+  ///   if it contains no run and `resume` is true
   RunFolder(std::string path, bool resume);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
@@ -38,16 +40,16 @@ class RunFolder {
   /// Writes a file of the folder atomically. @throws StorageError
   void Write(const std::string& name, const std::string& bytes) const;
 
-  /// Writes checkpoints/step_<steps>.ckpt and removes all but the last two.
-  /// @throws StorageError; older checkpoints are then kept
+  /// Writes checkpoints/step_<steps>.ckpt and removes all but the last two checkpoints.
+  /// @throws StorageError if it cannot be written; the older checkpoints are then kept
   void SaveCheckpoint(const Checkpoint& checkpoint) const;
   /// Paths of all checkpoints, newest first.
   std::vector<std::string> Checkpoints() const;
-  /// Reads the newest valid checkpoint. Returns its path, empty if there is no checkpoint.
-  /// @param damage is set to a line about the newest checkpoint if that is damaged
-  /// @throws InputError with that line if all checkpoints are damaged
+  /// Reads the newest valid checkpoint. Returns its path; empty if there is no checkpoint.
+  /// @param damage is set to an error message if the newest checkpoint is damaged
+  /// @throws InputError with that message if all checkpoints are damaged
   std::string ReadNewestCheckpoint(Checkpoint& checkpoint, std::string& damage) const;
-  /// Path of the newest checkpoint; nullopt if there is none.
+  /// Path of the newest checkpoint, damaged or not; nullopt if there is none.
   std::optional<std::string> NewestCheckpoint() const { return NewestCheckpoint(path_); }
   static std::optional<std::string> NewestCheckpoint(const std::string& run_folder);
 
@@ -58,7 +60,7 @@ class RunFolder {
   int lock_{-1};
 };
 
-/// Default folder of a run: runs/<date>-<time>.
+/// Returns the default folder of a run: runs/<date>-<time>, in local time.
 std::string NewRunFolder();
 
 }  // namespace aquafarm::agents

@@ -10,7 +10,7 @@
 
 namespace aquafarm::agents {
 
-/// Name of the policy that is shipped: trained on a family of ranches, it plays any ranch with one
+/// Name of the shipped policy. It was trained on a family of ranches and plays every ranch with one
 /// ship. docs/generalist.md has its results.
 inline constexpr const char* kGeneralist = "generalist";
 
@@ -19,21 +19,23 @@ struct SavedPolicy {
   std::string path;       ///< source file, or the name of a built-in policy
   Checkpoint checkpoint;  ///< contents of the file; a built-in policy has only the algorithm
   std::uint8_t observation_types{};
-  std::shared_ptr<PolicyProcess> process;  ///< of a policy in Python, which is then the policy
+  std::shared_ptr<PolicyProcess> process;  ///< process of a policy in Python; null for others
 };
 
 /// Finds a policy by path or name.
 /// @param where a run folder, a policy or checkpoint file, a policy in Python (FILE.py,
-/// FILE.py:FUNCTION or FILE.zip, python_policy.h), or generalist, random, planner, clairvoyant,
-/// do_nothing or fetch_by_value
-/// @throws InputError if there is no such policy, or the file is damaged
+///   FILE.py:FUNCTION or FILE.zip, see python_policy.h), `generalist`, or the name of an algorithm
+///   that does not learn, such as random, planner, clairvoyant, do_nothing or fetch_by_value
+/// @throws InputError if there is no such policy, if its file is damaged, or if its Python process
+///   cannot start
 SavedPolicy FindPolicy(const std::string& where);
 
 /// Returns whether a policy reads entity tokens (observation/tokens.h).
 bool ReadsTokens(const Checkpoint& checkpoint);
 
-/// Makes a policy that plays on farms of `spec`. The scenario may differ from that of the training.
-/// @throws InputError with the reason if it does not fit
+/// Makes a policy that plays on farms of `spec`. Their scenario may differ from that of the
+/// training.
+/// @throws InputError if the policy does not fit the farms, or if it was trained by another version
 std::unique_ptr<Policy> MakePolicy(const SavedPolicy& saved, const EnvironmentSpec& spec);
 
 }  // namespace aquafarm::agents

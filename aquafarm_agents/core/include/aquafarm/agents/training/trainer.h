@@ -22,14 +22,16 @@ namespace aquafarm::agents {
 struct TrainerOptions {
   std::string algorithm;             ///< name stored in checkpoints
   std::uint64_t seed{1};             ///< seed of the episodes; below kEvaluationSeedBit
-  std::uint64_t episodes{};          ///< limit; 0: no limit. One of the two limits is required
+  std::uint64_t episodes{};          ///< limit; 0: no limit. At least one limit is required
   std::uint64_t steps{};             ///< limit in farm steps; 0: no limit
-  double checkpoint_period_s{30.0};  ///< does not affect results
-  double progress_period_s{1.0};
+  double checkpoint_period_s{30.0};  ///< time between two checkpoints; does not affect results
+  double progress_period_s{1.0};     ///< time between two reports of progress
   ProcessGroup* group{};  ///< ranks that train together; null if this process trains alone
 };
 
-/// Spec of the farms of all ranks. @param spec of this rank @param group null: there is one rank
+/// Returns the spec of the farms of all ranks.
+/// @param spec spec of the farms of this rank
+/// @param group null if there is one rank
 EnvironmentSpec WholeSpec(const EnvironmentSpec& spec, const ProcessGroup* group);
 
 class PendingSteps;
@@ -41,50 +43,53 @@ struct TrainingProgress {
   std::uint64_t episode_limit{};  ///< 0: no limit
   std::uint64_t step_limit{};     ///< 0: no limit
   float last_return{};            ///< NaN before the first episode has ended
-  float mean_return{};            ///< of the last kWindow episodes; NaN before the first
-  float best_mean_return{};       ///< best mean over a full window; NaN before the first
-  float success_rate{};           ///< of the last kWindow episodes; NaN before the first
+  float mean_return{};            ///< of the last kWindow episodes; NaN before the first has ended
+  float best_mean_return{};  ///< max mean of kWindow consecutive episodes; NaN before the first
+  float success_rate{};      ///< of the last kWindow episodes; NaN before the first has ended
   LearnerStatus learner;
-  double steps_per_second{};
-  double elapsed_s{};        ///< in this process
-  double time_left_s{-1.0};  ///< -1 if unknown
-  std::uint32_t restarts{};  ///< number of times that lost farms were replaced by new ones
+  double steps_per_second{};  ///< since the previous report
+  double elapsed_s{};         ///< since the training started or resumed in this process
+  double time_left_s{-1.0};   ///< -1 if unknown
+  std::uint32_t restarts{};   ///< number of times that lost farms were replaced by new ones
   inline static constexpr int kWindow = 50;
 };
 
 /// Reason for the end of a training.
 enum class TrainingEnd : std::uint8_t {
-  kDone,
-  kInterrupted,
-  kLost,
-  kStorage,
-  kDiverged,
-  kRankLost,
-  kBadInput  ///< a rank cannot continue, such as without a ranch of its family
+  kDone,         ///< a limit is reached
+  kInterrupted,  ///< `stop` was set
+  kLost,         ///< the farms were lost, or came back with another scenario
+  kStorage,      ///< the run folder cannot be written
+  kDiverged,     ///< learning failed (LearnerFailed)
+  kRankLost,     ///< another rank was lost
+  kBadInput      ///< with several ranks: an InputError, for example no valid ranch of a family
 };
 
 /// Trains a learner on an environment: limits, progress, metrics, checkpoints, interruption. The
-/// same options give bit-identical results, however often the training is stopped and resumed.
+/// same options give bit-identical results, even if the training is stopped and resumed, unless
+/// farms are lost.
 class Trainer {
  public:
-  /// @param folder for metrics and checkpoints; null to write none, as on all ranks but rank 0
-  /// @throws InputError if no limit is set
+  /// @param environment, learner, folder must outlive the trainer
+  /// @param folder receives metrics and checkpoints; null: none are written (on ranks other than 0)
+  /// @throws InputError if no limit is set, or if the seed is not below kEvaluationSeedBit
   Trainer(Environment& environment, Learner& learner, const TrainerOptions& options,
           RunFolder* folder = nullptr);
   ~Trainer();
 
-  /// Continues from a checkpoint of the same run. Must be called before Run.
-  /// @param path prefix of error messages
-  /// @throws InputError naming the difference if it does not fit
+  /// Resumes from a checkpoint of the same run. Must be called before Run.
+  /// @param path file name of the checkpoint, for error messages
+  /// @throws InputError if the checkpoint is damaged or belongs to another run
   void Resume(const Checkpoint& checkpoint, const std::string& path);
 
   using OnProgress = std::function<void(const TrainingProgress&)>;
 
-  /// Trains until a limit is reached or `stop` is set, then saves. Does not throw on failures of
-  /// the farms, the disk or the ranks: they are reported by the returned end and message(). Without
-  /// other ranks a training that lost its farms is saved. A rank that failed exchanges nothing
-  /// more, so its caller must close the group.
+  /// Trains until a limit is reached or `stop` is set, then saves a checkpoint. Failures of the
+  /// farms, the disk, the learner or the ranks are not thrown: the returned value and message()
+  /// report them. A training that lost its farms is saved, too, if this process trains alone. A
+  /// rank that failed exchanges nothing more, so its caller must close the group.
   /// @param stop may be set by a signal handler; null if the training cannot be stopped
+  /// @param on_progress called at the start, about every progress_period_s, and at the end
   TrainingEnd Run(const std::atomic<bool>* stop = nullptr, const OnProgress& on_progress = {});
 
   TrainingProgress progress() const { return progress_; }
@@ -117,11 +122,12 @@ class Trainer {
   RunFolder* const folder_;
   std::unique_ptr<MetricsFile> metrics_;
 
-  const StepResults* results_{};  // current; null before the start
+  const StepResults* results_{};  // the latest results; null before the start
   std::vector<std::uint8_t> actions_;
   TrainingProgress progress_;
-  std::uint64_t next_episode_{};  // above all started episodes
-  std::vector<float> returns_ = std::vector<float>(TrainingProgress::kWindow);  // ring
+  std::uint64_t next_episode_{};  // higher than the number of every started episode
+  // Ring buffers of the last episodes.
+  std::vector<float> returns_ = std::vector<float>(TrainingProgress::kWindow);
   std::vector<std::uint8_t> successes_ = std::vector<std::uint8_t>(TrainingProgress::kWindow);
   LearnerStatus status_;
   std::string message_;
@@ -129,8 +135,8 @@ class Trainer {
 
   std::uint32_t uncounted_restarts_{};
 
-  const std::uint32_t sync_interval_;      // calls of the learner's Step
-  std::unique_ptr<PendingSteps> pending_;  // since the last synchronization
+  const std::uint32_t sync_interval_;      // calls of Learner::Step between two synchronizations
+  std::unique_ptr<PendingSteps> pending_;  // results since the last synchronization
 
   using Clock = std::chrono::steady_clock;
   static bool IsDue(Clock::time_point last, double period_s);

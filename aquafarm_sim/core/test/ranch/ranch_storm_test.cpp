@@ -173,7 +173,7 @@ TEST(Ranch, BorrowsRadiiAndHasItsOwnStart) {
   request.start = kMidnight + kHour_s;
   request.step_s = 60.0;
   const BuiltRanch ranch = BuildRanch(request);
-  EXPECT_TRUE(Says(ranch.decided, "radii of 3 from bulletin.json"));
+  EXPECT_TRUE(Says(ranch.decided, "radii of 3 fixes from bulletin.json"));
   EXPECT_EQ(ranch.scenario.start_time, kMidnight + kHour_s);
   EXPECT_EQ(ranch.scenario.step_duration_s, 60.0);
   EXPECT_FLOAT_EQ(ranch.scenario.disasters[0].track[0].step, -60.0F);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sources that draw pictures. They need messages, but no node and no bag: the Python module of
-# aquafarm_gym compiles them with plain structs in the place of the messages of ROS.
+# The sources that draw pictures. They use messages but neither nodes nor bags. The Python module of
+# aquafarm_gym compiles them with plain structs instead of ROS messages.
 set(AQUAFARM_DRAWING_SOURCES
   src/base/checks.cpp
   src/base/disaster_kinds.cpp

@@ -307,10 +307,12 @@ class FiguresTest(unittest.TestCase):
         np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
         np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
         self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
-                         "time limit after 3 steps\nthe last 2 steps without pickup or drop-off",
+                         "time limit after 3 steps, the last 2 without a stop",
                          self.axes.get_title())
-        self.assertEqual((8.7, 4.7), (self.axes.get_xlim()[1], self.axes.get_ylim()[1]),
-                         "the scale of the largest ranch")
+        low, high = self.axes.get_ylim()
+        self.assertEqual(8.7, self.axes.get_xlim()[1], "the scale of the largest ranch")
+        self.assertAlmostEqual(4.7 + 0.7, high - low, msg="the scale of the largest ranch")
+        self.assertAlmostEqual(route["chart"]["height"] - 0.3, high, msg="ranches are at the top")
 
 
 if __name__ == "__main__":

@@ -52,9 +52,10 @@ class KeyboardTest(unittest.TestCase):
         storm = DisasterState(x=2, y=1, radii=[0.5, 1], risks=[-20, -5], steps_left=9, known=True)
         drawn = keyboard.draw_map(spec, FarmState(disasters=[storm]))
         self.assertEqual("..~..\n.~~~.\n..~..", drawn[:17])
-        storm.quadrants = [0.5, 0.5, 0.5, 0.5, 2, 0, 0, 0]  # only to the north-east
+        # Only to the north-east; due east is a part of the south-east.
+        storm.quadrants = [0.5, 0.5, 0.5, 0.5, 2, 0, 0, 0]
         drawn = keyboard.draw_map(spec, FarmState(disasters=[storm]))
-        self.assertEqual("..~~.\n..~~~\n.....", drawn[:17])
+        self.assertEqual("..~~.\n..~..\n.....", drawn[:17])
         storm.steps_left = 0
         self.assertNotIn("~", keyboard.draw_map(spec, FarmState(disasters=[storm])))
 

@@ -229,7 +229,7 @@ class ReplayTest(unittest.TestCase):
         words = run(SCRIPT, "render", self.bag, "--policy", "clairvoyant", *layers, "-o", one)
         self.assertIn(f"bag_policy: {self.bag}: no maps of values are written: clairvoyant reads "
                       "whole farms", words)
-        self.assertIn(f"render: {self.bag}: a policy was asked, but no values/points", words)
+        self.assertIn(f"render: {self.bag}: got choices of a policy but no values/points", words)
 
     def test_without_a_display_there_is_a_line_with_the_way_out(self):
         environment = {name: value for name, value in os.environ.items()

@@ -4,7 +4,7 @@
 
     python3 jax_policy_gradient.py [--scenario paper] [--updates 300] [--farms 256]
 
-after: pip install ./aquafarm_gym jax optax. A jitted lax.scan steps the farms through
+Install the packages first: pip install ./aquafarm_gym jax optax. A jitted lax.scan steps the farms through
 jax.experimental.io_callback, with one call for each step of all farms.
 """
 import argparse
@@ -23,7 +23,7 @@ HORIZON, GAMMA, LAMBDA, ENTROPY, REWARD_SCALE = 32, 0.98, 0.95, 0.02, 0.05
 
 
 class Farms:
-    """N farms with one ship each. Their step is a function of JAX arrays."""
+    """N farms with one ship each. `step` takes and returns JAX arrays."""
 
     def __init__(self, scenario, count):
         self.batch = core.FarmBatch(aquafarm_gym.find_scenario(scenario), count,
@@ -36,7 +36,7 @@ class Farms:
                        jax.ShapeDtypeStruct((count,), jnp.bool_))
 
     def reset(self, seed):
-        """Starts the sequence of a seed; returns (features, mask)."""
+        """Starts the sequence of episodes of a seed; returns (features, mask)."""
         self.batch.reset(seed)
         return self._now()[:2]
 
@@ -55,7 +55,9 @@ class Farms:
         return features, mask, rewards, over
 
     def step(self, actions):
-        """Returns (features, mask, rewards, over) after a step, as JAX arrays."""
+        """Takes one step. Returns (features, mask, rewards, over) as JAX arrays: rewards and over
+        (whether the episode ended) are of this step, features and mask are for the next action. A
+        farm whose episode ended has already started the next one."""
         return io_callback(self._step, self.shapes, actions, ordered=True)
 
 

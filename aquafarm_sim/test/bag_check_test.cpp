@@ -90,6 +90,12 @@ TEST(OldBag, OfVersion010IsVerifiedInSpiteOfItsOtherComments) {
   EXPECT_EQ(1U, check.episodes);
 }
 
+TEST(OldBag, WithOtherCommentsInItsDefinitionsIsVerified) {
+  const BagCheck check = CheckBag(AQUAFARM_SIM_TEST_DATA "/before_2026_11_28.bag", "");
+  EXPECT_EQ("", check.difference);
+  EXPECT_EQ(1U, check.episodes);
+}
+
 TEST(OldBag, HasZerosForTheFieldsThatItLacks) {
   const std::string path = AQUAFARM_SIM_TEST_DATA "/version_0_1_0.bag";
   std::size_t states = 0;

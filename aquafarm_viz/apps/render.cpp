@@ -42,12 +42,12 @@ constexpr int kStorage = 3;
 
 struct Request {
   std::string bag;
-  std::string asked;  // original bag, if `bag` is a copy with the choices of a policy; else empty
+  std::string asked;  // the original bag if `bag` is a copy with choices of a policy; else empty
   std::string output{"farm.png"};
-  std::string ns;                    // empty if the bag contains only one ranch
-  std::vector<std::uint64_t> steps;  // empty: step 0, or all steps for a video
-  bool at_end{};
-  bool is_stacked{};  // several steps below each other
+  std::string ns;                    // empty: the bag must contain only one ranch
+  std::vector<std::uint64_t> steps;  // empty: step 0 in a picture, all steps in a video
+  bool at_end{};                     // true: the last step instead of `steps`
+  bool is_stacked{};                 // true: several steps are below each other
   double rate_hz{10.0};
   std::uint64_t every{1};
   aquafarm_viz::Layers layers;
@@ -56,12 +56,13 @@ struct Request {
   std::string style{"dark"};
 };
 
-// The recorded steps before and after a requested one, in the first episode that has a later step.
+// The recorded steps before and after a requested step that is missing, in the first episode that
+// has later steps.
 struct Gap {
-  std::uint64_t step{};  // requested step
+  std::uint64_t step{};  // the requested step
   std::uint64_t episode{};
-  std::optional<std::uint64_t> before;  // nullopt if the episode starts later
-  std::optional<std::uint64_t> after;
+  std::optional<std::uint64_t> before;  // nullopt if the recording starts later
+  std::optional<std::uint64_t> after;   // nullopt until a later step was found
 
   void See(const FarmState& state) {
     if (after) return;
@@ -72,11 +73,11 @@ struct Gap {
   }
 };
 
-// The content of the bag, for error messages.
+// The content of the bag, for messages.
 struct Found {
-  std::uint64_t values{};
-  std::uint64_t choices{};
-  std::uint64_t states{};
+  std::uint64_t values{};   // number of messages of values/points
+  std::uint64_t choices{};  // number of messages of choice
+  std::uint64_t states{};   // number of states with a spec
   std::uint64_t first_episode{};
   std::uint64_t last_episode{};
   std::uint64_t last_step{};
@@ -84,13 +85,15 @@ struct Found {
   std::optional<std::string> version;  // version that recorded it, from its spec
 };
 
-// The name of the bag that the user has given.
+// Returns the path of the bag that the user has given.
 const std::string& Name(const Request& request) {
   return request.asked.empty() ? request.bag : request.asked;
 }
 
 std::string Missing(const Request& request, const Found& found, const std::vector<Gap>& gaps = {}) {
-  if (found.states == 0) return Name(request) + ": no state follows the spec of its episode";
+  if (found.states == 0) {
+    return Name(request) + ": got no state of an episode with a spec, expected at least one";
+  }
   for (const Gap& gap : gaps) {
     if (!gap.after) continue;
     const std::string after = std::to_string(*gap.after);
@@ -107,7 +110,7 @@ std::string Missing(const Request& request, const Found& found, const std::vecto
          " (some of them may not be recorded)";
 }
 
-// Returns the prefix of the topic `state` in the bag. Names in bags may have no namespace.
+// Returns the namespace of the topic `state` in the bag, with a slash at its end. It may be empty.
 std::string FindPrefix(const rosbag::Bag& bag, const Request& request) {
   const std::string wanted =
       request.ns.empty() || request.ns.back() == '/' ? request.ns : request.ns + "/";
@@ -139,14 +142,14 @@ std::string FindPrefix(const rosbag::Bag& bag, const Request& request) {
   throw std::runtime_error(request.bag + ": contains several ranches, select one with --ns:" + all);
 }
 
-/// Input of one picture: a state and the optional content.
+/// The input of one picture: a state, its spec and the optional content.
 struct Scene {
   const aquafarm_msgs::FarmSpec& spec;
   const FarmState& state;
   aquafarm_viz::Overlays overlays;
 };
 
-/// Calls `look` for each state of the bag (of the requested episode).
+/// Calls `look` for each state of the bag, or only for those of the requested episode.
 /// @param look returns false to stop
 Found ForEachScene(const Request& request, const std::function<bool(const Scene&)>& look) {
   rosbag::Bag bag;
@@ -160,7 +163,7 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
   aquafarm_viz::Trail route(aquafarm_viz::Trail::kWhole);
   aquafarm_msgs::TrainingStatusConstPtr training;
   std::optional<aquafarm_viz::Values> values;
-  sensor_msgs::PointCloud2ConstPtr cloud;  // not yet read, because its spec may follow it
+  sensor_msgs::PointCloud2ConstPtr cloud;  // is read with the next state, when its spec is known
   aquafarm_msgs::PolicyChoiceConstPtr choice;
   Found found;
   const auto expect_none = [&](const std::string& fault) {
@@ -209,31 +212,32 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
   return found;
 }
 
-/// Warns about requested content that the bag does not contain but a picture does not require.
+/// Warns about requested content that the bag lacks if a picture can be drawn without it. Also
+/// warns about a bag of another version.
 void WarnOfMissing(const Request& request, const Found& found) {
   if (found.gaps > 0) {
     std::fprintf(stderr, "render: %s: %s\n", Name(request).c_str(),
                  aquafarm_viz::MissingSteps(found.gaps).c_str());
   }
   if (found.version && *found.version != aquafarm::kVersion) {
-    std::fprintf(stderr, "render: %s: %s, this is %s; drawn as it is\n", Name(request).c_str(),
+    std::fprintf(stderr, "render: %s: %s, this is %s; drawn nevertheless\n", Name(request).c_str(),
                  aquafarm_sim::RecordedBy(*found.version).c_str(), aquafarm::kVersion);
   }
   if (found.values > 0 || !(request.layers.values || request.layers.moves)) return;
   if (found.choices > 0) {
     std::fprintf(stderr,
-                 "render: %s: a policy was asked, but no values/points of what is drawn are there, "
-                 "so layers values and moves are left out\n",
+                 "render: %s: got choices of a policy but no values/points for what is drawn, so "
+                 "layers values and moves are left out\n",
                  Name(request).c_str());
     return;
   }
   std::fprintf(stderr,
                "render: %s: no topic values/points, so layers values and moves are left out; "
-               "'./aquafarm render %s --policy RUN' asks a policy for them\n",
+               "'./aquafarm render %s --policy RUN' computes them with a policy\n",
                request.bag.c_str(), request.bag.c_str());
 }
 
-/// Draws the requested steps next to each other.
+/// Draws the requested steps of one episode next to each other, or below each other if is_stacked.
 void RenderPicture(const Request& request) {
   if (!cv::haveImageWriter(request.output)) {
     throw std::runtime_error(request.output +
@@ -244,7 +248,7 @@ void RenderPicture(const Request& request) {
   const std::vector<std::uint64_t> steps =
       request.steps.empty() ? std::vector<std::uint64_t>{0} : request.steps;
   std::vector<cv::Mat> pictures(request.at_end ? 1 : steps.size());
-  std::optional<std::uint64_t> episode;  // first episode with one of the steps
+  std::optional<std::uint64_t> episode;  // the first episode that has one of the steps
   std::size_t missing = pictures.size();
   std::vector<Gap> gaps(pictures.size());
   for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i].step = steps[i];
@@ -292,7 +296,7 @@ void RenderPicture(const Request& request) {
   }
 }
 
-/// Writes a video of one episode. The last state is shown for two more seconds.
+/// Writes a video of one episode. Its last picture is shown for two more seconds.
 void RenderVideo(Request request) {
   request.size.width -= request.size.width % 2;  // codecs require even sizes
   request.size.height -= request.size.height % 2;
@@ -324,31 +328,31 @@ int main(int argc, char** argv) {
   Request request;
   std::string layers{"trail,risk"};
   CLI::App app(
-      "Draws a recorded ranch, with no ROS running: steps as a picture (png, jpg), side by side "
-      "if\n"
-      "several, or an episode as a video (mp4, webm, gif).",
+      "Draws steps of a recorded ranch as a picture (png, jpg), side by side if there are "
+      "several,\n"
+      "or an episode as a video (mp4, webm, gif). Needs no ROS master.",
       "render");
   app.add_option("--bag,bag", request.bag, "bag with spec and state")->required();
-  app.add_option("-o,--output", request.output,
-                 "file to write; its ending selects the kind of file")
+  app.add_option("-o,--output", request.output, "file to write; its extension selects the format")
       ->capture_default_str();
   auto* step = app.add_option("--step", request.steps, "step of the episode (default 0)");
-  app.add_flag("--end", request.at_end, "the episode's last step")->excludes(step);
+  app.add_flag("--end", request.at_end, "the last step of the episode")->excludes(step);
   app.add_flag("--stacked", request.is_stacked,
                "several steps below each other, so that they stay readable in a narrow page");
   app.add_option("--layers", layers,
-                 "some of " + aquafarm_viz::LayerNames() + ", with commas; or none")
+                 "some of " + aquafarm_viz::LayerNames() + ", separated by commas; or none")
       ->capture_default_str();
   app.add_option("--style", request.style, "dark for screens, light for print")
       ->check(CLI::IsMember({"dark", "light"}))
       ->capture_default_str();
-  app.add_option("--fps", request.rate_hz, "video: pictures a second")
+  app.add_option("--fps", request.rate_hz, "video: pictures per second")
       ->check(CLI::Range(0.5, 60.0))
       ->capture_default_str();
-  app.add_option("--every", request.every, "video: a picture every so many steps")
+  app.add_option("--every", request.every, "video: number of steps from one picture to the next")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  app.add_option("--episode", request.episode, "episode (default: the first that has the step)");
+  app.add_option("--episode", request.episode,
+                 "episode (default: the first one that has the step)");
   app.add_option("--asked", request.asked)->group("");  // hidden; for render --policy
   app.add_option("--ns", request.ns, "namespace of the ranch (default: the only one in the bag)");
   app.add_option("--width", request.size.width, "pixels")

@@ -12,7 +12,8 @@
 namespace aquafarm_viz {
 namespace {
 
-// Frames of an episode at 640 x 640: the disaster, the ship and the text change in each frame.
+// Draws frames of an episode at 640 x 640. The disaster, the ship and the text change in each
+// frame.
 void BM_Frame(benchmark::State& bench) {
   cv::setNumThreads(1);
   const int side = static_cast<int>(bench.range(0));
@@ -45,8 +46,8 @@ void BM_FrameUnderATyphoonThatCoversAll(benchmark::State& bench) {
 }
 BENCHMARK(BM_FrameUnderATyphoonThatCoversAll)->Unit(benchmark::kMicrosecond);
 
-// Frames with V_π, greedy actions and the choice of a policy, and a route of up to 500 steps.
-// @param learns true: the map of values changes in each frame
+// Draws frames with the given layers, the choice of a policy and a route of up to 500 steps.
+// @param names layers @param learns true: the map of values changes in each frame
 void BM_FrameWith(benchmark::State& bench, const char* names, bool learns = false) {
   cv::setNumThreads(1);
   const int side = static_cast<int>(bench.range(0));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A small ranch as messages, as published by the sim node.
+/// Messages of a small ranch, as the sim node publishes them.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -66,7 +66,8 @@ inline aquafarm_msgs::DisasterState MakeDisaster(int id, float x, float y) {
   return disaster;
 }
 
-/// Returns a ranch of side x side cells: an island in the south-west, one object of each kind.
+/// Returns a ranch of side x side cells with an island in the south-west, up to `side` rocks and
+/// four ports.
 inline aquafarm_msgs::FarmSpec MakeSpec(int side = 25) {
   aquafarm_msgs::FarmSpec spec;
   spec.header.frame_id = "map";
@@ -105,7 +106,8 @@ inline aquafarm_msgs::FarmSpec MakeSpec(int side = 25) {
   return spec;
 }
 
-/// Returns a state of MakeSpec's ranch: ship 0 moves, three devices are deployed, one delivered.
+/// Returns a state of MakeSpec's ranch: ship 0 moves, three devices are deployed and one is
+/// delivered, and there is one disaster.
 inline aquafarm_msgs::FarmState MakeState(int side = 25) {
   aquafarm_msgs::FarmState state;
   state.header.frame_id = "map";
@@ -145,7 +147,8 @@ inline aquafarm_msgs::FarmState MakeEmptyState(int side = 25) {
   return state;
 }
 
-/// Returns a policy's values of MakeSpec's ranch: value x + y, greedy action north-east.
+/// Returns a message of `values/points` for MakeSpec's ranch: cell (x, y) has the value x + y, and
+/// the greedy action is north-east in all cells.
 inline sensor_msgs::PointCloud2 MakeCloud(int side = 25) {
   sensor_msgs::PointCloud2 cloud;
   cloud.header.frame_id = "map";
@@ -168,7 +171,7 @@ inline sensor_msgs::PointCloud2 MakeCloud(int side = 25) {
   return cloud;
 }
 
-/// Returns a compared policy's choice in MakeState's state: north-west.
+/// Returns the choice of a compared policy in the state of MakeState: north-west.
 inline aquafarm_msgs::PolicyChoice MakeChoice() {
   aquafarm_msgs::PolicyChoice choice;
   choice.seed = 7;
@@ -180,12 +183,13 @@ inline aquafarm_msgs::PolicyChoice MakeChoice() {
   return choice;
 }
 
-/// Makes the first index entry of a bag invalid. rosbag's reader does not validate it.
+/// Makes the first index entry of a bag invalid, which the reader of rosbag does not notice.
 inline void DamageIndex(const std::string& path) {
   std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
   std::stringstream content;
   content << file.rdbuf();
-  // The last field of the index record is followed by the length of its data, then by a time.
+  // The header of the index record ends with `ver`. Then follow the length of its data (4 bytes), a
+  // time (8 bytes) and the offset that is overwritten.
   const std::string version("ver=\x01\0\0\0", 8);
   file.seekp(static_cast<std::streamoff>(content.str().find(version) + version.size() + 4 + 8));
   file.write("\xf0\xff\xff\x7f", 4);

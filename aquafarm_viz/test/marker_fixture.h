@@ -11,7 +11,7 @@
 
 namespace aquafarm_viz::test {
 
-using Key = std::pair<std::string, int>;
+using Key = std::pair<std::string, int>;  // namespace and id of a marker
 
 inline std::map<Key, visualization_msgs::Marker> ByKey(
     const visualization_msgs::MarkerArray& array) {
@@ -23,7 +23,7 @@ inline std::map<Key, visualization_msgs::Marker> ByKey(
   return result;
 }
 
-// Returns the bearing of a marker's x axis (or, for outlines, of its bow).
+// Returns the bearing along which a marker points. @param rest_deg  as in Turned (markers/maker.h)
 inline double BearingDeg(const visualization_msgs::Marker& marker, double rest_deg) {
   const auto& q = marker.pose.orientation;
   const double yaw_deg = 2.0 * std::atan2(q.z, q.w) * 180.0 / M_PI;

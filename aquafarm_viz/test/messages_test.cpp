@@ -70,8 +70,8 @@ TEST(Pairing, ShowsNothingBeforeTheSpec) {
   EXPECT_EQ(pairing.AddState(state), "");
   EXPECT_EQ(pairing.shown().state, nullptr);
   EXPECT_EQ(pairing.Waiting(),
-            "state of episode 12 with seed 7, but no spec has come yet; nothing is drawn until it "
-            "does");
+            "got a state of episode 12 with seed 7, but no spec; nothing is drawn until its spec "
+            "arrives");
   EXPECT_EQ(pairing.AddSpec(boost::make_shared<aquafarm_msgs::FarmSpec>(test::MakeSpec())), "");
   EXPECT_EQ(pairing.shown().state, state);
   EXPECT_EQ(pairing.Waiting(), "");
@@ -86,9 +86,10 @@ TEST(Pairing, NeverShowsAStateWithTheSpecOfAnotherEpisode) {
   later->episode = 13;
   pairing.AddState(later);
   EXPECT_EQ(pairing.shown().state, first);
-  EXPECT_EQ(pairing.Waiting(),
-            "state of episode 13 with seed 7, but the last spec is of episode 12 with seed 7; "
-            "waiting for the spec that fits");
+  EXPECT_EQ(
+      pairing.Waiting(),
+      "got a state of episode 13 with seed 7, but the last spec is of episode 12 with seed 7; "
+      "waiting for the matching spec");
 }
 
 TEST(Pairing, FindsTheSpecOfAStateThatCameLate) {

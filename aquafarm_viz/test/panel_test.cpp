@@ -226,7 +226,8 @@ TEST(PlanText, DeparturesMayFollowTheEndOfTheKnownTime) {
   plan->not_known_beyond = plan->no_departure_after;
   plan->no_departure_after = ros::Time();
   EXPECT_EQ(PlanHeadline(*plan, 0.0),
-            "plan: 1 of 2 ships leave. Until when ships may leave is not known beyond 13:30.");
+            "plan: 1 of 2 ships leave. Ships may leave at least until 13:30. What follows is not "
+            "known: plan again at the next bulletin.");
   plan->result = aquafarm_msgs::RescuePlan::STORM_UNKNOWN;
   EXPECT_EQ(PlanHeadline(*plan, 0.0), "plan: 1 of 2 ships leave.");
 }

@@ -75,7 +75,7 @@ TEST_F(Replay, MissingStepsAndAnotherVersionAreSaid) {
   const std::string own = test::MakeSpec().version;
   EXPECT_EQ(tape.Notes(own), Notes({missing}));
   EXPECT_EQ(tape.Notes("9.9"),
-            Notes({missing, "recorded by version " + own + ", this is 9.9; shown as it is"}));
+            Notes({missing, "recorded by version " + own + ", this is 9.9; shown nevertheless"}));
   {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     auto spec = test::MakeSpec();
@@ -89,7 +89,7 @@ TEST_F(Replay, MissingStepsAndAnotherVersionAreSaid) {
   }
   EXPECT_EQ(ReplayTape(path_).Notes("9.9"),
             Notes({"1 step is missing; 'verify' names it",
-                   "recorded by an unnamed version, this is 9.9; shown as it is"}));
+                   "recorded by an unnamed version, this is 9.9; shown nevertheless"}));
 }
 
 TEST_F(Replay, AJumpBringsTheSpecTheWholeWayAndTheStepLast) {
@@ -216,7 +216,8 @@ TEST_F(Replay, ABagThatCannotBeShownHasItsLine) {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     bag.write("/aquafarm/spec", ros::Time(1.0), test::MakeSpec());
   }
-  EXPECT_EQ(FaultOf(path_), path_ + ": no state follows its spec");
+  EXPECT_EQ(FaultOf(path_),
+            path_ + ": got no state of an episode with a spec, expected at least one");
   {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     // A connection with the type of a state and an invalid definition.

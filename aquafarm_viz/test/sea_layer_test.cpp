@@ -67,9 +67,9 @@ std::string Refused(const aquafarm_msgs::FarmSpec& spec, const std::string& laye
 
 TEST(SeaLayer, ThatIsNotThereIsRefused) {
   EXPECT_EQ(Refused(Warm(), "sea:salt"),
-            "layers: got 'sea:salt', expected one of the scenario's: warmth");
+            "layers: got 'sea:salt', expected one of the scenario's sea layers: warmth");
   EXPECT_EQ(Refused(test::MakeSpec(8), "sea:salt"),
-            "layers: got 'sea:salt', expected one of the scenario's: it has none");
+            "layers: got 'sea:salt', but the scenario has no sea layers");
   EXPECT_EQ(Refused(Warm(), "sea:"),
             "layers: got 'sea:', expected some of: trail, risk, route, sight, values, moves, "
             "directions, labels, sea:NAME; or none");
@@ -126,7 +126,7 @@ TEST(Quadrants, AreBandsOfMarkersWhereTheyReach) {
 TEST(Quadrants, ThatAreNotFourARingAreRefused) {
   aquafarm_msgs::FarmState state = Lopsided();
   state.disasters[0].quadrants.pop_back();
-  EXPECT_NE(CheckState(state).find("quadrants.size: got 3, expected 0 or four a ring, 4"),
+  EXPECT_NE(CheckState(state).find("quadrants.size: got 3, expected 0 or four per ring, 4"),
             std::string::npos);
 }
 

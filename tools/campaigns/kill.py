@@ -83,7 +83,7 @@ def interrupted_run(campaign, what, arguments_of, longest_s, whole_group=False):
                 process.kill()
             process.communicate()
             campaign.attempt(f"kills of {what}")
-    return False
+    return campaign.check(False, f"{what}: did not end within {LIMIT_S} s after {most} kills")
 
 
 class Trainers:

@@ -17,8 +17,8 @@ hosts.""",
 the newest run under ./runs, or the shipped policy generalist if there is no run.
 ./aquafarm evaluate RANCH.yaml plays generalist on that ranch, without a training;
 ./aquafarm evaluate RUN plays the policy of that run folder.""",
-    "benchmark": """Trains every learner several times, measures them as the paper does (§4.2) and ends with its
-Table 1 next to ours and the figures. After Ctrl-C or a kill the same command resumes.""",
+    "benchmark": """Trains every learner several times, measures them as the paper does (§4.2), and writes figures and a
+table with the paper's Table 1 next to the results. After Ctrl-C or a kill the same command resumes.""",
     "sim": """Runs the ranch at rate_hz steps per second and shows it in rviz (headless:=true: no rviz). The policy
 planner steers the ships; policy:=none: they wait for commands. ./aquafarm sim RANCH.yaml plays that
 ranch with the shipped policy generalist.""",

@@ -82,7 +82,7 @@ def draw_unfinished(path, routes, title):
     figure, all_axes = plt.subplots(
         rows, columns, figsize=(4.2 * columns, (0.7 + 4.2 * size[1] / size[0]) * rows),
         squeeze=False, layout="constrained")
-    figure.get_layout_engine().set(h_pad=0.12)
+    figure.get_layout_engine().set(h_pad=0.2)
     all_axes = list(all_axes.flat)
     charts = all_axes[:len(routes)]
     for axes, (name, route) in zip(charts, routes.items()):
@@ -126,8 +126,8 @@ def plot_unfinished(axes, name, route, size):
     result = f"{route['return']:.0f}".replace("-", "−")
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
                    f"return {result}\n"
-                   f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps\n"
-                   f"the last {len(last_leg) - 1} steps without pickup or drop-off", fontsize=11)
+                   f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps, "
+                   f"the last {len(last_leg) - 1} without a stop", fontsize=11)
 
 
 def _symbols(charts):

@@ -23,8 +23,7 @@ bool SameFiles(const std::vector<StampedFile>& a, const std::vector<StampedFile>
 
 bool SameFleet(const PlanInputs& a, const PlanInputs& b) {
   if (a.fleet.has_value() != b.fleet.has_value()) return false;
-  return !a.fleet || (a.fleet->seed == b.fleet->seed && a.fleet->episode == b.fleet->episode &&
-                      a.step == b.step);
+  return !a.fleet || (*a.fleet == *b.fleet && a.step == b.step);
 }
 
 std::vector<std::pair<std::string, std::string>> InputFiles(const agents::RescueRequest& request) {

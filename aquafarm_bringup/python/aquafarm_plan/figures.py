@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Computes the other drawings of the page: the region of the storm, the timeline, the loss
-curve."""
+"""Computes the drawings of a plan's page except the map (chart.py): the region of the storm, the
+timeline and the curve of losses."""
 import datetime
 import math
 
@@ -19,7 +19,7 @@ CURVE = (520.0, 270.0, 58.0, 44.0)  # width, height, left and lower margin of th
 
 def region(plan):
     """Returns the data of the drawing of the region: the storm's track, the forecast error and the
-    rings near the ranch, in pixels. None if no position of the storm is known."""
+    rings at the future position nearest to the ranch, in pixels. None if no position of the storm is known."""
     clock, ranch = Clock(plan["clock"]), plan["ranch"]
     cell_km = ranch["cell_size_m"] / 1000
     middle = [(ranch["width"] - 1) / 2, (ranch["height"] - 1) / 2]
@@ -78,11 +78,11 @@ def _apart(drawn, least):
 
 
 def _region_labels(plan, drawn, rings, box):
-    """Returns the placed labels: the ranch, time and wind of some positions of the storm, and the
-    names of the rings."""
+    """Returns the placed labels: the ranch; time and wind at some positions of the storm; the names
+    of the rings."""
     centre = (box["x"] + box["w"] / 2, box["y"] + box["h"] / 2)
     labels = [Label(["ranch"], centre, box["w"] / 2 + 2, 14, name="ranch-name")]
-    now = [one for one in drawn if one["is_now"]][:1]  # a track may have no point at the start
+    now = [one for one in drawn if one["is_now"]][:1]  # empty: no point at the plan's start
     others = [one for one in drawn[::math.ceil(len(drawn) / (REGION_LABELS - 1))]
               if all(math.dist(one["xy"], at["xy"]) > 40.0 for at in now)]
     for one in now + others:
@@ -115,7 +115,7 @@ def _region_rings(plan, points, middle, px, px_per_km, clock):
     """Returns (rings, caption) of the future position of the storm that is nearest to the ranch."""
     future = [p for p in points if parse_time(p["time"]) > clock.start and any(p["radii_km"])]
     if not future:
-        return [], "No radius of its winds is known."
+        return [], "No rings: no later position has a known wind radius above 0."
     nearest = min(future, key=lambda p: math.dist(p["at"], middle))
     rings = [{
         "xy": px(*nearest["at"]), "r": radius * px_per_km, "ring": i,
@@ -146,8 +146,9 @@ def _cone(errors, px, px_per_km):
 
 
 def horizon_s(plan):
-    """Returns the end of the timeline [s after the start]: three hours after the last order, median
-    arrival, last departure or closest approach, but not after the end of the plan."""
+    """Returns the end of the timeline [s after the start]: three hours after the latest of the
+    orders, the median arrivals, the last departure and a closest approach within NEAREST_H, but at
+    most the end of the plan. Returns the end of the plan if there are no such events."""
     clock = Clock(plan["clock"])
     end = (clock.end - clock.start).total_seconds()
     events = [clock.seconds(o["time"]) for r in plan["plan"]["routes"] for o in r["orders"]]
@@ -168,8 +169,8 @@ def shown_hazard(plan):
 
 
 def timeline(plan):
-    """Returns the data of the timeline: curves of the probability of each ring over the ranch, and
-    below them a row of orders per ship."""
+    """Returns the data of the timeline: for each ring the curve of the probability that it touches
+    the ranch, and below them a row of orders for each ship that leaves."""
     clock, (width, left) = Clock(plan["clock"]), LINE
     end = max(horizon_s(plan), 3600)
     inner = width - left - 26
@@ -252,7 +253,8 @@ DATE_WIDTH = 84.0  # width of a date below the axis [px]
 
 
 def _dates(clock, end, x_of):
-    """Returns the local dates below the axis. Each is at the start of its day."""
+    """Returns the local dates below the axis: the first at the start of the plan, the others at
+    midnight. Dates without space are left out."""
     first = clock.local(clock.at(0))
     days = [first]
     while (days[-1] - clock.start).total_seconds() <= end:

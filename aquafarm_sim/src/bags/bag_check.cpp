@@ -8,6 +8,8 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -27,19 +29,20 @@
 namespace aquafarm_sim {
 namespace {
 
-// Returns whether a definition in a bag has the text of this version or of version 0.1.0, comments
-// included.
+// Returns whether a definition in a bag has the text of this version or an earlier text that
+// differs in comments or in the names of fields only.
 bool IsSameText(const std::string& type, const std::string& in_bag,
                 const std::string& in_this_version) {
-  // Checksums of the texts of version 0.1.0 (commit 859eafa).
-  static const std::map<std::string, std::uint64_t> kVersion010{
-      {"aquafarm_msgs/FarmSpec", 0xc74863b23d59b24eU},
-      {"aquafarm_msgs/FarmState", 0x5225216189e06b76U},
-      {"aquafarm_msgs/SavedState", 0xfea0953b02051c1aU},
-      {"aquafarm_msgs/EpisodeSummary", 0x49c1b3db06029400U}};
+  // Checksums of the texts of version 0.1.0 (commit 859eafa) and of commit 99c88b87.
+  static const std::map<std::string, std::array<std::uint64_t, 2>> kEarlier{
+      {"aquafarm_msgs/FarmSpec", {0xc74863b23d59b24eU, 0x19d768721bc846c1U}},
+      {"aquafarm_msgs/FarmState", {0x5225216189e06b76U, 0x36f6cee81a8b74bbU}},
+      {"aquafarm_msgs/SavedState", {0xfea0953b02051c1aU, 0x77a70a13a617ff5bU}},
+      {"aquafarm_msgs/EpisodeSummary", {0x49c1b3db06029400U, 0xa691dd61f0e3793eU}}};
   if (in_bag == in_this_version) return true;
-  const auto known = kVersion010.find(type);
-  return known != kVersion010.end() && known->second == aquafarm::HashBytes(in_bag);
+  const auto known = kEarlier.find(type);
+  return known != kEarlier.end() &&
+         std::count(known->second.begin(), known->second.end(), aquafarm::HashBytes(in_bag)) > 0;
 }
 
 using aquafarm::Farm;

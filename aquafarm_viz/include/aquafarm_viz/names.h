@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Names of the topics, parameters and frames of this package. All but the frame are relative.
+/// Names of the topics, parameters and frames of this package. The names of topics are relative.
 
 namespace aquafarm_viz::names {
 

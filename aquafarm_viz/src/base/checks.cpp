@@ -37,7 +37,7 @@ std::string CheckDisaster(const std::string& where, const aquafarm_msgs::Disaste
   }
   if (!disaster.quadrants.empty() && disaster.quadrants.size() != 4 * disaster.radii.size()) {
     return where + ".quadrants.size: got " + std::to_string(disaster.quadrants.size()) +
-           ", expected 0 or four a ring, " + std::to_string(4 * disaster.radii.size());
+           ", expected 0 or four per ring, " + std::to_string(4 * disaster.radii.size());
   }
   for (const float radius : disaster.quadrants) {
     if (!Within(radius, 0.0, kMaxDistance)) {

@@ -45,10 +45,10 @@ float Crossed(int x, int y, int period) {
 
 struct DisasterKind {
   const char* name;
-  float (*distance)(int x, int y, int period);  // to the nearest line of its pattern
+  float (*distance)(int x, int y, int period);  // as DistanceToPattern
 };
 
-// In the order of the constants of DisasterState.
+// Indexed by the kinds of DisasterState.
 constexpr std::array<DisasterKind, 6> kKinds{{{"typhoon", Rising},
                                               {"storm surge", Level},
                                               {"wave", Waves},

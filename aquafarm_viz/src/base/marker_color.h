@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Colours of markers. The palette itself is also used without ROS.
+/// Converts colours to those of markers. This is not in palette.h, because that is also used
+/// without ROS.
 
-#include <ros/duration.h>  // the next header lacks it
+#include <ros/duration.h>  // ColorRGBA.h needs it but does not include it
 #include <std_msgs/ColorRGBA.h>
 
 #include "aquafarm_viz/base/palette.h"
 
 namespace aquafarm_viz {
 
-/// Converts a colour to that of a marker; alpha 0 is transparent, 1 opaque.
+/// Converts a colour to that of a marker. Alpha 0 is transparent, 1 is opaque.
 inline std_msgs::ColorRGBA Color(Rgb color, double alpha = 1.0) {
   std_msgs::ColorRGBA result;
   result.r = static_cast<float>(color.r) / 255.0F;

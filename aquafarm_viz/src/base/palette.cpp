@@ -79,7 +79,8 @@ Rgb HealthColor(double health) {
 }
 
 Rgb ShipColor(std::int32_t id) {
-  // Okabe and Ito (2008), jfly.uni-koeln.de/color: distinct for colour-blind people.
+  // Colours of Okabe and Ito (2008), jfly.uni-koeln.de/color, which colour-blind people can
+  // distinguish.
   static constexpr std::array<Rgb, 6> kDecks{{{0xd5, 0x5e, 0x00},
                                               {0x00, 0x72, 0xb2},
                                               {0x00, 0x9e, 0x73},

@@ -17,7 +17,8 @@ namespace {
 constexpr std::uint32_t kReplacement = '?';
 constexpr std::uint32_t kEllipsis = 0x2026;
 
-// Reads the code point at `at` and advances `at`. An invalid byte gives the replacement character.
+// Returns the code point at `at` and advances `at`. Returns the replacement character for an
+// invalid sequence or a control character.
 std::uint32_t NextCode(std::string_view text, std::size_t& at) {
   const auto lead = static_cast<unsigned char>(text[at++]);
   if (lead < 0x80) return lead < 0x20 ? kReplacement : lead;

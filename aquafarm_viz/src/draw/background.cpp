@@ -15,7 +15,8 @@ namespace {
 
 using aquafarm_msgs::FarmSpec;
 
-// Returns the distance to the nearest zero pixel of `away_from` [cells]; large if there is none.
+// Returns the distance of each pixel to the nearest zero pixel of `away_from` [cells]; 1e6 if there
+// is none.
 cv::Mat1f DistanceCells(const cv::Mat1b& away_from, double cell_px) {
   if (cv::countNonZero(away_from) == away_from.size().area()) {
     return cv::Mat1f(away_from.size(), 1e6F);
@@ -90,7 +91,7 @@ void LabelRow(cv::Mat& image, const std::string& text, double row, const Layout&
                    Bgr(layout.style->faint));
 }
 
-// Returns minutes of arc as 30°06'N.
+// Formats minutes of arc as degrees and minutes, such as 30°06'N.
 std::string DegreesText(int minutes, char positive, char negative) {
   const int all = std::abs(minutes);
   const std::string rest = std::to_string(all % 60);
@@ -154,7 +155,7 @@ cv::Mat1b IslandCoverage(const FarmSpec& spec, const Layout& layout) {
   }
   if (cell_px < 3.0 || spec.islands.empty()) return land;
   const double sigma = 0.27 * cell_px;
-  // The border pixels are replicated, so that an island at the edge of the farm extends beyond it.
+  // Replicates the border pixels, as if an island at the edge of the farm continued beyond it.
   cv::GaussianBlur(land, land, {}, sigma, sigma, cv::BORDER_REPLICATE);
   const double steepness = std::max(1.0, 1.7 * sigma);
   land.convertTo(land, -1, steepness, 127.5 * (1.0 - steepness));

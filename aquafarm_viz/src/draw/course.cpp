@@ -12,12 +12,13 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr double kFar_px = 1.0e5;  // points farther away are clipped
-constexpr double kMinMark = 30.0;  // distance of two marks [design units]
+constexpr double kFar_px = 1.0e5;  // lines to points farther away are not drawn
+constexpr double kMinMark = 30.0;  // min mean distance of two marks [design units]
 
 bool IsNear(cv::Point2d at) { return std::abs(at.x) < kFar_px && std::abs(at.y) < kFar_px; }
 
-// The part of a line inside a picture. Returns false if there is none.
+// Clips a line to a picture. Returns false if no part of it is inside, or if an end is farther away
+// than kFar_px.
 bool Clip(const cv::Mat& image, cv::Point2d& from, cv::Point2d& to) {
   if (!IsNear(from) || !IsNear(to)) return false;
   cv::Point a(from);
@@ -54,7 +55,7 @@ void DrawDashes(cv::Mat& image, const Track& ahead, const ToPixel& to_pixel, con
   }
 }
 
-// Tints the circles of the mean error around the way ahead.
+// Tints the area of the mean forecast error around the course ahead.
 void DrawCone(cv::Mat& image, const Course& course, const ToPixel& to_pixel, const Layout& layout) {
   if (course.errors.empty()) return;
   constexpr int kSamples = 12;  // circles between two points
@@ -81,7 +82,8 @@ void DrawCone(cv::Mat& image, const Course& course, const ToPixel& to_pixel, con
   cv::drawContours(image, outlines, -1, Bgr(layout.style->label), 1, cv::LINE_AA);
 }
 
-// Returns the time between two marks [h]: a round number of hours, so that marks are apart.
+// Returns the time between two marks [h]: the shortest of some round times at which marks are at
+// least kMinMark apart on average, or 24.
 double MarkHours(const aquafarm_msgs::FarmSpec& spec, const Track& ahead, const ToPixel& to_pixel,
                  const Layout& layout) {
   double length = 0.0;
@@ -111,7 +113,7 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
   const double hours = MarkHours(spec, course.ahead, to_pixel, layout);
   const double steps = hours * 3600.0 / std::max(1.0, spec.step_duration_s);
   const double now = course.ahead.front().step;
-  const int rim = layout.Px(6);  // a mark cut by the edge is not recognizable
+  const int rim = layout.Px(6);  // the edge would cut marks in this rim
   const cv::Rect inside(rim, rim, image.cols - 2 * rim, image.rows - 2 * rim);
   for (std::size_t i = 1; i <= kMaxMarks && now + double(i) * steps <= course.ahead.back().step;
        ++i) {
@@ -137,7 +139,7 @@ void BlockMarks(const std::vector<CourseMark>& marks, FreeSpace& space, const La
 
 namespace {
 
-// Connects a mark with a label that is not next to it.
+// Draws a line from a mark to its label if the label is not next to it.
 void DrawMarkLeader(cv::Mat& image, cv::Point2d mark, cv::Rect label, const Layout& layout) {
   const cv::Point2d to = NearestIn(label, mark);
   if (cv::norm(to - mark) < 8.0 * layout.unit) return;
@@ -149,7 +151,8 @@ void DrawMarkLeader(cv::Mat& image, cv::Point2d mark, cv::Rect label, const Layo
 void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace& space,
                 const Layout& layout, const Fonts& fonts) {
   BlockMarks(marks, space, layout);
-  // Next to the mark rather than above or below it, where the course continues.
+  // Places a label to the right or left of its mark, because the course may continue above and
+  // below.
   const auto take_near = [&](FreeSpace& from, const CourseMark& mark, const std::string& text) {
     const cv::Size size(fonts.small.Width(text), fonts.small.cap_height());
     const cv::Point2d aside(size.width / 2.0 + 9.0 * layout.unit, 0.0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Draws where a disaster came from and where it goes; private to this package.
+/// Draws the past and the expected course of a disaster; private to this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 
@@ -18,27 +18,28 @@ struct Fonts;
 struct Layout;
 class FreeSpace;
 
-/// Maps a point [cells] to a pixel.
+/// Maps a point in cells to pixels of an image.
 using ToPixel = std::function<cv::Point2d(double x, double y)>;
 
-/// A mark on the way ahead.
+/// A mark on a course at a lead time.
 struct CourseMark {
   cv::Point2d at;      ///< [pixels]
   std::string text;    ///< such as "+6 h"
   std::string longer;  ///< such as "+6 h 38 m/s", used if there is space for it; may be empty
 };
 
-/// Draws a course: the past as a solid line, the way ahead dashed with marks at round hours and
-/// winds, and the mean forecast error as a cone. Draws nothing for an extrapolated course.
-/// @return the marks, for labels
+/// Draws a course: the past as a solid line, the future as a dashed line with marks at round lead
+/// times, and the mean forecast error as a cone. Draws nothing for an extrapolated course.
+/// @return the marks, for LabelMarks
 std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                                    const Course& course, const ToPixel& to_pixel,
                                    const Layout& layout);
 
-/// Keeps the places of marks free of labels.
+/// Marks the positions of marks as used, so that no label covers them.
 void BlockMarks(const std::vector<CourseMark>& marks, FreeSpace& space, const Layout& layout);
 
-/// Labels marks of a course where there is free space.
+/// Writes the texts of marks next to them where space is free, and marks that space as used. Writes
+/// `longer` only if it fits for every mark.
 void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace& space,
                 const Layout& layout, const Fonts& fonts);
 

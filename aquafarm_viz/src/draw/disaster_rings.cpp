@@ -18,14 +18,14 @@ namespace {
 using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmState;
 
-// A shade is a byte: 0 no risk, kFaintest at a risk of -5, 255 at -20. Values between 0 and
-// kFaintest are partly covered pixels of the outermost edge.
+// A shade encodes a risk as a byte: 0 means no risk, kFaintest a risk of -5, and 255 a risk of -20.
+// Values between 0 and kFaintest belong to pixels that the outermost edge covers partly.
 constexpr double kFaintest = 55.0;
-constexpr double kTintFaintest = 0.10;  // share of the colour between the lines of the pattern
-constexpr double kTintWorst = 0.24;
-constexpr double kLineShare = 0.62;  // share of the colour on the lines of the pattern
-constexpr double kEdgeShare = 0.95;
-constexpr double kLandShare = 0.35;  // fraction of tint and pattern that is drawn over land
+constexpr double kTintFaintest = 0.10;  // share of the colour between pattern lines at a risk of -5
+constexpr double kTintWorst = 0.24;     // the same at a risk of -20
+constexpr double kLineShare = 0.62;     // share of the colour on the lines of the pattern
+constexpr double kEdgeShare = 0.95;     // share of the colour on the edges of rings
+constexpr double kLandShare = 0.35;     // factor of tint and pattern over land
 
 double Shade(double risk) { return kFaintest + (255.0 - kFaintest) * Severity(risk); }
 
@@ -33,7 +33,8 @@ double SeverityOf(std::size_t shade) {
   return std::max(0.0, (double(shade) - kFaintest) / (255.0 - kFaintest));
 }
 
-// Colour of a shade, tint between the lines and half the width of the lines [pixels of a unit].
+// How a shade is drawn: its colour, the tint between the lines of the pattern, and half the width
+// of these lines [pixels].
 struct ShadeEntry {
   cv::Scalar color;
   float tint{};
@@ -76,7 +77,7 @@ class Pattern {
   std::vector<float> distances_;
 };
 
-using Patterns = std::vector<std::optional<Pattern>>;  // of the kinds that are drawn
+using Patterns = std::vector<std::optional<Pattern>>;  // by KindIndex; nullopt: kind is not drawn
 
 std::size_t KindIndex(std::uint8_t kind) {
   return std::min<std::size_t>(kind, DisasterKindCount() - 1);
@@ -90,7 +91,7 @@ struct Rings {
   std::uint8_t kind{};
 };
 
-// One row of the map.
+// What the disasters add to one row of the map.
 struct RingRow {
   RingRow(std::size_t columns, std::uint8_t kind)
       : shades(columns), edges(columns), kinds(columns), scratch(columns), first_kind(kind) {}
@@ -99,11 +100,11 @@ struct RingRow {
     std::fill(edges.begin(), edges.end(), 0.0F);
     std::fill(kinds.begin(), kinds.end(), first_kind);
   }
-  std::vector<float> shades;        // of the worst disaster at each pixel
+  std::vector<float> shades;        // shade of the worst disaster at each pixel
   std::vector<float> edges;         // coverage by the edges of rings
   std::vector<std::uint8_t> kinds;  // kind of the worst disaster
-  std::vector<float> scratch;
-  std::uint8_t first_kind;  // kind of a pixel that only an edge covers
+  std::vector<float> scratch;       // shades of one disaster
+  std::uint8_t first_kind;          // kind of a pixel that only an edge covers
 };
 
 float Largest(const std::array<float, 4>& radii) {
@@ -125,7 +126,7 @@ Rings InPixels(const DisasterState& disaster, const Layout& layout) {
   return rings;
 }
 
-// Returns whether the edge of any ring may cross a map.
+// Returns whether the edge of any ring may cross the map.
 bool HasEdgeOn(const Rings& rings, cv::Size map) {
   const cv::Point2d centre = rings.centre;
   const cv::Point2d far(std::max(centre.x, map.width - centre.x),
@@ -138,7 +139,7 @@ bool HasEdgeOn(const Rings& rings, cv::Size map) {
   });
 }
 
-// Adds one disaster to a row: updates the worst shade and the coverage by ring edges of each pixel.
+// Adds one disaster to a row: updates the worst shade of each pixel and its coverage by ring edges.
 void ShadeRow(const Rings& rings, int row, RingRow& out) {
   const auto north = static_cast<float>(row - rings.centre.y);
   const auto east = static_cast<float>(rings.centre.x);
@@ -231,7 +232,7 @@ void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land,
     const bool has_edge = std::any_of(all.begin(), all.end(), [&](const Rings& other) {
       return other.kind == rings.kind && HasEdgeOn(other, map.size());
     });
-    pattern.emplace(rings.kind, layout.Px(has_edge ? 13 : 30));  // wider: it marks no boundary
+    pattern.emplace(rings.kind, layout.Px(has_edge ? 13 : 30));  // wider without an edge on the map
   }
   const ShadeTable table = MakeShadeTable(*layout.style, is_tinted ? layout.style->ring_tint : 0.0);
   RingRow line(static_cast<std::size_t>(map.cols), all.front().kind);

@@ -25,7 +25,7 @@ void DrawHeading(cv::Mat& map, cv::Point2d from, double bearing_deg, double leng
 }
 
 void DrawTyphoonEye(cv::Mat& map, cv::Point2d at, double radius_px, const cv::Scalar& color) {
-  // One arm of the chart symbol, counter-clockwise as in the northern hemisphere.
+  // One arm of the symbol of a typhoon on charts, counter-clockwise as in the northern hemisphere.
   static const std::vector<cv::Point2f> kArm = [] {
     constexpr int kCorners = 14;
     std::vector<cv::Point2f> points;
@@ -101,7 +101,7 @@ SignPlace PlaceSign(const DisasterState& disaster, const Layout& layout) {
     if (disaster.speed > 0.0F) sign.arrow_to = centre + heading * length;
     return sign;
   }
-  // Where the line from the middle of the map to the centre meets the edge.
+  // The pointer lies where the line from the middle of the map to the centre reaches the edge.
   const cv::Point2d middle(map.width / 2.0, map.height / 2.0);
   const double margin = std::min(13.0 * layout.unit, std::min(middle.x, middle.y));
   const cv::Point2d away = centre - middle;
@@ -122,7 +122,7 @@ std::vector<SignPlace> PlaceSigns(const FarmState& state, const Layout& layout) 
     if (sign.is_inside || !IsDrawn(disaster)) continue;
     const cv::Point2d middle(layout.map.width / 2.0, layout.map.height / 2.0);
     const cv::Point2d from_middle = sign.at - middle;
-    // Whether the pointer is on the left or right border.
+    // True if the pointer is at the left or right border.
     const bool is_aside = std::abs(from_middle.x) * middle.y > std::abs(from_middle.y) * middle.x;
     const cv::Point2d along = is_aside ? cv::Point2d(0.0, apart) : cv::Point2d(apart, 0.0);
     const cv::Rect2d inside({0.0, 0.0}, cv::Size2d(layout.map.size()));

@@ -53,7 +53,7 @@ void DrawPort(cv::Mat& image, cv::Point2d at, std::int32_t id, const Layout& lay
                   Bgr(kInk));
 }
 
-// Places objects of one cell next to each other.
+// Returns offsets that place several objects of one cell around its centre.
 class Crowd {
  public:
   cv::Point2d Offset(int x, int y, int of, double radius_px) {
@@ -119,24 +119,25 @@ void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, d
   StrokeShape(image, outline, placing, Bgr(kInk), rim + 1);
   FillShape(image, outline, placing, Bgr(color));
   if (placing.size_px < 7.0) return;
-  // the net pen inside the frame
+  // A smaller outline: the net pen inside the frame.
   StrokeShape(image, outline, {placing.at, 0.55 * placing.size_px, placing.bearing_deg},
               Bgr(Mix(color, kInk, 0.55)), rim);
 }
 
 namespace {
 
-constexpr double kBetweenHeads = 50.0;  // of the arrowheads of a path [design units]
+constexpr double kBetweenHeads = 50.0;  // min distance of two arrowheads on a path [design units]
 
-// The colour of a part of a ship's path: green, which no risk has, or that of the ship where there
-// are several. It fades into the sea.
+// Returns the colour of a part of a ship's path. The path of the only ship is green, which no risk
+// has. If there are several ships, it has the colour of its ship. It fades into the sea with its
+// age.
 // @param age  0: now, 1: the oldest part
 Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
   const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.6) : style.good;
   return Mix(fresh, style.sea_south, 0.55 * age);
 }
 
-// Draws in which direction a ship moved from one point to another.
+// Draws an arrowhead between two points of a path, in the direction of the motion.
 void DrawDirection(cv::Mat& map, cv::Point2d from, cv::Point2d to, const cv::Scalar& color,
                    const Layout& layout) {
   static const std::vector<cv::Point2f> kHead{{0.0F, 1.0F}, {-0.9F, -0.8F}, {0.9F, -0.8F}};
@@ -182,7 +183,7 @@ void DrawPaths(cv::Mat& map, const FarmState& state, const Trail& paths, const L
 void DrawSight(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
   if (spec.view_mode != FarmSpec::PARTIAL) return;
   const double radius_px = double(spec.sensor_radius) * layout.view.cell_px();
-  if (!(radius_px > 0.0 && radius_px < map.rows + map.cols)) return;  // NaN or larger than the map
+  if (!(radius_px > 0.0 && radius_px < map.rows + map.cols)) return;  // also if it is NaN
   for (const auto& ship : state.ships) {
     if (!ship.visible || !ship.active || !InGrid(spec, ship.x, ship.y)) continue;
     StrokeCircle(map, layout.view.ToPixel(ship.x, ship.y), radius_px, Bgr(kPaper), layout.Px(1.5));
@@ -225,7 +226,7 @@ void DrawFetched(cv::Mat& image, std::uint8_t kind, cv::Point2d at, double radiu
 
 namespace {
 
-// Marks where a device was that a ship has fetched.
+// Draws the outline of a fetched device in its former cell.
 void DrawFormerPlace(cv::Mat& map, const FarmSpec& spec, std::int32_t id, const Layout& layout) {
   for (const DeviceState& device : spec.devices) {
     if (device.id != id || device.self_propelled || !InGrid(spec, device.x, device.y)) continue;
@@ -246,7 +247,7 @@ void DrawDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, con
     if (!InGrid(spec, device.x, device.y)) continue;
     cv::Point2d at = layout.view.ToPixel(device.x, device.y);
     if (device.status == DeviceState::DELIVERED) {
-      // in a row on the quay next to the port
+      // Delivered devices are in rows of four next to the port.
       const int index = delivered[{device.x, device.y}]++;
       const double step = 9.0 * layout.unit;
       const double down = -DeliveredSide(spec, device.y);
@@ -266,7 +267,7 @@ void DrawShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const
                const Layout& layout) {
   const auto per_cell = ShipsPerCell(state);
   Crowd crowd;
-  // From last to first, so that lower ids, which have right of way, are on top.
+  // Draws the last ship first, so that ships with lower ids, which have right of way, are on top.
   for (auto ship = state.ships.rbegin(); ship != state.ships.rend(); ++ship) {
     if (!ship->visible || !ship->active || !InGrid(spec, ship->x, ship->y)) continue;
     const double radius = layout.ship_radius_px();

@@ -55,7 +55,7 @@ std::optional<cv::Rect> FreeSpace::Find(cv::Size size, cv::Point2d near, double 
   cv::integral(used_, sums, CV_32S);
   double nearest = farthest;
   std::optional<cv::Point> best;
-  // The first and the last position along an axis whose middle is within reach.
+  // Returns the first and the last index along an axis at which a rectangle may be within reach.
   const auto range = [farthest](double middle, int length, int all) {
     const auto low = std::floor((middle - farthest) / kBlock - length / 2.0);
     const auto high = std::ceil((middle + farthest) / kBlock - length / 2.0);

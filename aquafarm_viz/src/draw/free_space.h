@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Finds places for labels that cover neither symbols nor other labels; private to this package.
+/// Finds places at which labels cover neither symbols nor other labels; private to this package.
 
 #include <algorithm>
 #include <opencv2/core.hpp>
@@ -10,7 +10,7 @@
 
 namespace aquafarm_viz {
 
-/// Returns the square around a point.
+/// Returns the square with half a side of `radius` around a point.
 inline cv::Rect Around(cv::Point2d at, double radius) {
   return {cvFloor(at.x - radius), cvFloor(at.y - radius), cvCeil(2.0 * radius),
           cvCeil(2.0 * radius)};
@@ -25,10 +25,10 @@ inline cv::Point2d NearestIn(cv::Rect box, cv::Point2d to) {
 /// The part of a map that is still free of symbols and labels.
 class FreeSpace {
  public:
-  /// @param size of the map [pixels]
+  /// Everything is free at first. @param size  of the map [pixels]
   explicit FreeSpace(cv::Size size);
 
-  // A copy has its own pixels; copies of cv::Mat share them.
+  // Clones the map of used pixels, because copies of a cv::Mat share their pixels.
   FreeSpace(const FreeSpace& other)
       : used_(other.used_.clone()), labels_(other.labels_), size_(other.size_) {}
   FreeSpace& operator=(const FreeSpace&) = delete;
@@ -36,35 +36,35 @@ class FreeSpace {
   FreeSpace& operator=(FreeSpace&&) = default;
   ~FreeSpace() = default;
 
-  /// Marks a part of the map as used. Parts outside the map are ignored.
+  /// Marks a rectangle as used. Its part outside the map is ignored.
   void Block(cv::Rect part);
 
-  /// Marks the pixels of a line as used, `width` wide.
+  /// Marks a line as used. @param width  of the line [pixels]
   void BlockLine(cv::Point2d from, cv::Point2d to, int width);
 
-  /// Returns whether nothing uses a part of the map. Parts outside the map are not free.
+  /// Returns whether a rectangle is on the map and no part of it is used.
   bool IsFree(cv::Rect part) const;
 
-  /// Returns whether a line crosses a label that Add or Take has added, except `own`.
+  /// Returns whether a line crosses a label that was added with Add or Take and is not `own`.
   bool CrossesLabel(cv::Point2d from, cv::Point2d to, cv::Rect own) const;
 
-  /// Finds the free rectangle of a size that is nearest to a point.
-  /// @param near       the middle of the result is as near as possible to it [pixels]
-  /// @param farthest   max distance of the middles [pixels]
-  /// @return nullopt if all rectangles within reach are used
+  /// Finds the free rectangle of the given size whose middle is nearest to a point.
+  /// @param near       the point [pixels]
+  /// @param farthest   the distance of the middle from the point must be below this [pixels]
+  /// @return nullopt if no rectangle within this distance is free
   std::optional<cv::Rect> Find(cv::Size size, cv::Point2d near, double farthest) const;
   /// Marks the rectangle of a label, with a margin, as used.
   void Add(cv::Rect label);
-  /// Finds a rectangle and adds it.
+  /// Calls Find, and Add for the result.
   std::optional<cv::Rect> Take(cv::Size size, cv::Point2d near, double farthest);
 
  private:
-  // Returns the cells of `used_` that a part of the map touches.
+  // Returns the entries of `used_` that a rectangle of the map touches.
   cv::Rect Blocks(cv::Rect part) const;
 
-  static constexpr int kBlock = 3;  // pixels of a side of a cell of `used_`
-  cv::Mat1b used_;                  // 1: used, one entry per kBlock x kBlock pixels
-  std::vector<cv::Rect> labels_;    // added by Add
+  static constexpr int kBlock = 3;  // an entry of `used_` is a square with this side [pixels]
+  cv::Mat1b used_;                  // 1: used
+  std::vector<cv::Rect> labels_;    // added with Add
   cv::Size size_;
 };
 

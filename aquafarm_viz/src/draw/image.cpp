@@ -18,7 +18,7 @@ namespace {
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-// Returns true if two episodes have the same background.
+// Returns true if the pictures of two specs have the same background.
 bool SameBackground(const FarmSpec& a, const FarmSpec& b) {
   const auto same_cell = [](const auto& c, const auto& d) { return c.x == d.x && c.y == d.y; };
   return a.width == b.width && a.height == b.height && a.cell_size_m == b.cell_size_m &&
@@ -33,7 +33,8 @@ bool SameBackground(const FarmSpec& a, const FarmSpec& b) {
                     });
 }
 
-// Returns true if two maps look the same. Compares bytes, because NaN means that there is no value.
+// Returns true if two maps of values are drawn equally. Compares bytes, because cells without a
+// value are NaN, which is not equal to itself.
 bool SameMap(const Values& a, const Values& b) {
   return a.width == b.width && a.height == b.height && a.lowest == b.lowest &&
          a.highest == b.highest && a.actions == b.actions &&
@@ -53,8 +54,8 @@ struct FarmPainter::Parts {
   ImageSize size;
   Fonts fonts;
   Layout layout;
-  FarmSpec drawn;   // spec of the background
-  std::string sea;  // sea layer of the background
+  FarmSpec drawn;   // spec for which the background was drawn
+  std::string sea;  // its sea layer; empty: none
   cv::Mat background;
   std::optional<std::vector<PortDirections>> directions;  // of the spec; nullopt before use
   CourseReader courses;
@@ -64,14 +65,14 @@ struct FarmPainter::Parts {
   cv::Mat valued;                  // map of the background with V_π; empty if not drawn yet
   cv::Mat image;
 
-  /// Clears the cache if the values or the background have changed.
+  /// Clears `valued` if the values or the background have changed.
   void Follow(const Values* now, bool is_new_background) {
     const bool is_new = now != nullptr && !SameMap(*now, values);
     if (is_new) values = *now;
     if (is_new || is_new_background) valued.release();
   }
 
-  /// Draws the background if it has changed; returns true if it has.
+  /// Draws the background if another one is needed. Returns true if it was drawn.
   bool PrepareBackground(const FarmSpec& spec, const std::string& wanted_sea) {
     const bool same_sea =
         wanted_sea == sea && (wanted_sea.empty() || spec.scenario_yaml == drawn.scenario_yaml);
@@ -90,11 +91,12 @@ struct FarmPainter::Parts {
     return true;
   }
 
-  /// Draws rings, courses, signs and the devices in danger. Returns the marks of the courses.
+  /// Draws the rings, courses and signs of disasters, and the marks around devices in danger.
+  /// Returns the marks on the courses.
   std::vector<CourseMark> DrawDisasters(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
                                         const Forecasts& forecasts, bool has_risk,
                                         bool has_values) {
-    // Between the lines of the pattern the colours of values must stay those of their scale.
+    // A tint would change the colours of the values, so that they would not match their scale.
     if (has_risk) ShadeDisasters(map, state, land, /*is_tinted=*/!has_values, layout);
     std::vector<CourseMark> marks;
     for (std::size_t i = 0; has_risk && i < state.disasters.size(); ++i) {
@@ -109,8 +111,8 @@ struct FarmPainter::Parts {
     return marks;
   }
 
-  /// Draws the scale of values and a compared policy's choice on the map, where the panel has no
-  /// space for them.
+  /// Draws the scale of values and the choice of a compared policy on the map, for pictures whose
+  /// panel has no space for them.
   void DrawPolicyKey(cv::Mat& map, const FarmState& state, const Overlays& overlays,
                      const Values* now, FreeSpace& space) {
     if (overlays.choice != nullptr) {
@@ -121,7 +123,7 @@ struct FarmPainter::Parts {
     }
   }
 
-  /// Writes the labels of the map, the most important first.
+  /// Writes the labels of the map, the most important ones first, because space is limited.
   void Label(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Overlays& overlays,
              const Forecasts& forecasts, LabelSpace& space) {
     const Layers& layers = overlays.layers;
@@ -130,7 +132,7 @@ struct FarmPainter::Parts {
       if (paths != nullptr) space.BlockPaths(state, *paths, layout);
     }
     LabelShips(map, spec, state, space, layout, fonts);
-    // Before the devices, which have more places around them than a pointer at the edge.
+    // Before the devices: there is less space around a pointer at the edge than around a device.
     LabelPointers(map, spec, state, forecasts.courses, space, layout, fonts);
     std::set<std::int32_t> labelled;
     if (layers.risk) {
@@ -194,7 +196,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   p.Label(map, spec, state, overlays, forecasts, labels);
   FreeSpace left = labels.space(Cover::kPathsAndLand);
   LabelMarks(map, marks, left, p.layout, p.fonts);
-  if (layers.moves && values != nullptr) {  // where the map is free, so that they cover nothing
+  if (layers.moves && values != nullptr) {  // last, so that they are drawn only where space is free
     if (!p.moves) p.moves.emplace(p.layout);
     p.moves->Draw(map, *values, &left);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Places for the labels of a map, which cover as little as possible; private to this package.
+/// Finds places at which labels cover as little of the map as possible; private to this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -18,29 +18,31 @@ namespace aquafarm_viz {
 
 struct Layout;
 
-/// What a label may cover. It never covers symbols or other labels.
+/// What a label may cover. kPaths allows the paths of ships, kPathsAndLand also islands and rocks.
+/// No label covers symbols or other labels.
 enum class Cover : std::uint8_t { kNothing, kPaths, kPathsAndLand };
 
 /// The free space of a map for each Cover.
 class LabelSpace {
  public:
-  /// @param symbols  the space that the symbols leave (BlockSymbols)
+  /// @param symbols  the map without its symbols, see BlockSymbols
   LabelSpace(const FreeSpace& symbols, const aquafarm_msgs::FarmSpec& spec, const Layout& layout);
 
-  /// Blocks the paths of the ships for labels that may cover nothing.
+  /// Blocks the paths of the ships for labels with Cover::kNothing.
   void BlockPaths(const aquafarm_msgs::FarmState& state, const Trail& paths, const Layout& layout);
 
-  /// Finds and blocks a place, as FreeSpace::Take.
+  /// Finds the free place that is nearest to a point and blocks it; see FreeSpace::Find.
   std::optional<cv::Rect> Take(Cover cover, cv::Size size, cv::Point2d near, double farthest);
-  /// The same with the first Cover that has a place within reach.
+  /// Does the same with the first Cover that has a free place within reach.
   std::optional<cv::Rect> Take(cv::Size size, cv::Point2d near, double farthest);
 
-  /// Returns the free space, for a caller with further conditions.
+  /// Returns the free space, for a caller that has other conditions for a place.
   const FreeSpace& space(Cover cover) const { return spaces_[std::size_t(cover)]; }
-  /// Blocks a place that was found in space().
+  /// Blocks a place for all later labels.
   void Add(cv::Rect place);
 
-  /// Blocks a line to a label. Returns false, and blocks nothing, if it would cross another label.
+  /// Blocks a line between a symbol and its label. Returns false and blocks nothing if the line
+  /// crosses another label.
   bool AddLine(cv::Point2d from, cv::Point2d to, cv::Rect label, int width);
 
  private:

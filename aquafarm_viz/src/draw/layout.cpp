@@ -8,18 +8,18 @@
 namespace aquafarm_viz {
 namespace {
 
-// Sizes in design units. A picture of 640 x 640 has one pixel per unit.
+// Sizes are in design units unless stated. A picture of 640 x 640 has one pixel per unit.
 constexpr double kDesignSide = 640.0;
 constexpr double kTop = 46.0;
 constexpr double kBottom = 44.0;
-constexpr double kPanelWidth = 184.0;
-constexpr double kPanelShare = 0.26;      // of the width, if that is more
-constexpr double kMaxPanelWidth = 276.0;  // if the map leaves space
+constexpr double kPanelWidth = 184.0;     // min width of the panel
+constexpr double kPanelShare = 0.26;      // preferred width of the panel [widths of the picture]
+constexpr double kMaxPanelWidth = 276.0;  // the panel takes what the map leaves, up to this width
 constexpr double kAxisLeft = 52.0;
 constexpr double kAxisBottom = 18.0;
 constexpr double kGap = 10.0;
-constexpr int kSmallest = 300;      // [pixels]; smaller pictures show only the map
-constexpr double kWholePixels = 6;  // min cell size with whole pixels, for sharp borders
+constexpr int kSmallest = 300;      // min side of a picture with texts around the map [pixels]
+constexpr double kWholePixels = 6;  // cells from this size on get whole pixels, for sharp borders
 
 }  // namespace
 

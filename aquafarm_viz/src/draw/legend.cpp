@@ -16,18 +16,18 @@ namespace {
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-// Heights in design units, from the bottom of the panel up.
-constexpr double kSymbolRow = 57.0;  // of the middle of the lowest row of symbols
-constexpr double kRow = 17.0;
-constexpr double kKeyRow = 15.0;    // of a ring with its name
-constexpr double kKeyScale = 24.0;  // of the scale of risks with its words
-constexpr double kWide = 230.0;     // a panel this wide has all symbols in one row
+// Sizes in design units.
+constexpr double kSymbolRow = 57.0;  // last row of symbols, above the bottom of the panel
+constexpr double kRow = 17.0;        // distance of two rows of symbols
+constexpr double kKeyRow = 15.0;     // height of a row of the keys
+constexpr double kKeyScale = 24.0;   // height of the scale of risks with its texts
+constexpr double kWide = 230.0;      // a panel at least this wide has all symbols in one row
 
-constexpr double kMildRisk = -5.0;  // of the sample of an area at risk
+constexpr double kMildRisk = -5.0;  // risk of the sample for Sign::kAtRisk
 
 bool IsWide(const Layout& layout) { return layout.panel.width >= layout.Px(kWide); }
 
-// Distance from the bottom of the panel to the lower end of the key of risks.
+// Returns the distance from the bottom of the panel to the lower end of the keys [pixels].
 int FootPx(const Layout& layout) {
   return layout.Px(kSymbolRow + (IsWide(layout) ? 0.0 : kRow) + 9.0);
 }
@@ -44,7 +44,7 @@ int SignsPx(const std::vector<Sign>& signs, const Layout& layout) {
   return rows * layout.Px(kKeyRow) + (rows > 0 ? layout.Px(3) : 0);
 }
 
-// Draws a scale bar with a round length that fits into `room_px`.
+// Draws a scale bar with a round length of at most `room_px` pixels.
 void DrawScaleBar(cv::Mat& image, cv::Point left, int room_px, double cell_size_m,
                   const Layout& layout, const Fonts& fonts) {
   const double px_per_m = layout.view.cell_px() / cell_size_m;
@@ -137,7 +137,7 @@ RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) 
   for (std::size_t i = 0; i < courses.size(); ++i) {
     if (!IsDrawn(state.disasters[i])) continue;
     const std::vector<std::int32_t>& winds = courses[i].ring_winds_kt;
-    if (winds.empty()) return {};  // its risks have no name
+    if (winds.empty()) return {};  // its rings have no names
     for (std::size_t ring = winds.size(); ring-- > 0;) {
       if (!HasRing(courses[i], ring)) continue;
       const NamedRing one{winds[ring], std::round(courses[i].ahead.front().risks[ring]),
@@ -154,7 +154,7 @@ RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) 
 std::string FittingRingName(std::int32_t wind_kt, int width_px, const Font& font) {
   const std::string full = aquafarm::RingName(wind_kt);
   if (font.Width(full) <= width_px) return full;
-  // The wind in knots is needed more than the second word of "hurricane force (64 kt)".
+  // Shortens the name and not the wind, because the wind is more important.
   const std::size_t space = full.find(' ');
   const std::size_t knots = full.find(" (");
   if (knots == std::string::npos || space == knots) return full;

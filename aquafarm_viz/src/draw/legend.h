@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The legend below the lists of the panel: the keys of risks and signs, symbols, north and scale;
-/// private to this package.
+/// The legend at the bottom of the panel. From top to bottom: the key of risks, the key of signs,
+/// symbols, and the north arrow with the scale bar. Private to this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -22,51 +22,52 @@ struct Fonts;
 struct Layout;
 struct Overlays;
 
-/// A ring of a storm whose wind is given.
+/// A ring of a storm whose winds are given.
 struct NamedRing {
-  std::int32_t wind_kt{};
-  double risk{};
-  std::uint8_t kind{};  ///< of the storm, a kind of DisasterState
+  std::int32_t wind_kt{};  ///< min wind within the ring [kn]
+  double risk{};           ///< rounded risk within the ring
+  std::uint8_t kind{};     ///< kind of the storm (DisasterState.kind)
 };
 
-/// The rings that the key of risks names, the weakest first; empty: the scale of all risks.
+/// The rings that the key of risks names. If it is empty, the key is the colour scale of all risks.
 using RiskKey = std::vector<NamedRing>;
 
-/// Returns the rings of the drawn disasters; empty if one has rings without a given wind, or if
-/// there are too many.
+/// Returns the rings of the drawn disasters that have a radius now or later, each once, and those
+/// of one disaster from the weakest to the strongest. Returns an empty key if a disaster has no
+/// given winds, or if there are more than four rings.
 RiskKey MakeRiskKey(const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses);
 
-/// Returns the name of a ring and its wind, without the name's further words if they do not fit:
-/// "hurricane force (64 kt)" or "hurricane (64 kt)".
+/// Returns the name of a ring and its wind, "hurricane force (64 kt)". If that is wider than
+/// `width_px`, returns only the first word of the name, "hurricane (64 kt)".
 std::string FittingRingName(std::int32_t wind_kt, int width_px, const Font& font);
 
-/// A symbol of the map that the lists of the panel do not explain.
+/// A symbol of the map that the key of signs explains.
 enum class Sign {
   kAtRisk,        ///< pattern of the rings, unless the key of risks shows it
-  kInDanger,      ///< ring around a device
-  kFirstReached,  ///< two rings around a device
+  kInDanger,      ///< ring around a device that is in danger
+  kFirstReached,  ///< two rings around a device that is the first in danger
   kDelivered,     ///< small device at a port
-  kFetched,       ///< outline where a fetched device was
-  kPath,          ///< of a ship
-  kHeading,       ///< arrow of a disaster
+  kFetched,       ///< outline in the former cell of a fetched device
+  kPath,          ///< path of a ship
+  kHeading,       ///< arrow along the motion of a disaster
   kPointer,       ///< triangle towards a centre outside the map
-  kDirection,     ///< arrow at a port
-  kSight
+  kDirection,     ///< arrow of a legal move at a port
+  kSight          ///< sensor range of a ship
 };
 
-/// Returns the signs that a picture shows, each once.
-/// @param key  of the picture; if it is not empty, it shows the patterns of areas at risk
+/// Returns the signs that a picture contains, each once.
+/// @param key  key of risks; if it is not empty, it shows the patterns, and kAtRisk is left out
 std::vector<Sign> SignsOf(const aquafarm_msgs::FarmSpec& spec,
                           const aquafarm_msgs::FarmState& state, const Overlays& overlays,
                           const Outlook& outlook, const RiskKey& key, const Layout& layout);
 
-/// Returns the words of a sign in the key.
+/// Returns the text of a sign in the key.
 const char* SignWords(Sign sign);
 
 /// Returns the height of the whole legend [pixels].
 int LegendPx(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout);
 
-/// Draws the constant part: symbols, north arrow and scale bar.
+/// Draws the constant part of the legend: symbols, north arrow and scale bar.
 void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                 const Fonts& fonts);
 

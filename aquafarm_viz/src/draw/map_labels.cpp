@@ -24,11 +24,11 @@ using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr std::size_t kMaxDangerLabels = 40;  // more are not read, and cost time
-constexpr double kDangerRing = 2.0;           // of the first device in danger [device radii]
-constexpr double kSymbol = 1.2;               // of other devices, with their health
+constexpr std::size_t kMaxDangerLabels = 40;  // more labels would not be read, but need time
+constexpr double kDangerRing = 2.0;           // radius of the second danger ring [device radii]
+constexpr double kSymbol = 1.2;               // radius around other devices [device radii]
 
-// The part of a symbol with a health bar above it.
+// Returns the part of the map that a symbol with a health bar above it covers.
 cv::Rect WithBar(cv::Point2d at, double radius, const Layout& layout) {
   const cv::Rect body = Around(at, radius);
   const int bar = layout.Px(8);
@@ -41,7 +41,8 @@ const DeviceState* Find(const FarmState& state, std::int32_t id) {
   return found == state.devices.end() ? nullptr : &*found;
 }
 
-// Connects a symbol with a label that is not next to it, unless the line would cross another label.
+// Draws a line from a symbol to its label if the label is not next to it, unless the line would
+// cross another label.
 void DrawLeader(cv::Mat& map, cv::Point2d symbol, double radius, cv::Rect label, LabelSpace& space,
                 const Layout& layout) {
   const cv::Point2d to = NearestIn(label, symbol);
@@ -72,9 +73,10 @@ void DrawPlate(cv::Mat& map, cv::Rect plate, const std::vector<std::string>& lin
   }
 }
 
-constexpr double kMaxLine = 200.0;  // width of a line of a label [design units]
+constexpr double kMaxLine = 200.0;  // max width of a line of a label [design units]
 
-// Breaks a text after commas into lines of at most kMaxLine, as far as its parts are that short.
+// Breaks a text after commas into lines of at most kMaxLine. Only a part without a comma may be
+// longer.
 std::vector<std::string> BrokenAtCommas(const std::string& text, const Layout& layout,
                                         const Fonts& fonts) {
   std::vector<std::string> lines{""};
@@ -93,7 +95,7 @@ std::vector<std::string> BrokenAtCommas(const std::string& text, const Layout& l
   return lines;
 }
 
-// Returns the size of a plate with some lines.
+// Returns the size of a plate for lines of text.
 cv::Size PlateSize(const std::vector<std::string>& lines, const Layout& layout,
                    const Fonts& fonts) {
   int width = 0;
@@ -126,10 +128,10 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlo
       space.Block(WithBar(at, radius + gap, layout));
     } else if (device.status == DeviceState::DELIVERED &&
                quays.insert({device.x, device.y}).second) {
-      space.Block(Around(at, 30.0 * layout.unit));  // the delivered devices stand there in rows
+      space.Block(Around(at, 30.0 * layout.unit));  // rows of delivered devices
     }
   }
-  for (const auto& device : spec.devices) {  // where some were fetched
+  for (const auto& device : spec.devices) {  // the former cells of fetched devices
     if (device.self_propelled || !InGrid(spec, device.x, device.y)) continue;
     space.Block(Around(layout.view.ToPixel(device.x, device.y), layout.device_radius_px()));
   }
@@ -203,7 +205,7 @@ struct RingPoint {
   cv::Point2d outwards;
 };
 
-// Returns points of a ring that are inside the map, those nearest to its middle first.
+// Returns points of a ring that are on the map, those nearest to the middle of the map first.
 std::vector<RingPoint> PointsOnMap(const DisasterState& disaster, std::size_t ring, cv::Size map,
                                    const Layout& layout) {
   constexpr int kBearings = 72;
@@ -213,7 +215,7 @@ std::vector<RingPoint> PointsOnMap(const DisasterState& disaster, std::size_t ri
   const cv::Point2d centre = layout.view.ToPixel(disaster.x, disaster.y);
   const cv::Point2d towards = middle - centre;
   const double half_map = cv::norm(middle);
-  // From a centre far outside, the map is a narrow range of bearings.
+  // Seen from a centre far outside, the map spans a narrow range of bearings.
   const bool is_far = cv::norm(towards) > half_map;
   const double half = is_far ? std::asin(half_map / cv::norm(towards)) : CV_PI;
   const double first = std::atan2(towards.x, -towards.y) - half;
@@ -233,7 +235,7 @@ std::vector<RingPoint> PointsOnMap(const DisasterState& disaster, std::size_t ri
   return points;
 }
 
-// Finds a place for the label of a ring: on its line, else outside it, else inside it.
+// Finds and takes a place for the label of a ring: on its line, else outside it, else inside it.
 std::optional<cv::Rect> PlaceBesideRing(const std::vector<RingPoint>& points, cv::Size size,
                                         FreeSpace& space, const Layout& layout) {
   for (const double side : {0.0, 1.0, -1.0}) {
@@ -282,7 +284,7 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
       FreeSpace water = space.space(Cover::kPaths);
       BlockOtherRings(state, disaster, ring, map.size(), water, layout);
       const auto place = PlaceBesideRing(points, size, water, layout);
-      if (!place) continue;  // the key of risks has to do
+      if (!place) continue;  // only the key of risks explains it
       space.Add(*place);
       DrawPlate(map, *place, {text}, RiskColor(double(disaster.risks[ring]), layout), layout,
                 fonts);
@@ -315,8 +317,8 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     auto lines = BrokenAtCommas(CentreText(spec, disaster, courses[i]), layout, fonts);
     if (layout.panel.empty()) lines.push_back(MotionNow(spec, disaster));
     const cv::Size size = PlateSize(lines, layout, fonts);
-    // To the side of the pointer, which lies at the edge, if possible: above or below it, another
-    // pointer's label is near.
+    // The label is next to the pointer if possible, because labels of other pointers may be above
+    // and below it.
     const double aside = size.width / 2.0 + 14.0 * layout.unit;
     const cv::Point2d place_aside(
         sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside, sign.at.y);
@@ -340,7 +342,7 @@ void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     const std::string text = DeviceLabel(device.id);
     const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
     const double radius = layout.device_radius_px();
-    // The free place that is nearest to the symbol, to its right if there are several.
+    // Takes the free place that is nearest to the right side of the symbol.
     const cv::Point2d east = layout.view.ToPixel(device.x, device.y) + cv::Point2d(radius, 0.0);
     const double farthest = 3.0 * radius + 20.0 * layout.unit;
     const auto place = space.Take(size, east, farthest);

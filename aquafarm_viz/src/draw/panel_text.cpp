@@ -22,7 +22,7 @@ using aquafarm_msgs::FarmState;
 using aquafarm_msgs::ShipState;
 using aquafarm_msgs::TrainingStatus;
 
-// Draws pieces of text one after another until the width is used up.
+// Draws texts next to each other until the width of the line is used up.
 class Line {
  public:
   Line(cv::Mat& image, cv::Point start, int right) : image_(image), at_(start), right_(right) {}
@@ -40,8 +40,9 @@ class Line {
   int right_;
 };
 
-// Draws the scenario, the time, the episode and the next danger. The danger is shortened where it
-// does not fit, and the rest gives way to it.
+// Draws the scenario, the time, the episode and the next danger. The seed is left out if the danger
+// fits only without it. A danger that does not fit is shortened, and the other texts are cut to
+// leave space for the short form.
 void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
              const Layout& layout, const Fonts& fonts) {
   const int left = layout.Px(10);
@@ -94,7 +95,7 @@ void DrawRewardLine(cv::Mat& image, const FarmState& state, const Layout& layout
   line.Put(fonts.bold, "reward", layout.style->words, layout.Px(5));
   line.Put(fonts.bold, Signed(state.joint_reward), color(state.joint_reward), layout.Px(16));
   for (const auto& [name, value] : RewardTermsOf(state)) {
-    if (value == 0.0F && name == "energy") continue;  // most scenarios have none
+    if (value == 0.0F && name == "energy") continue;  // most scenarios do not model energy
     line.Put(fonts.small, name, value == 0.0F ? layout.style->faint : layout.style->words,
              layout.Px(4));
     if (value == 0.0F) {
@@ -126,7 +127,7 @@ void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layo
   if (const auto left = Duration(training.time_left_s); !left.empty()) pair("left", left);
 }
 
-// Draws the panel's lists from the top down to the legend.
+// Draws the lists of the panel from its top down to the legend.
 class Panel {
  public:
   /// @param legend_px  height of the legend below the lists
@@ -144,7 +145,7 @@ class Panel {
   cv::Point2d SymbolAt() const { return {double(left_ + layout_.Px(7)), y_ + RowPx() / 2.0}; }
   cv::Point2d SecondSymbolAt() const { return {double(Middle() + layout_.Px(7)), SymbolAt().y}; }
   cv::Mat& image() { return image_; }
-  /// The part between the lists and the legend.
+  /// Returns the part between the lists and the legend [pixels].
   cv::Rect Room() const {
     return {left_, y_ + layout_.Px(8), right_ - left_, end_ - y_ - layout_.Px(8)};
   }
@@ -165,7 +166,7 @@ class Panel {
            right_ - left_ - layout_.Px(21);
   }
 
-  /// Two texts, each with a symbol.
+  /// Draws two texts with space for a symbol before each (SymbolAt, SecondSymbolAt).
   void Pair(const std::string& first, const std::string& second) {
     const int base = y_ + (RowPx() + fonts_.small.cap_height()) / 2;
     fonts_.small.Draw(image_, first, {left_ + layout_.Px(21), base}, Bgr(layout_.style->words));
@@ -173,7 +174,7 @@ class Panel {
     y_ += RowPx();
   }
 
-  /// The colours of values, the lowest on the left.
+  /// Draws the colour scale of values, with the lowest value on the left.
   void ValueBar() {
     const int top = y_ + layout_.Px(3);
     for (int x = left_; x < right_; ++x) {
@@ -184,7 +185,7 @@ class Panel {
     y_ += RowPx();
   }
 
-  /// Two texts at the ends of a row, and one in its middle if there is space for it.
+  /// Draws two texts at the ends of a row, and one in its middle if there is space for it.
   void Ends(const std::string& left_text, const std::string& right_text,
             const std::string& middle_text = "") {
     const int base = y_ + (RowPx() + fonts_.small.cap_height()) / 2;
@@ -222,7 +223,7 @@ class Panel {
   int end_;
 };
 
-// One row for each device: its symbol, kind, and danger or status.
+// Draws one row for each device with its symbol, its kind, and its danger or status.
 void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                     const Outlook& outlook, const Layout& layout) {
   for (const auto& device : state.devices) {
@@ -371,7 +372,7 @@ std::string PolicyName(const Overlays& overlays) {
   return overlays.training != nullptr ? overlays.training->algorithm : "";
 }
 
-// The words of a compared policy's choice, a line for each ship.
+// Returns the choice of a compared policy as text, one line for each ship.
 std::vector<std::string> ChoiceLines(const FarmState& state, const Overlays& overlays) {
   std::vector<std::string> lines;
   if (overlays.choice == nullptr || !IsOf(*overlays.choice, state)) return lines;
@@ -384,7 +385,8 @@ std::vector<std::string> ChoiceLines(const FarmState& state, const Overlays& ove
   return lines;
 }
 
-// Lists what the colours and symbols of a policy mean, if there is a policy and space for it.
+// Explains the colours and symbols of a policy, if there is a policy and space for the explanation.
+// Returns whether it was drawn.
 bool ListPolicy(Panel& panel, const FarmState& state, const Overlays& overlays,
                 const Values* values, const Layout& layout) {
   const std::vector<std::string> choices = ChoiceLines(state, overlays);
@@ -425,7 +427,7 @@ void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const
                                                        "the disaster has ended", "step limit"};
   const std::string text = kReasons[state.reason < kReasons.size() ? state.reason : 0U];
   const int width = fonts.title.Width(text) + layout.Px(28);
-  const bool has_top = !layout.top.empty();  // else it covers a part of the map
+  const bool has_top = !layout.top.empty();  // false: the text covers a part of the map
   const cv::Rect plate = has_top ? cv::Rect(layout.top.width - width - layout.Px(10), layout.Px(23),
                                             width, layout.top.height - layout.Px(25))
                                  : cv::Rect(layout.map.x + (layout.map.width - width) / 2,

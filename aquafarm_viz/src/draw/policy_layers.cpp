@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kValueShare = 0.62;    // opacity of V_π over the sea
 constexpr double kArrowSpacing = 34.0;  // min distance of two arrows [design units]
-constexpr double kLargestArrow = 19.0;  // [design units]
+constexpr double kLargestArrow = 19.0;  // max size of a symbol [design units]
 
 cv::Mat Colors(const cv::Mat& shares) {
   cv::Mat colors;
@@ -35,7 +35,7 @@ void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px
 
 void DrawValues(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Values& values,
                 const Layout& layout) {
-  // A header for the values without a copy; they are only read. Row 0 is the south here.
+  // A matrix header for the values without a copy. They are only read. Row 0 is the southernmost.
   const cv::Mat from_south(values.height, values.width, CV_32F,
                            const_cast<float*>(values.values.data()));
   cv::Mat north_up;
@@ -43,7 +43,7 @@ void DrawValues(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Values&
   const cv::Mat known = north_up == north_up;  // not NaN
   cv::Mat shares(north_up.size(), CV_8U, cv::Scalar(128));
   if (const double span = double(values.highest) - double(values.lowest); span > 0.0) {
-    // Subtract before scaling, because values far from 0 lose precision.
+    // Subtracts before it scales, because values far from 0 would lose precision.
     cv::subtract(north_up, cv::Scalar(double(values.lowest)), north_up);
     north_up.convertTo(shares, CV_8U, 255.0 / span);
   }
@@ -109,7 +109,7 @@ MoveSigns::MoveSigns(const Layout& layout)
     : view_(layout.view),
       every_(MoveSpacing(layout)),
       size_px_(std::min(0.8 * every_ * view_.cell_px(), kLargestArrow * layout.unit)) {
-  // Same sub-pixel position as the cell centres if cells have whole pixels.
+  // The symbols have the sub-pixel position of cell centres, if cells have whole pixels.
   const int half = cvCeil(0.5 * size_px_) + 3;
   const cv::Point2d middle = view_.ToPixel(0, view_.height() - 1);
   phase_ = middle - cv::Point2d(std::floor(middle.x), std::floor(middle.y));

@@ -27,7 +27,7 @@ using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr double kSmallestSide = 58.0;  // [design units]
+constexpr double kSmallestSide = 58.0;  // min height of the inset [design units]
 
 bool IsOutside(const FarmSpec& spec, const DisasterState& disaster) {
   return IsDrawn(disaster) && !IsCentreInFarm(spec, disaster);
@@ -36,7 +36,7 @@ bool IsOutside(const FarmSpec& spec, const DisasterState& disaster) {
 // Maps cells to the pixels of the inset.
 struct Inset {
   cv::Mat image;
-  cv::Point2d middle;  // of the part that is shown [cells]
+  cv::Point2d middle;  // middle of the part of the region that is shown [cells]
   double px_per_cell{};
 
   cv::Point2d At(double x, double y) const {
@@ -71,10 +71,10 @@ void DrawRings(Inset& inset, const DisasterState& disaster, const Style& style,
 // The disaster that the words are about.
 struct Subject {
   std::size_t disaster{};
-  double danger{};  // steps until a ring covers a part of the farm
-  TrackPoint nearest;
-  double nearest_m{};
-  bool comes_nearer{};
+  double danger{};      // steps until a ring covers a part of the farm; infinite: never
+  TrackPoint nearest;   // the point of its course that is nearest to the middle of the farm
+  double nearest_m{};   // distance of this point from the middle of the farm
+  bool comes_nearer{};  // true: this point is not the present one
 };
 
 bool IsMoreUrgent(const Subject& a, const Subject& b) {
@@ -101,7 +101,8 @@ std::string PlaceText(const FarmSpec& spec, double x, double y) {
   return DistanceText(MetresFromFarm(spec, x, y)) + " " + PointFromFarm(spec, x, y);
 }
 
-// Words for how the course is known, and until when if the disaster lasts longer.
+// Returns until when the course is known if the disaster lasts longer, else how the course is
+// drawn.
 std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, const Course& course) {
   const double known = course.known_until - course.ahead.front().step;
   if (known < disaster.steps_left) return "known until +" + AheadText(spec, known);
@@ -116,11 +117,11 @@ std::string Upper(std::string text) {
   return text;
 }
 
-// Words for a ring that covers a part of the farm. The centre may be far away.
+// Returns the heading if a ring covers a part of the farm.
 std::string OverText(const std::string& wind) { return Upper(wind) + " OVER THE RANCH"; }
 
-// Words for the step in which a ring reaches the farm, with the strongest wind there in that step:
-// "NEAR GALE IN 2.0 h", or "REACHES THE RANCH IN 2.0 h" without winds.
+// Returns the heading if a ring reaches the farm in a later step. It names the strongest wind over
+// the farm in that step, "NEAR GALE IN 2.0 h", or is "REACHES THE RANCH IN 2.0 h" without winds.
 std::string ReachesText(const FarmSpec& spec, const Course& course, double step) {
   const std::string wind = Upper(WindOverFarm(spec, course, TrackAt(course.ahead, step)));
   return (wind.empty() ? "REACHES THE RANCH" : wind) +
@@ -128,8 +129,8 @@ std::string ReachesText(const FarmSpec& spec, const Course& course, double step)
          AheadText(spec, step - course.ahead.front().step);
 }
 
-// Words for the time at which a storm whose course is given is nearest, or for rings that cover or
-// reach the farm.
+// Returns the words about a disaster whose course is not extrapolated: its closest approach and the
+// rings that cover or reach the farm.
 RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subject& subject,
                         const Course& course) {
   constexpr double kMoved_m = 1.0;
@@ -185,7 +186,7 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
     }
     return words;
   }
-  // The present motion continued says when a ring comes, but not that none does.
+  // An extrapolated course predicts when a ring arrives. It does not show that none will.
   words.lines[0] =
       DisasterName(disaster.kind) + ", centre " + PlaceText(spec, disaster.x, disaster.y);
   words.lines[1] = subject->danger == 0.0 ? RiskOverFarm(spec, course) + " over a part of the ranch"
@@ -197,8 +198,9 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
 
 namespace {
 
-// The part of the region that the inset shows [cells]: farm, centres, and courses as far as they
-// matter to the farm.
+// Returns the part of the region that the inset shows [cells]. It contains the farm, all centres,
+// the closest approaches, and the points of courses within half the distance of the farthest
+// centre.
 cv::Rect2d ShownPart(const FarmSpec& spec, const FarmState& state,
                      const std::vector<Course>& courses, double farthest_m) {
   cv::Rect2d part(-0.5, -0.5, spec.width, spec.height);
@@ -227,7 +229,7 @@ Inset MakeInset(const cv::Mat& image, const cv::Rect2d& part) {
   return {image, (part.tl() + part.br()) * 0.5, px_per_cell};
 }
 
-// Draws a scale where there is space, in the lower left corner if it is free.
+// Draws a scale bar as near to the lower left corner as there is free space.
 void DrawScale(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout& layout,
                const Fonts& fonts) {
   const double length_m =
@@ -246,7 +248,7 @@ void DrawScale(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layou
   cv::rectangle(inset.image, cv::Rect(place->x, y, length, layout.Px(2)), Bgr(color), cv::FILLED);
 }
 
-// Draws a square, also where the course crosses the farm, and the word "ranch" next to it.
+// Draws the outline of the farm over the courses, and the word "ranch" in it or next to it.
 void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout& layout,
               const Fonts& fonts) {
   constexpr double kMinSide = 9.0;  // [design units]
@@ -257,13 +259,13 @@ void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout
                       cvRound(tall));
   cv::rectangle(inset.image, farm, Bgr(layout.style->halo), layout.Px(4.0));
   cv::rectangle(inset.image, farm, Bgr(layout.style->label), layout.Px(1.6));
-  const cv::Point gap(layout.Px(6), layout.Px(3));  // free of labels
+  const cv::Point gap(layout.Px(6), layout.Px(3));  // between the farm and labels
   space.Block(cv::Rect(farm.tl() - gap, farm.br() + gap));
   const std::string word = "ranch";
   const cv::Size size(fonts.small.Width(word), fonts.small.cap_height());
   const cv::Point2d aside(size.width / 2.0 + wide / 2.0 + 7.0 * layout.unit, 0.0);
   const double farthest = 12.0 * layout.unit;
-  if (wide > size.width + 12.0 * layout.unit && tall > 3.0 * size.height) {  // in the square
+  if (wide > size.width + 12.0 * layout.unit && tall > 3.0 * size.height) {  // it fits inside
     const cv::Point2d half(size.width / 2.0, size.height / 2.0);
     return DrawLabel(inset.image, fonts.small, word, middle - half, layout);
   }
@@ -272,7 +274,7 @@ void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout
   if (place) DrawLabel(inset.image, fonts.small, word, place->tl(), layout);
 }
 
-// Draws an arrow along the present motion of a disaster without a course.
+// Draws an arrow along the present motion of a disaster whose course is extrapolated.
 void DrawMotion(cv::Mat& image, cv::Point2d centre, int bearing_deg, FreeSpace& space,
                 const Layout& layout) {
   const double length = 18.0 * layout.unit;
@@ -335,14 +337,15 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
   }
   const RegionWords words = RegionText(spec, state, courses);
   const bool has_course = words.heading != RegionWords().heading;
-  // Lines without a course and an arrival are left out if there is no space for them and the inset.
+  // If there is no space for both the lines and the inset, the lines are left out, unless they are
+  // about a known course or an arrival.
   const int smallest = layout.Px(kSmallestSide);
   const int for_inset = room.height - row_px - layout.Px(4);
   const bool has_lines = has_course || words.is_urgent || for_inset - 2 * row_px >= smallest;
-  // Without a course there is little to show.
+  // The inset is smaller without a known course, because it then contains little.
   const int max_side = has_course ? room.width : room.width * 2 / 3;
   const int side = std::min(max_side, for_inset - (has_lines ? 2 * row_px : 0));
-  // The map itself shows disasters whose centres are inside.
+  // An inset is not needed for disasters whose centres are on the map.
   const bool is_drawn = farthest_m > 0.0 && side >= smallest;
   if (!is_drawn && !has_course) return;
   fonts.bold.Draw(image, fonts.bold.Fit(words.heading, room.width),
@@ -350,7 +353,7 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
                   Bgr(has_course ? layout.style->words : layout.style->faint));
   int y = room.y + row_px;
   if (is_drawn) {
-    // As wide as the room, so that labels have space next to the course.
+    // The inset is as wide as `room`, so that labels have space next to the course.
     const cv::Rect place = cv::Rect(room.x, y, room.width, side) & cv::Rect({0, 0}, image.size());
     const cv::Rect2d part = ShownPart(spec, state, courses, farthest_m);
     DrawInset(MakeInset(image(place), part), spec, state, courses, layout, fonts);

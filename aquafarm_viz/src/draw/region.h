@@ -22,19 +22,23 @@ struct Layout;
 struct RegionWords {
   std::string heading{"REGION"};
   std::array<std::string, 2> lines;
-  bool is_urgent{};  ///< a ring reaches the farm later
+  bool is_urgent{};  ///< true: no ring covers a part of the farm now, but one will
 };
 
-/// Returns the words for the disaster whose ring is first over the farm; if none ever is, for one
-/// that comes nearer, else for the nearest. "MOVING AWAY" means that no ring of any disaster covers
-/// a part of the farm along its course, that none comes nearer, and that this one moves away.
+/// Returns the words about the most urgent disaster. This is the one whose ring is the first to
+/// cover a part of the farm. If no ring ever does, it is the disaster that comes nearest to the
+/// farm among those that come nearer, or the nearest one if none comes nearer. Therefore "MOVING
+/// AWAY" also means that no ring of any disaster will cover a part of the farm and that no disaster
+/// comes nearer.
 /// @param courses  one per disaster of the state, see CourseOf
 RegionWords RegionText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                        const std::vector<Course>& courses);
 
-/// Draws the region around the farm with the centre, rings and course of each disaster, and writes
-/// the closest approach below. Draws no map if no centre is far outside the farm or if `room` is
-/// too small, and nothing if no course is known either.
+/// Draws a map of the region around the farm with the centre, the rings and the course of each
+/// disaster, and writes the lines of RegionText below it. Leaves the map out if no centre is
+/// outside the farm or if `room` is too small for it. Draws nothing if the map is left out and the
+/// course of the most urgent disaster is extrapolated, or if `room` has less than three rows.
+/// @param room  the part of the image that may be used [pixels]
 /// @param courses  one per disaster of the state, see CourseOf
 void DrawRegion(cv::Mat& image, cv::Rect room, const aquafarm_msgs::FarmSpec& spec,
                 const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,

@@ -19,7 +19,7 @@ struct SeaLayer {
   std::vector<float> values;  // [H, W] row-major, from the south
 };
 
-// The spec's scenario is canonical: it contains the numbers of each layer, one per cell.
+// Reads a sea layer of the spec's scenario, which is canonical: it contains one number per cell.
 SeaLayer LayerOf(const aquafarm_msgs::FarmSpec& spec, const std::string& name) {
   std::string names;
   try {
@@ -36,11 +36,14 @@ SeaLayer LayerOf(const aquafarm_msgs::FarmSpec& spec, const std::string& name) {
   } catch (const YAML::Exception& error) {
     throw std::invalid_argument("layers: sea:" + name + ": the spec's scenario: " + error.what());
   }
-  throw std::invalid_argument("layers: got 'sea:" + name + "', expected one of the scenario's: " +
-                              (names.empty() ? "it has none" : names));
+  throw std::invalid_argument("layers: got 'sea:" + name + "', " +
+                              (names.empty()
+                                   ? "but the scenario has no sea layers"
+                                   : "expected one of the scenario's sea layers: " + names));
 }
 
-// Colours of a layer, [H, W] with north up, and a mask of the cells with a value.
+// The colours of a layer, [H, W] with the northernmost row first, and a mask of the cells that have
+// a value.
 struct HeatMap {
   cv::Mat3b color;
   cv::Mat1b known;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The parts of a picture; private to this package.
+/// The layout of a picture and the functions that draw its parts; private to this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -23,15 +23,15 @@ namespace aquafarm_viz {
 
 class FreeSpace;
 
-/// The future of a state's disasters.
+/// The expected motion of the disasters of a state, and the danger from them.
 struct Forecasts {
   std::vector<Course> courses;  ///< one per disaster of the state
   Outlook outlook;              ///< danger to the devices
 };
 
-/// The layout of a picture. A part with an empty rectangle is not drawn.
+/// The rectangles of the parts of a picture [pixels]. A part with an empty rectangle is not drawn.
 struct Layout {
-  double unit{1.0};  ///< pixels per design unit: 1 in a picture of 640 x 640
+  double unit{1.0};  ///< pixels per design unit: 1 in a picture of 640 x 640, at least 0.7
   cv::Rect top;
   cv::Rect map;
   cv::Rect panel;
@@ -41,11 +41,11 @@ struct Layout {
 
   /// Converts design units to whole pixels, at least 1.
   int Px(double units) const;
-  /// Distance from the centre of a device to its corners [pixels].
+  /// Returns the distance from the centre of a device to its corners [pixels].
   double device_radius_px() const;
-  /// Radius of the disc of a port [pixels].
+  /// Returns the radius of the disc of a port [pixels].
   double port_radius_px() const;
-  /// Distance from the centre of a ship to its bow [pixels].
+  /// Returns the distance from the centre of a ship to its bow [pixels].
   double ship_radius_px() const;
 };
 
@@ -60,16 +60,18 @@ struct Fonts {
   Font title;
 };
 
-/// Draws the constant parts of an episode: sea, islands, rocks, axes, legend.
+/// Draws the parts that are constant during an episode: sea, islands, rocks, axes and the constant
+/// part of the legend.
 cv::Mat DrawBackground(const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                        const Fonts& fonts, ImageSize size);
 
 /// Draws a sea layer of the spec's scenario onto the map of a background.
-/// @throws std::invalid_argument "layers: got 'sea:salt', expected one of the scenario's: warmth"
+/// @throws std::invalid_argument if the scenario has no such layer, or a layer of another size:
+///         "layers: got 'sea:salt', expected one of the scenario's sea layers: warmth"
 void DrawSea(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const std::string& name,
              const Layout& layout, const Fonts& fonts);
 
-/// Whether a disaster is drawn: it is known and has not ended.
+/// Returns whether a disaster is drawn: it is known and has not ended.
 inline bool IsDrawn(const aquafarm_msgs::DisasterState& disaster) {
   return disaster.known && disaster.steps_left > 0;
 }
@@ -78,69 +80,73 @@ inline bool IsDrawn(const aquafarm_msgs::DisasterState& disaster) {
 /// within their cells.
 cv::Mat1b IslandCoverage(const aquafarm_msgs::FarmSpec& spec, const Layout& layout);
 
-/// Draws the rings of all disasters on the map: an outline, a tint and a pattern for each kind of
-/// disaster. Where they overlap the worst risk counts.
-/// @param land  IslandCoverage; fainter over land
-/// @param is_tinted  false: nothing between the lines of the pattern
+/// Draws the rings of all disasters on the map: their outlines, a tint, and the pattern of each
+/// kind of disaster. Where rings overlap, the one with the worst risk is drawn.
+/// @param land  IslandCoverage; rings are fainter over land
+/// @param is_tinted  false: draws no tint between the lines of the pattern
 void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const cv::Mat1b& land,
                     bool is_tinted, const Layout& layout);
 
-/// Draws a part of an area at risk into a box of a legend: the pattern of the kind and the colour
-/// of the risk.
+/// Fills a box of the legend like a ring on the map: with the pattern of a kind of disaster and the
+/// colour of a risk.
 void DrawRiskSample(cv::Mat& image, cv::Rect box, std::uint8_t kind, double risk,
                     const Layout& layout);
 
-/// Draws the outline of a device, which marks where a ship fetched it.
+/// Draws the outline that marks the cell from which a ship has fetched a device.
 void DrawFetched(cv::Mat& image, std::uint8_t kind, cv::Point2d at, double radius_px,
                  const Layout& layout);
 
-/// Where the sign of a disaster is drawn [pixels of the map].
+/// The position of the sign of a disaster [pixels of the map].
 struct SignPlace {
-  cv::Point2d at;        ///< centre, or the pointer at the border
-  cv::Point2d arrow_to;  ///< `at` if it stands still or the centre lies outside the map
+  cv::Point2d at;        ///< the centre of the disaster, or its pointer at the border
+  cv::Point2d arrow_to;  ///< tip of the arrow of its motion; equals `at` if there is no arrow
   bool is_inside{};      ///< false: the centre lies outside the map
 };
+/// Returns the position of the sign of one disaster. A sign has an arrow if the disaster moves and
+/// its centre is on the map.
 SignPlace PlaceSign(const aquafarm_msgs::DisasterState& disaster, const Layout& layout);
-/// Returns a place for each disaster of the state. Pointers that would overlap are moved apart
-/// along the border.
+/// Returns the position of the sign of each disaster of the state. Pointers that would overlap are
+/// moved apart along the border.
 std::vector<SignPlace> PlaceSigns(const aquafarm_msgs::FarmState& state, const Layout& layout);
 
-/// Draws each disaster's centre and heading, or a pointer at the border if it is outside the map.
+/// Draws the centre and the heading of each disaster, or a pointer at the border if the centre is
+/// outside the map.
 void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Layout& layout,
                        const Fonts& fonts);
 
 /// Draws a text with an outline, so that it can be read on any background.
-/// @param top_left  of its capital letters
-/// @param color  without it, that of labels
+/// @param top_left  the upper left corner of its capital letters [pixels]
+/// @param color  default: Style::label
 void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Point top_left,
                const Layout& layout);
 void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Point top_left,
                const Layout& layout, Rgb color);
 
-/// Draws the trails or routes of the ships: older parts fade into the sea.
+/// Draws the trails or routes of the ships. Older parts fade into the sea.
 void DrawPaths(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& paths,
                const Layout& layout);
 
-/// Draws the colours of paths along a short line, the start on the left.
+/// Draws a short line with the colours of a path, from the oldest to the newest.
 void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to,
                     const aquafarm_msgs::FarmState& state, const Layout& layout);
 
-/// Blends the colours of V_π over the map, and grey over rocks, which have no value.
+/// Blends the colours of V_π over the map, and grey over the cells of rocks, which have no value.
 void DrawValues(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Values& values,
                 const Layout& layout);
 
-/// Draws the colour scale of V_π into a corner of the map.
-/// @param space  free part of the map; the scale takes a part of it
+/// Draws the colour scale of V_π near the lower left corner of the map. Draws nothing if all values
+/// are equal or there is no space.
+/// @param space  free part of the map; the part under the scale is then marked as used
 void DrawValueScale(cv::Mat& map, const Values& values, FreeSpace& space, const Layout& layout,
                     const Fonts& fonts);
 
-/// A cached drawing that can be blended over maps: premultiplied colours, and the fraction of the
-/// background that each keeps.
+/// A cached drawing that can be blended over maps. Each pixel has a premultiplied colour and the
+/// fraction of the background that stays visible.
 class Overlay {
  public:
   /// @param size size of the canvas
   /// @param middle centre of the drawing on the canvas
-  /// @param draw draws the same picture onto any map
+  /// @param draw draws the picture; it is called with a black and with a white canvas
   Overlay(cv::Size size, cv::Point middle, const std::function<void(cv::Mat& map)>& draw);
   /// Blends the drawing over a map with its centre at `middle`. Parts outside the map are clipped.
   void LayOver(cv::Mat& map, cv::Point middle) const;
@@ -149,34 +155,36 @@ class Overlay {
   struct Pixel {
     cv::Point at;     // offset from the centre
     cv::Vec3b color;  // colour over black
-    int keep;         // fraction of the background, [0, 255]
+    int keep;         // fraction of the background, 0 … 255
   };
   std::vector<Pixel> pixels_;
 };
 
-/// Draws an arrow 0.76 * size_px long around `middle`.
+/// Draws an arrow around `middle`, 0.76 * size_px long. @param bearing_deg  clockwise from north
 void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px,
                const cv::Scalar& color, int thickness);
 
 /// Draws the arrows of the legal moves around each port.
 void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, const Layout& layout);
 
-/// Draws one greedy action: an arrow for a move, a disc for a pickup, a ring for a drop-off.
+/// Draws the symbol of one greedy action: an arrow for a move, a disc for a pickup, a ring for a
+/// drop-off.
 void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
               const Layout& layout);
 
-/// Returns the distance of two symbols of best moves along each axis [cells].
+/// Returns the distance between symbols of greedy actions along each axis [cells].
 int MoveSpacing(const Layout& layout);
 
-/// Draws the greedy actions of ShownActions with symbols that are drawn once and then copied to the
-/// nearest pixel.
+/// Draws the greedy actions that ShownActions selects. Their symbols are drawn once, and then
+/// copied to the nearest pixels.
 class MoveSigns {
  public:
   explicit MoveSigns(const Layout& layout);
-  /// @param space  symbols are left out where it is used; null draws all
+  /// @param space  symbols are drawn only where it is free; nullptr: everywhere
   void Draw(cv::Mat& map, const Values& values, const FreeSpace* space = nullptr) const;
-  /// Distance of two symbols along each axis [cells].
+  /// Returns MoveSpacing.
   int every() const { return every_; }
+  /// Returns the size of the symbols, as for DrawMove [pixels].
   double size_px() const { return size_px_; }
 
  private:
@@ -189,21 +197,24 @@ class MoveSigns {
   std::vector<Overlay> signs_;
 };
 
-/// Draws the actions that a compared policy chooses for each ship.
+/// Draws the action that a compared policy chooses for each ship. Draws nothing if the choice was
+/// made in another state.
 void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                 const aquafarm_msgs::FarmState& state, const aquafarm_msgs::PolicyChoice& choice,
                 const Layout& layout);
 
-/// Writes these actions into a corner of the map.
+/// Writes these actions near the lower right corner of the map.
+/// @param space  free part of the map; the part under the text is then marked as used
 void DrawChoiceWords(cv::Mat& map, const aquafarm_msgs::FarmState& state,
                      const aquafarm_msgs::PolicyChoice& choice, FreeSpace& space,
                      const Layout& layout, const Fonts& fonts);
 
-/// Draws the sensor range of each ship in partial view.
+/// Draws the sensor range of each ship. Draws nothing if the scenario has full view.
 void DrawSight(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Layout& layout);
 
-/// Returns where a ship is drawn: in its cell, or next to the port in this cell.
+/// Returns where a ship is drawn [pixels of the map]: in its cell, or next to the port in this
+/// cell.
 cv::Point2d ShipPlace(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                       const aquafarm_msgs::ShipState& ship, const Layout& layout);
 
@@ -211,28 +222,31 @@ cv::Point2d ShipPlace(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::
 void DrawPorts(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                const Fonts& fonts);
 
-/// Draws devices that are deployed or delivered.
+/// Draws the deployed and the delivered devices, and the outlines of fetched devices in their
+/// former cells. Self-propelled devices are drawn by DrawShips until they are delivered.
 void DrawDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                  const aquafarm_msgs::FarmState& state, const Layout& layout);
 
-/// Draws ships with the devices aboard, and self-propelled devices.
+/// Draws the ships with up to three devices aboard, and the self-propelled devices.
+/// @param trail  gives the bearing of ships that do not move; may be null
 void DrawShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Trail* trail, const Layout& layout);
 
 /// Draws a rock.
 void DrawRock(cv::Mat& image, cv::Point2d at, double radius_px);
 
-/// Draws the symbol of a device with a dark rim.
+/// Draws the symbol of a device with a dark rim. @param faded  0: in its colour, 1: grey
 void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, double faded);
 
-/// Draws the text above and below the map, and the end of the episode.
+/// Draws the texts above and below the map. After the end of the episode, also draws its reason.
 void DrawWords(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Overlays& overlays,
                const Outlook& outlook, const Layout& layout, const Fonts& fonts);
 
-/// Draws the lists of the panel, the key of a policy and the region.
-/// @param values  of this farm; null without any
-/// @return whether the key of a policy is drawn: its values, best moves and choice
+/// Draws the panel: the lists, the key of a policy (its values, best moves and choice), the region,
+/// and the variable part of the legend.
+/// @param values  values for this farm; nullptr: none
+/// @return whether there is a policy and its key was drawn
 bool DrawPanel(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Overlays& overlays,
                const Values* values, const Forecasts& forecasts, const Layout& layout,

@@ -25,7 +25,8 @@ std::string Ending(const std::string& path) {
   return ending;
 }
 
-/// Path of the temporary file of a video. It keeps the extension, which selects the format.
+/// Returns the path of the temporary file of a video. It has the same extension, because OpenCV
+/// selects the format by it.
 std::string TempPath(const std::string& path) {
   return (fs::path(path).parent_path() / (fs::path(path).stem().string() + ".part" + Ending(path)))
       .string();
@@ -48,7 +49,7 @@ class EncodedVideo final : public Video {
   EncodedVideo(const std::string& path, cv::Size size, double rate_hz, bool is_mp4) : path_(path) {
     setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
     setenv("OPENCV_LOG_LEVEL", "OFF", 0);
-    // Only H.264: browsers do not play other mp4 codecs of OpenCV.
+    // For mp4 only H.264, because browsers play none of OpenCV's other mp4 codecs.
     const std::vector<std::string> codecs =
         is_mp4 ? std::vector<std::string>{"avc1"} : std::vector<std::string>{"VP90", "VP80"};
     std::string tried;
@@ -72,7 +73,7 @@ class EncodedVideo final : public Video {
     ++pictures_;
   }
 
-  // The writer does not report a full disk, so the written file is checked.
+  // OpenCV does not report a full disk, so this counts the pictures of the written file.
   void Close() override {
     writer_.release();
     if (Pictures() < pictures_) {
@@ -94,7 +95,7 @@ class EncodedVideo final : public Video {
   int pictures_{};
 };
 
-/// Finds the nearest of 256 colours with a lookup table of 32 levels per channel.
+/// Finds the nearest colour of a palette with a lookup table of 32 levels per channel.
 class Quantizer {
  public:
   explicit Quantizer(const std::vector<cv::Vec3b>& palette) : nearest_(kSide * kSide * kSide) {
@@ -123,13 +124,13 @@ class Quantizer {
   std::vector<GifByteType> nearest_;
 };
 
-/// Writes gifs. The first kFirst pictures are buffered to choose the palette.
+/// Writes gifs. Buffers the first kFirst pictures, from which it computes the palette.
 class GifVideo final : public Video {
  public:
   GifVideo(const std::string& path, cv::Size size, double rate_hz)
       : path_(path), size_(size), pause_(std::max(2, cvRound(100.0 / rate_hz))) {
     int error = 0;
-    // giflib's open function creates a file that other users cannot read.
+    // giflib's own function would create a file that other users cannot read.
     const int handle = open(TempPath(path).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (handle >= 0) file_ = EGifOpenFileHandle(handle, &error);
     if (file_ == nullptr) throw StorageError(path + ": could not be written");
@@ -179,7 +180,7 @@ class GifVideo final : public Video {
     first_.clear();
   }
 
-  // Writes only the rows that have changed.
+  // Writes the rows from the first to the last changed one.
   void Write(const cv::Mat& picture) {
     cv::Mat indices(picture.size(), CV_8U);
     std::transform(picture.begin<cv::Vec3b>(), picture.end<cv::Vec3b>(), indices.begin<uchar>(),
@@ -209,7 +210,7 @@ class GifVideo final : public Video {
 
   const std::string path_;
   const cv::Size size_;
-  const int pause_;  // [1/100 s]; viewers treat values below 2 as invalid
+  const int pause_;  // time per picture [1/100 s], at least 2: viewers treat less as invalid
   GifFileType* file_{};
   std::vector<cv::Mat> first_;
   std::unique_ptr<Quantizer> quantizer_;
@@ -253,7 +254,7 @@ bool Video::Is(const std::string& path) {
 
 std::unique_ptr<Video> Video::Open(const std::string& path, cv::Size size, double rate_hz) {
   if (!Is(path)) {
-    throw std::runtime_error(path + ": got the ending '" + Ending(path) +
+    throw std::runtime_error(path + ": got the extension '" + Ending(path) +
                              "', expected .mp4, .webm or .gif");
   }
   if (Ending(path) == ".gif") return std::make_unique<GifVideo>(path, size, rate_hz);

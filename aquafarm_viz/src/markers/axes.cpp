@@ -15,8 +15,8 @@ using visualization_msgs::MarkerArray;
 
 constexpr Rgb kTickColor{0xb4, 0xc3, 0xd0};
 
-// Degrees and minutes of arc as in navigational warnings: 30-06N. The letters of rviz have no
-// degree sign.
+// Formats degrees and minutes of arc as in navigational warnings: 30-06N. rviz's font has no degree
+// sign.
 std::string ArcText(int minutes, char positive, char negative) {
   const int all = std::abs(minutes);
   const std::string rest = std::to_string(all % 60);
@@ -24,20 +24,20 @@ std::string ArcText(int minutes, char positive, char negative) {
          (minutes < 0 ? negative : positive);
 }
 
-// Adds names and ticks next to the edges of the farm.
+// Adds ticks and their names below the farm and on its left.
 class Axes {
  public:
   Axes(MarkerArray& array, const Maker& maker)
       : array_(array), maker_(maker), letter_(maker.line_m() / maker.cell_m()) {}
 
-  // @param at  from the western edge [cells]
+  // @param at  distance from the western edge [cells]
   void Below(double at, const std::string& text) {
     const double x = at - 0.5;
     Tick(x, -0.5 - 0.15 * letter_, /*is_below=*/true);
     Name(x, -0.5 - 0.95 * letter_, text);
   }
 
-  // @param at  from the southern edge [cells]
+  // @param at  distance from the southern edge [cells]
   void Left(double at, const std::string& text) {
     const double y = at - 0.5;
     Tick(-0.5 - 0.15 * letter_, y, /*is_below=*/false);

@@ -10,8 +10,9 @@
 
 namespace aquafarm_viz {
 
-/// Adds longitude below the farm and latitude on its left, such as "122-36E" (rviz's font has no
-/// sign of a degree), in the namespace `axis`; cells on a farm without a geographic position.
+/// Adds ticks and names of longitude below the farm and of latitude on its left, in the namespace
+/// `axis`. The names are such as "122-36E", because rviz's font has no degree sign. If HasGraticule
+/// is false, the axes are in cells.
 void AddAxes(visualization_msgs::MarkerArray& array, const Maker& maker,
              const aquafarm_msgs::FarmSpec& spec);
 

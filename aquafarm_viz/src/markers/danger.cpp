@@ -29,9 +29,9 @@ using aquafarm_msgs::FarmState;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr std::size_t kMaxLabels = 40;  // more are not read, and cost time
-constexpr double kRim = 0.2;            // of a label from the edge of the farm [cells]
-constexpr double kMaxLine = 1.05;       // width of a headline's line, of the farm's longer side
+constexpr std::size_t kMaxLabels = 40;  // more labels would not be read, but need time
+constexpr double kRim = 0.2;            // min distance of a label from the edge of the farm [cells]
+constexpr double kMaxLine = 1.05;       // max width of a line above the farm [longer sides of it]
 constexpr Rgb kAlarm{0xff, 0xb4, 0x54};
 
 // A rectangle that a label covers [cells].
@@ -47,13 +47,13 @@ struct Plate {
   }
 };
 
-// Places labels in the farm, so that they cover neither devices, ships and ports nor each other,
-// and land only where nothing else is free.
+// Finds places for labels on the farm at which they cover no device, ship, port or other label. A
+// label covers land only if no other place is free.
 class Labels {
  public:
   Labels(const Maker& maker, const FarmSpec& spec, const FarmState& state)
       : spec_(spec), word_(maker.word_m() / maker.cell_m()) {
-    const double half = 0.75 * maker.thing_m() / maker.cell_m();  // with circle and bar
+    const double half = 0.75 * maker.thing_m() / maker.cell_m();  // with circle and health bar
     for (const auto& device : state.devices) Block(device.x, device.y, half);
     for (const auto& ship : state.ships) {
       const cv::Point2d at =
@@ -67,7 +67,8 @@ class Labels {
 
   void Block(double x, double y, double half) { used_.push_back({x, y, half, half}); }
 
-  // Returns the first of some places that is free and inside the farm for a symbol, else the first.
+  // Returns the first place at which a symbol is free and inside the farm; if there is none, the
+  // first place. @param half  half the side of the symbol [cells]
   cv::Point2d FirstFree(const std::vector<cv::Point2d>& places, double half) const {
     const auto found = std::find_if(places.begin(), places.end(), [&](const cv::Point2d& place) {
       const bool is_inside = place.x - half >= -0.8 && place.x + half <= spec_.width - 0.2 &&
@@ -77,8 +78,8 @@ class Labels {
     return found == places.end() ? places.front() : *found;
   }
 
-  // Returns the line from a symbol to its label, empty if the label is next to the symbol or if the
-  // line would cross another label. Later labels avoid the line.
+  // Returns the ends of the line from a symbol to its label [cells]. Returns no points if the label
+  // is next to the symbol or if the line would cross another label. Later labels avoid the line.
   std::vector<cv::Point2d> Leader(cv::Point2d symbol, double radius, const Plate& label) {
     constexpr double kSample = 0.2;  // [cells]
     const cv::Point2d to(
@@ -102,8 +103,8 @@ class Labels {
     return {from, to};
   }
 
-  // Returns the place of a text: below, above or next to a point, or as near to it as possible.
-  // Returns nullopt if there is none, or the last place tried if the text must be shown.
+  // Returns the place of a label: below, above or next to a point, or as near to it as possible. If
+  // no place is free, returns nullopt, or the last place that was tried if the label must be shown.
   std::optional<Plate> Place(const std::string& text, double x, double y, bool must_show) {
     const auto lines = 1 + std::count(text.begin(), text.end(), '\n');
     const double half_width = std::min(0.5 * (TextWidth(text) + 0.8) * word_,
@@ -111,7 +112,7 @@ class Labels {
     const double half_height = (0.1 + 0.5 * double(lines)) * word_;
     const double row = std::max(1.5, 1.5 * word_) + half_height - 0.6 * word_;
     Plate plate{x, y, half_width, half_height};
-    // Land may be covered rather than that the label is far away.
+    // A near place on land is better than a distant one on water.
     const double near = half_width + 4.0 * row;
     constexpr std::array<std::pair<bool, bool>, 4> kTries{
         {{true, true}, {true, false}, {false, true}, {false, false}}};
@@ -139,8 +140,8 @@ class Labels {
     land_.push_back({double(cell.x), double(cell.y), half, half});
   }
 
-  // Where a label may stand relative to its point, the nearest first: anywhere in the farm if it
-  // must be shown.
+  // Returns the offsets of a label from its point that are tried: first below, above, right and
+  // left, then others, the nearest first. `is_anywhere` adds distant ones.
   std::vector<cv::Point2d> OffsetsOf(double half_width, double row, bool is_anywhere) const {
     const double aside = half_width + std::max(1.5, 1.5 * word_);
     std::vector<cv::Point2d> offsets{{0.0, -row}, {0.0, row}, {aside, 0.0}, {-aside, 0.0}};
@@ -174,7 +175,7 @@ class Labels {
   std::vector<Plate> land_;  // islands and rocks
 };
 
-// Adds a text on a dark plate, so that it can be read on any ground.
+// Adds a text on a dark plate, so that it can be read on any background.
 void AddText(MarkerArray& array, const Maker& maker, const std::string& space, std::int32_t id,
              const Plate& place, const std::string& text) {
   Marker plate =
@@ -195,7 +196,7 @@ void DeleteText(MarkerArray& array, const Maker& maker, const std::string& space
   array.markers.push_back(maker.Delete(space.c_str(), id));
 }
 
-// Adds or deletes the line from a symbol to its label.
+// Adds the line from a symbol to its label, or deletes it if `line` is empty.
 void AddLeader(MarkerArray& array, const Maker& maker, const std::string& space, std::int32_t id,
                const std::vector<cv::Point2d>& line) {
   const std::string name = space + "_leader";
@@ -211,8 +212,8 @@ void AddLeader(MarkerArray& array, const Maker& maker, const std::string& space,
   array.markers.push_back(marker);
 }
 
-// Returns a text in two lines if one is too wide [heights of a letter]. The first takes all parts
-// that fit, because a time belongs to the part before it.
+// Breaks a text after a comma into two lines if it is wider than `max_width` [heights of a letter].
+// The first line takes all parts that fit, so that a time stays with the part before it.
 std::string InLines(std::string text, double max_width) {
   if (TextWidth(text) <= max_width || text.find('\n') != std::string::npos) return text;
   std::size_t end = std::string::npos;
@@ -233,8 +234,8 @@ void AddCircle(MarkerArray& array, const Maker& maker, const DeviceState& device
   array.markers.push_back(circle);
 }
 
-// Adds circles around the devices in danger and labels those that have space, those that are
-// reached first before others. Deletes the circles and labels of all other devices.
+// Adds circles around the devices in danger and labels next to them where there is space, the most
+// urgent devices first. Deletes the circles and labels of all other devices.
 void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                 const FarmState& state, const Outlook& outlook, Labels& labels) {
   const double radius = 0.86 * maker.thing_m() / maker.cell_m();
@@ -262,7 +263,8 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
   }
 }
 
-// Adds a pointer at the edge of the farm towards each centre outside it. Returns those disasters.
+// Adds a pointer at the edge of the farm towards each centre outside it. Returns the indices of
+// these disasters.
 std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                                      const FarmState& state, Labels& labels) {
   static const std::vector<cv::Point2f> kPointer{{0.0F, 0.75F}, {-0.4F, -0.5F}, {0.4F, -0.5F}};
@@ -283,7 +285,7 @@ std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, con
     }
     const cv::Point2d edge(middle_x + east / beyond, middle_y + north / beyond);
     const bool is_beside = std::abs(east) * spec.height > std::abs(north) * spec.width;
-    std::vector<cv::Point2d> places{edge};  // along the edge
+    std::vector<cv::Point2d> places{edge};  // others follow along the edge
     for (const double aside : {1.0, -1.0, 1.6, -1.6, 2.2, -2.2}) {
       const double cells = aside * maker.thing_m() / maker.cell_m();
       places.push_back(edge + (is_beside ? cv::Point2d(0.0, cells) : cv::Point2d(cells, 0.0)));
@@ -300,7 +302,7 @@ std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, con
   return outside;
 }
 
-// Adds one or two lines of text next to the clock, above the farm, or deletes them.
+// Adds one or two lines of text above the farm, next to the clock. Deletes them if `text` is empty.
 // @param side  1: above the clock, -1: below it
 void AddLines(MarkerArray& array, const Maker& maker, const FarmSpec& spec, const char* space,
               double side, const std::string& text, Rgb color) {
@@ -313,8 +315,8 @@ void AddLines(MarkerArray& array, const Maker& maker, const FarmSpec& spec, cons
                                      lines, maker.line_m(), color));
 }
 
-// Returns what the pointers point to: strength, place and course, of several disasters in a line
-// each.
+// Returns the strength, the position and the motion of the disasters outside the farm: one line for
+// each of the first two, and the number of the others.
 std::string OutsideText(const FarmSpec& spec, const FarmState& state,
                         const std::vector<Course>& courses,
                         const std::vector<std::size_t>& outside) {

@@ -22,11 +22,11 @@ using aquafarm_msgs::FarmSpec;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-// Places the parts of the legend in a row below the map [m].
+// Adds the parts of one line of the legend next to each other, below the map.
 class Row {
  public:
-  // @param line  0 is next to the names of the axes
-  // @param space  namespace of the bars; that of the texts ends with _text
+  // @param line  0 is the uppermost line, below the names of the axis
+  // @param space  namespace of bars and symbols; with _text, that of texts
   Row(MarkerArray& array, const FarmSpec& spec, int line, std::string space)
       : array_(array),
         header_(spec.header),
@@ -50,7 +50,7 @@ class Row {
     x_m_ += width_m + 0.4 * size_m_;
   }
 
-  // A bar with the colours of values, the lowest on the left.
+  // Adds a bar with the colours of values, the lowest value on the left.
   void ValueBar(double width_m) {
     constexpr int kParts = 32;
     Marker bar = Make(space_, Marker::TRIANGLE_LIST, x_m_);
@@ -77,7 +77,7 @@ class Row {
     x_m_ += width_m + 0.4 * size_m_;
   }
 
-  // The circle around a device in danger.
+  // Adds the circle around a device in danger.
   void Ring() {
     Marker ring = MakeList();
     const double outer_m = 0.45 * size_m_;
@@ -87,7 +87,7 @@ class Row {
     Put(ring);
   }
 
-  // The pointer towards a centre outside the farm.
+  // Adds the pointer towards a centre outside the farm.
   void Pointer() {
     Marker pointer = MakeList();
     for (const auto& [x, y] : {std::pair(0.0, 0.6), {-0.35, -0.45}, {0.35, -0.45}}) {
@@ -97,7 +97,7 @@ class Row {
     Put(pointer);
   }
 
-  // The frame around a cell where the best move is a pickup or a drop-off.
+  // Adds the frame of a cell in which the best move is a pickup or a drop-off.
   void Frame(Rgb color) {
     Marker frame = MakeList();
     AddFrame(frame, 0.0, 0.0, 0.9 * size_m_);
@@ -105,7 +105,7 @@ class Row {
     Put(frame);
   }
 
-  // The arrow along the motion of a disaster.
+  // Adds the arrow of a best move.
   void Arrow() {
     Marker arrow = MakeList();
     AddArrow(arrow, 0.0, 0.0, 45, size_m_, 1.6);
@@ -113,7 +113,7 @@ class Row {
     Put(arrow);
   }
 
-  // Deletes the marker that would be next.
+  // Deletes the marker with the next id.
   void Remove(const std::string& space) {
     Marker marker = Make(space, Marker::CUBE, x_m_);
     marker.action = Marker::DELETE;
@@ -197,7 +197,7 @@ void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& valu
     row.ValueBar(3.0 * row.size_m());
     row.Text(Number(double(values.highest), 1));
     row.Skip(0.6 * row.size_m());
-  } else {  // such as a policy without values
+  } else {  // for example, the policy has no values
     row.Remove("value_legend_text");
     row.Remove("value_legend");
     row.Remove("value_legend_text");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The legend below the map in rviz; for the nodes of this package.
+/// The legend below the map in rviz; private to this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -10,15 +10,15 @@
 
 namespace aquafarm_viz {
 
-/// Adds a scale bar, the colours of risks and north, in the namespaces `legend` and `legend_text`.
+/// Adds a scale bar and the colours of risks, in the namespaces `legend` and `legend_text`.
 void AddLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec);
 
-/// Adds the symbols of danger: of a device, and of a disaster's centre and motion, a line below the
-/// legend, in the namespaces `sign_legend` and `sign_legend_text`.
+/// Adds a second line, in the namespaces `sign_legend` and `sign_legend_text`: the circle around a
+/// device in danger, the pointer to a centre, the pattern of rings, and that north is up.
 void AddSignLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec);
 
-/// Adds the range and colours of values and the symbols of best moves, two lines below the legend,
-/// in the namespaces `value_legend` and `value_legend_text`.
+/// Adds a third line, in the namespaces `value_legend` and `value_legend_text`: the range and the
+/// colours of values, and the symbols of best moves.
 void AddValueLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec,
                     const Values& values);
 

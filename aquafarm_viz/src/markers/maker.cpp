@@ -15,9 +15,9 @@ geometry_msgs::Point OnCircle(double radius_m, int corner) {
   return Point(radius_m * std::cos(angle), radius_m * std::sin(angle));
 }
 
-// The width of a letter of Liberation Sans, as rviz draws it.
+// Returns the approximate width of a letter of Liberation Sans in rviz, in heights of a letter.
 double LetterWidth(char letter) {
-  constexpr double kScale = 0.9;  // of rviz
+  constexpr double kScale = 0.9;  // rviz draws a letter of 1 em 0.9 heights wide
   const auto is_in = [letter](const char* letters) {
     return std::string(letters).find(letter) != std::string::npos;
   };

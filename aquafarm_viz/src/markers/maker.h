@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Makes markers of one farm at their positions and layers; private to this package.
+/// Creates markers of one farm at given positions and layers; private to this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <visualization_msgs/Marker.h>
@@ -19,7 +19,7 @@
 
 namespace aquafarm_viz {
 
-/// Layers from bottom to top, in units of height.
+/// Heights of markers, from bottom to top, in units of Maker::layer_m().
 enum Layer {
   kSeaLayer = -1,  // below the grids, which rviz draws at height 0
   kLandLayer = 1,
@@ -35,9 +35,12 @@ enum Layer {
   kWordLayer
 };
 
-constexpr double kShipAside = 0.8;    ///< of a ship from its port, along each axis [thing_m()]
-constexpr double kLineOfClock = 2.0;  ///< above the farm
+/// Distance of a ship from its port along each axis, in units of Maker::thing_m().
+constexpr double kShipAside = 0.8;
+/// Line of text above the farm that contains the clock, see Maker::LineAbove.
+constexpr double kLineOfClock = 2.0;
 
+/// Returns a point of a marker [m].
 inline geometry_msgs::Point Point(double x, double y, double z = 0.0) {
   geometry_msgs::Point point;
   point.x = x;
@@ -46,7 +49,8 @@ inline geometry_msgs::Point Point(double x, double y, double z = 0.0) {
   return point;
 }
 
-/// Creates the markers of one farm with positions [m], layers and sizes according to its spec.
+/// Creates the markers of one farm. Positions are given in cells and converted to metres; sizes
+/// depend on the size of the farm.
 class Maker {
  public:
   Maker(const aquafarm_msgs::FarmSpec& spec, const std_msgs::Header& header)
@@ -63,17 +67,23 @@ class Maker {
     header_.frame_id = names::kMapFrame;
   }
 
+  /// Returns the side of a cell [m].
   double cell_m() const { return cell_m_; }
+  /// Returns the size of ships, devices and ports: a cell, or a 40th of the longer side of
+  /// the farm if that is more [m].
   double thing_m() const { return thing_m_; }
+  /// Returns the height of texts on the farm [m].
   double word_m() const { return word_m_; }
+  /// Returns the height of one layer [m].
   double layer_m() const { return layer_m_; }
-  /// Height of the lines of text above the farm [m].
+  /// Returns the height of the lines of text above the farm [m].
   double line_m() const { return line_m_; }
-  /// The y of the middle of line 0, 1, … above the farm [cells].
+  /// Returns the y of the middle of line 0, 1, … above the farm [cells].
   double LineAbove(double line) const {
     return height_ - 0.5 + (0.75 + 1.25 * line) * line_m_ / cell_m_;
   }
 
+  /// Returns a marker to be completed by the caller. @param x, y  position [cells]
   visualization_msgs::Marker Make(const char* space, int id, int type, Layer layer, double x,
                                   double y) const {
     visualization_msgs::Marker marker;
@@ -88,6 +98,7 @@ class Maker {
     return marker;
   }
 
+  /// Returns a marker that deletes the marker with this namespace and id.
   visualization_msgs::Marker Delete(const char* space, int id) const {
     visualization_msgs::Marker marker;
     marker.header = header_;
@@ -98,6 +109,7 @@ class Maker {
     return marker;
   }
 
+  /// Returns a text. @param x, y  its middle [cells] @param size_m  height of its letters [m]
   visualization_msgs::Marker Text(const char* space, int id, double x, double y,
                                   const std::string& text, double size_m, Rgb color) const {
     visualization_msgs::Marker marker =
@@ -108,7 +120,9 @@ class Maker {
     return marker;
   }
 
-  // Returns a flat convex shape as a triangle fan.
+  /// Returns a flat shape as triangles around its origin. Each line from the origin to a
+  /// corner must lie inside the shape, as in a convex shape.
+  /// @param size_m  length of one unit of the outline [m]
   visualization_msgs::Marker Shape(const char* space, int id, Layer layer, double x, double y,
                                    const std::vector<cv::Point2f>& outline, double size_m,
                                    Rgb color) const {
@@ -135,8 +149,9 @@ class Maker {
   std_msgs::Header header_;
 };
 
-/// A bearing is clockwise from north, a yaw is counter-clockwise. `rest_deg` is the yaw at which
-/// the shape points north.
+/// Returns the orientation of a marker that points along a bearing. Bearings are clockwise from
+/// north, but the yaw of a marker is counter-clockwise.
+/// @param rest_deg  yaw at which the marker points north
 inline geometry_msgs::Quaternion Turned(double bearing_deg, double rest_deg) {
   const double yaw = (rest_deg - bearing_deg) * CV_PI / 180.0;
   geometry_msgs::Quaternion turned;
@@ -145,13 +160,14 @@ inline geometry_msgs::Quaternion Turned(double bearing_deg, double rest_deg) {
   return turned;
 }
 
-/// Returns the width of a text in rviz relative to the height of its letters; of its longest line.
+/// Returns the width of the longest line of a text in rviz, in heights of its letters.
 double TextWidth(const std::string& text);
 
 /// Radii to the NE, SE, SW and NW [m].
 using QuadrantRadii = std::array<double, 4>;
 
-/// Adds the flat band between two rings around the marker's pose.
+/// Adds the triangles of the flat band between two rings, whose centre is the position of the
+/// marker. Quadrants in which `outer` is not larger than `inner` get no triangles.
 void AddBand(visualization_msgs::Marker& marker, const QuadrantRadii& inner,
              const QuadrantRadii& outer);
 

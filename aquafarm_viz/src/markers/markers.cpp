@@ -35,9 +35,9 @@ using aquafarm_msgs::ShipState;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double kShapeNorthDeg = 0.0;   // outlines have their bow at north
+constexpr double kShapeNorthDeg = 0.0;   // outlines point north
 constexpr double kArrowNorthDeg = 90.0;  // rviz arrows point along x
-constexpr double kBetweenHeads = 2.5;    // of the arrowheads of a path [thing_m()]
+constexpr double kBetweenHeads = 2.5;    // min distance of two arrowheads on a path [thing_m()]
 
 Marker Sea(const Maker& maker, const FarmSpec& spec) {
   Marker sea = maker.Make("sea", 0, Marker::CUBE, kSeaLayer, (spec.width - 1) / 2.0,
@@ -49,7 +49,7 @@ Marker Sea(const Maker& maker, const FarmSpec& spec) {
   return sea;
 }
 
-// Adds one flat shape per cell to a single marker.
+// Adds a flat convex shape in a cell to a list of triangles.
 void AddCell(Marker& marker, const Maker& maker, const aquafarm_msgs::Cell& cell,
              const std::vector<cv::Point2f>& outline, double size_cells) {
   const auto corner = [&](cv::Point2f point) {
@@ -74,7 +74,7 @@ Marker Island(const Maker& maker, const FarmSpec& spec) {
   return island;
 }
 
-// A line along the inner side of each border of land with water.
+// Returns a line along each side of an island's cell that borders water, inside the cell.
 Marker Shore(const Maker& maker, const FarmSpec& spec) {
   constexpr float kWidth = 0.12F;  // [cells]
   Marker shore = maker.Make("shore", 0, Marker::TRIANGLE_LIST, kLandLayer, 0, 0);
@@ -244,8 +244,8 @@ void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, cv::
                                      std::to_string(ship.id), maker.word_m(), kPaper));
 }
 
-// Adds the last moves of a ship, which fade towards the oldest, as rectangles, because the lines of
-// rviz have an uneven width in this view.
+// Adds the last moves of a ship. Older ones are more transparent. Each move is a rectangle, because
+// the lines of rviz have an uneven width in the top-down view.
 void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, const ShipState& ship,
              const Trail* trail) {
   const ShipTrail* way = trail == nullptr ? nullptr : trail->Find(ship.id);
@@ -261,7 +261,7 @@ void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, con
     const cv::Point2d to = cv::Point2d(way->places[i]) * maker.cell_m();
     const double length = cv::norm(to - from);
     if (length == 0.0 || Trail::IsGap(way->places[i - 1], way->places[i])) continue;
-    const cv::Point2d along = (to - from) * (half_m / length);  // joins the next rectangle
+    const cv::Point2d along = (to - from) * (half_m / length);  // overlaps the next rectangle
     const cv::Point2d side(-along.y, along.x);
     const cv::Point2d a = from - along;
     const cv::Point2d b = to + along;
@@ -308,6 +308,19 @@ double RadiusTowards(const DisasterState& disaster, double side) {
   return side > 0.0 ? std::max(radii[0], radii[3]) : std::max(radii[1], radii[2]);
 }
 
+// Adds a word on a dark plate, so that it can be read over the arrows of a policy.
+void AddOnPlate(MarkerArray& array, const Maker& maker, const std::string& space, std::int32_t id,
+                cv::Point2d at, const std::string& word) {
+  Marker plate = maker.Make((space + "_plate").c_str(), id, Marker::CUBE, kWordLayer, at.x, at.y);
+  plate.pose.position.z -= 0.5 * maker.layer_m();
+  plate.scale.x = (TextWidth(word) + 0.8) * maker.word_m();
+  plate.scale.y = 1.2 * maker.word_m();
+  plate.scale.z = 0.1 * maker.layer_m();
+  plate.color = Color(kInk, 0.72);
+  array.markers.push_back(plate);
+  array.markers.push_back(maker.Text(space.c_str(), id, at.x, at.y, word, maker.word_m(), kPaper));
+}
+
 void AddDisasterSigns(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                       const DisasterState& disaster) {
   Marker eye =
@@ -316,15 +329,16 @@ void AddDisasterSigns(MarkerArray& array, const Maker& maker, const FarmSpec& sp
   eye.scale.z = 0.5 * maker.layer_m();
   eye.color = Color(GradeColor(disaster.grade));
   array.markers.push_back(eye);
-  // On the side that the arrow of its motion leaves free: outside the rings if that is on the map.
+  // The name is north or south of the centre, where the arrow of the motion is not. It is outside
+  // the rings if that position is on the map.
   const double side =
       disaster.speed > 0.0F && std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1 ? 1.0 : -1.0;
   const double near = 0.9 * maker.thing_m() / maker.cell_m();
   const double far = near + RadiusTowards(disaster, side);
   const double outside = disaster.y + side * far;
   const double aside = side * (outside > 0.0 && outside < spec.height - 1.0 ? far : near);
-  array.markers.push_back(maker.Text("disaster_name", disaster.id, disaster.x, disaster.y + aside,
-                                     DisasterName(disaster.kind), maker.word_m(), kPaper));
+  AddOnPlate(array, maker, "disaster_name", disaster.id,
+             {double(disaster.x), double(disaster.y) + aside}, DisasterName(disaster.kind));
   if (!(disaster.speed > 0.0F)) {
     array.markers.push_back(maker.Delete("heading", disaster.id));
     return;
@@ -344,12 +358,12 @@ void AddDisasters(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
   for (const auto& disaster : state.disasters) {
     const bool drawn = disaster.known && disaster.steps_left > 0;
     AddRings(array, maker, spec, disaster, drawn);
-    // A centre outside has a pointer at the edge (danger.h).
+    // A centre outside the farm has a pointer at the edge instead (danger.h).
     if (drawn && (!has_pointers || IsCentreInFarm(spec, disaster))) {
       AddDisasterSigns(array, maker, spec, disaster);
       continue;
     }
-    for (const char* space : {"disaster", "disaster_name", "heading"}) {
+    for (const char* space : {"disaster", "disaster_name", "disaster_name_plate", "heading"}) {
       array.markers.push_back(maker.Delete(space, disaster.id));
     }
   }

@@ -21,9 +21,9 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 using Points = std::vector<geometry_msgs::Point>;
 
-constexpr double kLinesAcross = 18.0;  // of a pattern, along the longer side of a farm
+constexpr double kLinesAcross = 18.0;  // lines of a pattern along the longer side of a farm
 
-// The farm relative to the centre of a disaster [m].
+// The borders of the farm relative to the centre of a disaster [m].
 struct Frame {
   double west, south, east, north;
 };
@@ -35,7 +35,7 @@ Frame FrameAround(const Maker& maker, const FarmSpec& spec, const DisasterState&
           (spec.height - 0.5 - double(disaster.y)) * cell_m};
 }
 
-// Returns the part of a convex polygon on which `inside` is not negative. `inside` is linear.
+// Returns the part of a convex polygon on which `inside` is not negative. `inside` must be linear.
 template <typename Inside>
 Points Cut(const Points& polygon, Inside inside) {
   Points kept;
@@ -52,7 +52,7 @@ Points Cut(const Points& polygon, Inside inside) {
   return kept;
 }
 
-// Replaces triangles by their parts on the farm.
+// Replaces triangles with their parts on the farm.
 void ClipTriangles(Points& points, const Frame& farm) {
   Points clipped;
   clipped.reserve(points.size());
@@ -75,7 +75,8 @@ QuadrantRadii RingMetres(const Maker& maker, const DisasterState& disaster, std:
   return radii;
 }
 
-// Returns the band between the next smaller ring and this one, so that shades do not overlap.
+// Returns the band between the next smaller ring and this one, so that the colours of rings do not
+// overlap.
 Marker RingBand(const Maker& maker, const DisasterState& disaster, int ring) {
   const auto i = static_cast<std::size_t>(ring);
   Marker band = maker.Make("ring", disaster.id * kMaxRings + ring, Marker::TRIANGLE_LIST,
@@ -87,7 +88,8 @@ Marker RingBand(const Maker& maker, const DisasterState& disaster, int ring) {
   return band;
 }
 
-// Returns a band instead of a line: rviz lines face the viewer and partly vanish in top-down view.
+// Returns the edge of a ring as a narrow band, because the lines of rviz partly vanish in the
+// top-down view.
 Marker RingEdge(const Maker& maker, const DisasterState& disaster, int ring) {
   const auto i = static_cast<std::size_t>(ring);
   Marker edge = maker.Make("ring_edge", disaster.id * kMaxRings + ring, Marker::TRIANGLE_LIST,
@@ -103,7 +105,7 @@ Marker RingEdge(const Maker& maker, const DisasterState& disaster, int ring) {
 // The lines of a kind's pattern, as in pictures.
 struct Pattern {
   std::vector<std::pair<double, double>> directions;  // east, north; of length 1
-  double wave{};                                      // height of waves [periods]
+  double wave{};                                      // amplitude of waves [periods]
   bool is_dotted{};
 };
 
@@ -149,10 +151,11 @@ class PatternPainter {
   }
 
  private:
-  static constexpr int kSamples = 16;  // of a line, in each period
+  static constexpr int kSamples = 16;  // samples of a line per period
   static constexpr int kNone = -1;
 
-  // The innermost ring over a point, or kNone.
+  // Returns the innermost ring over a point [m]; kNone if there is none or the point is off the
+  // farm.
   int RingAt(double x, double y) const {
     if (x < farm_.west || x > farm_.east || y < farm_.south || y > farm_.north) return kNone;
     const std::size_t quadrant = y >= 0.0 ? (x >= 0.0 ? 0U : 3U) : (x >= 0.0 ? 1U : 2U);
@@ -188,7 +191,7 @@ class PatternPainter {
         across = {std::min(across[0], s), std::max(across[1], s)};
       }
     }
-    // Lines keep their places on the farm while the disaster moves.
+    // Lines start at the border of the farm, so that they do not move with the disaster.
     const double first = across[0] + 0.5 * period_;
     for (int line = 0; first + line * period_ < across[1]; ++line) {
       const double s = first + line * period_;
@@ -215,7 +218,7 @@ class PatternPainter {
     }
   }
 
-  // Draws the parts of a line under one ring each; a curved line in short pieces.
+  // Draws a line in pieces that lie under one ring each. The pieces of a curved line are short.
   template <typename At>
   void DrawLine(const At& at, const std::array<double, 2>& along, bool is_curved) {
     const double step = period_ / kSamples;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The rings of disasters in rviz: bands, edges and a pattern of lines for each kind, on the farm
-/// only; private to this package.
+/// The rings of disasters in rviz: bands, edges and the pattern of the kind. They are clipped to
+/// the farm. Private to this package.
 
 #include <aquafarm_msgs/DisasterState.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -12,8 +12,8 @@ namespace aquafarm_viz {
 
 class Maker;
 
-/// Adds the markers `ring`, `ring_edge` and `ring_pattern` of a disaster, or deletes them where
-/// nothing of a ring lies on the farm.
+/// Adds the markers `ring`, `ring_edge` and `ring_pattern` of a disaster. Deletes those of which no
+/// part lies on the farm.
 /// @param is_drawn  false: deletes all of them
 void AddRings(visualization_msgs::MarkerArray& array, const Maker& maker,
               const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,

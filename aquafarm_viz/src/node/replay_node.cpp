@@ -28,7 +28,7 @@ void Refuse(const std::string& message, Response& response) {
   response.message = message;
 }
 
-// Returns true for messages that viz draws again from the replayed states. They are not replayed.
+// Returns true for drawings. They are not replayed, because viz draws the replayed states.
 bool IsDrawn(const rosbag::MessageInstance& message) {
   static const std::set<std::string> kDrawn{"visualization_msgs/MarkerArray", "nav_msgs/Path",
                                             "sensor_msgs/Image", "sensor_msgs/CompressedImage"};
@@ -67,7 +67,7 @@ ReplayNode::ReplayNode(ros::NodeHandle node, const ReplayParams& params)
     if (topics_.count(topic) != 0 || IsDrawn(message)) continue;
     ros::AdvertiseOptions options =
         AdvertiseOptionsOf(message, IsState(message) ? ReplayTape::kQueueOfStates : kQueue);
-    // A late subscriber gets the last message. States are not latched.
+    // A new subscriber gets the last message of a topic, except of topics with states.
     options.latch =
         message.getDataType() != ros::message_traits::datatype<aquafarm_msgs::FarmState>();
     topics_[topic] = node_.advertise(options);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kWarnEvery_s = 5.0;
 constexpr int kJpegQuality = 90;
-constexpr std::size_t kStamps = 200;     // states to search for the one of a map of values
+constexpr std::size_t kStamps = 200;     // number of last states that a map of values may belong to
 constexpr std::int32_t kMaxRoutes = 64;  // max ships with a route topic
 
 visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
@@ -164,7 +164,7 @@ void VizNode::Draw() {
     if (!pictured_) PublishImages(shown);
     if (!routed_) PublishRoutes(shown);
   } catch (const std::exception& fault) {
-    marked_ = pictured_ = routed_ = moved_ = true;  // the same state would fail again
+    marked_ = pictured_ = routed_ = moved_ = true;  // drawing the same state would fail again
     ROS_ERROR_THROTTLE(kWarnEvery_s, "state not drawn: %s", fault.what());
   }
 }

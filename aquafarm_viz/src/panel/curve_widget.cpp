@@ -17,7 +17,7 @@ const QColor kReturn(0xff, 0xd4, 0x3b);
 const QColor kSuccess(0x5f, 0xe0, 0x8a);
 const QColor kWords(0xe6, 0xed, 0xf3);
 
-// Draws text around a point: -1 to its left, 0 below it, 1 to its right.
+// Draws a text next to a point. @param side  -1: on its left, 0: below it, 1: on its right
 void DrawTick(QPainter& painter, const QPointF& at, const QString& text, int side) {
   const QSizeF size(80.0, painter.fontMetrics().height());
   const QPointF corner = side < 0   ? at + QPointF(-size.width() - 4.0, -size.height() / 2.0)
@@ -27,7 +27,7 @@ void DrawTick(QPainter& painter, const QPointF& at, const QString& text, int sid
   painter.drawText(QRectF(corner, size), across | Qt::AlignVCenter, text);
 }
 
-// Draws a line and its name, and returns the right end.
+// Draws a short line and its name, as in a legend. Returns the x of the right end.
 double DrawName(QPainter& painter, const QPointF& at, const QColor& color, const QString& name) {
   constexpr double kLine = 14.0;
   painter.setPen(QPen(color, 2.0));
@@ -51,7 +51,7 @@ CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve) {
   if (low->mean_return < 0.0 && high->mean_return > 0.0) {
     return {low->mean_return - margin, 1.06 * high->mean_return};
   }
-  // A margin across 0 would make the scale of one sign look like one of both.
+  // The margin must not cross 0, because the scale is then logarithmic below 0.
   return {low->mean_return >= 0.0 ? std::max(0.0, low->mean_return - margin)
                                   : low->mean_return - margin,
           high->mean_return <= 0.0 ? std::min(0.0, high->mean_return + margin)
@@ -80,7 +80,7 @@ std::vector<double> RoundTicks(const CurveRange& range, int max) {
   constexpr std::size_t kFewest = 3;
   const double span = range.high - range.low;
   const double power = std::pow(10.0, std::ceil(std::log10(span / std::max(1, max))));
-  // From coarse to fine, until there are enough ticks.
+  // Tries finer and finer steps until there are enough ticks.
   std::vector<double> ticks;
   for (const double factor : {1.0, 0.5, 0.2, 0.1, 0.05, 0.02}) {
     const double step = factor * power;

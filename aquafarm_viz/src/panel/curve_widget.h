@@ -11,45 +11,49 @@
 
 namespace aquafarm_viz {
 
-/// Returns a text in UTF-8 as Qt has it.
+/// Converts a text in UTF-8 to a text of Qt.
 inline QString Text(const std::string& text) { return QString::fromStdString(text); }
 
-/// The part of an axis that is shown.
+/// The range of an axis.
 struct CurveRange {
   double low{};
   double high{};
 };
 
-/// Returns the range of the mean returns, with a margin.
+/// Returns the range of the mean returns of a curve with a margin; [0, 1] if the curve is empty.
+/// The margin does not extend across 0.
 CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve);
 
-/// A scale that is linear above 0 and, if the returns are on both sides of 0, logarithmic below,
-/// because returns at the start of a training are far below the rest.
+/// The scale of the axis of returns. It is linear, but if the range contains values on both sides
+/// of 0, it is logarithmic below 0. The reason is that the returns at the start of a training are
+/// far below all others.
 class ReturnScale {
  public:
   explicit ReturnScale(const CurveRange& range);
 
   /// Returns the height of a return on the scale.
   double Height(double value) const;
-  /// Returns the values of the ticks: at most about `max` above 0, and powers of ten and three
-  /// times these below.
+  /// Returns the values of the ticks. A linear scale has RoundTicks. The other one has about
+  /// half of `max` ticks from 0 on, and below 0 ticks at -1, -3, -10, -30, …
   std::vector<double> Ticks(int max) const;
+  /// Returns true if the scale is logarithmic below 0.
   bool is_bent() const { return unit_ > 0.0; }
 
  private:
   CurveRange range_;
-  double unit_{};  // where the logarithmic part bends; 0: linear
+  double unit_{};  // below -unit_ the scale is about logarithmic; 0: the whole scale is linear
 };
 
-/// Returns the multiples of 1, 2 or 5 times a power of ten within a range: as many as fit into
-/// `most`, but at least three.
+/// Returns ticks within a range: the multiples of 1, 2 or 5 times a power of ten. The power and the
+/// factor are those that give as many ticks as possible up to `max`, or at least three.
 std::vector<double> RoundTicks(const CurveRange& range, int max);
 
-/// Plots the mean return over episodes as a line and the success rate (0 … 100 %, on the right) as
-/// a dashed one.
+/// Plots the mean return (axis on the left) as a solid line and the success rate (0 … 100 %, axis
+/// on the right) as a dashed line, both over episodes.
 class CurveWidget : public QWidget {
  public:
   explicit CurveWidget(QWidget* parent = nullptr);
+  /// Replaces the plotted curve.
   void Show(const std::vector<CurvePoint>& curve);
   QSize sizeHint() const override { return {360, 170}; }
 

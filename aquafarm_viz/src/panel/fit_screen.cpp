@@ -34,7 +34,7 @@ void FitWindow(QWidget& panel) {
   if (fit == now) return;
   window->resize(fit.window);
   window->move(available.topLeft());
-  // The layout of the smaller window must be known before.
+  // Resizes the dock later, when Qt has computed the layout of the smaller window.
   QTimer::singleShot(0, window, [window, dock, fit] {
     window->resizeDocks({dock}, {fit.dock_width}, Qt::Horizontal);
   });

@@ -18,12 +18,13 @@ struct WindowFit {
   }
 };
 
-/// Returns the largest size up to the window's own that a screen can show. The dock keeps its width
-/// if the window fits, else it gets a share of the window's width.
+/// Returns the size of the window reduced to what the screen can show. If the window must be
+/// reduced, the dock is reduced to at most 34 % of the new width of the window.
 /// @param frame  size that the window manager adds to the window
 WindowFit FitToScreen(const WindowFit& now, const QSize& frame, const QSize& screen);
 
-/// Shrinks the main window that contains a docked panel, if the window is larger than its screen.
+/// Applies FitToScreen to the main window that contains a docked panel, and moves it to the upper
+/// left corner of the primary screen if it was reduced.
 void FitWindow(QWidget& panel);
 
 }  // namespace aquafarm_viz

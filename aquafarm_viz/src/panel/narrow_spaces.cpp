@@ -10,7 +10,7 @@
 namespace aquafarm_viz {
 namespace {
 
-// 0.278 em in Liberation Sans, and rviz draws a letter of 1 em 0.9 heights wide.
+// A space of Liberation Sans is 0.278 em wide, and rviz draws a letter of 1 em 0.9 heights wide.
 constexpr float kSpace = 0.25F;  // [heights of a text]
 
 void NarrowSpacesBelow(Ogre::Node& node) {

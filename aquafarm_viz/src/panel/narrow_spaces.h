@@ -7,8 +7,9 @@ class SceneManager;
 
 namespace aquafarm_viz {
 
-/// Gives the spaces of all texts in the 3D view the width that they have in Liberation Sans. By
-/// default rviz makes a space as wide as a capital A. Call it before each frame.
+/// Sets the width of the spaces in all texts of the 3D view to that of Liberation Sans. By default,
+/// rviz makes a space as wide as a capital A. Must be called before each frame, because texts
+/// change.
 void NarrowSpaces(Ogre::SceneManager& scene);
 
 }  // namespace aquafarm_viz

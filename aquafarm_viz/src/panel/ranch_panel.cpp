@@ -27,7 +27,8 @@ namespace aquafarm_viz {
 namespace {
 
 constexpr double kCallLimit_s = 5.0;
-// A command in lockstep waits for the other ships, at most ~barrier_timeout_s of the sim node.
+// A command in lockstep waits for those of the other ships, at most ~barrier_timeout_s of the sim
+// node.
 constexpr double kCommandLimit_s = 60.0;
 constexpr int kRefresh_ms = 200;
 constexpr char kWholeFarm[] = "Whole Farm";
@@ -72,9 +73,9 @@ RanchPanel::RanchPanel(QWidget* parent)
       node_, names::kPlanHeartbeat, 2, [this](const std_msgs::TimeConstPtr&) {
         model_.MarkPlanNodePresent(ros::SteadyTime::now());
       });
-  QTimer::singleShot(kRefresh_ms, this, [this] { FitWindow(*this); });  // the window is shown then
+  QTimer::singleShot(kRefresh_ms, this, [this] { FitWindow(*this); });  // when it is shown
   connect(&timer_, &QTimer::timeout, this, [this] {
-    // Also without new messages, because the window size may have changed.
+    // Adjusts the view also without new messages, because the size of the window may have changed.
     if (rviz_ != nullptr && model_.shown().spec) {
       whole_view_.Follow(*rviz_, *model_.shown().spec);
     }

@@ -13,8 +13,8 @@
 
 namespace aquafarm_viz {
 
-/// The rviz panel "Ranch". It shows the topics of the ranch in the namespace of rviz, live or
-/// replayed, and calls its services.
+/// The rviz panel "Ranch". It shows the topics of the ranch whose namespace is that of the rviz
+/// node, live or replayed, and calls the services of the ranch.
 class RanchPanel : public rviz::Panel {
  public:
   explicit RanchPanel(QWidget* parent = nullptr);
@@ -31,13 +31,14 @@ class RanchPanel : public rviz::Panel {
   RanchModel model_;
   RanchWidget* widget_;
   std::unique_ptr<ServiceCaller> caller_;
-  std::map<int, std::unique_ptr<ServiceCaller>> helms_;  // by ship: commands may wait
+  // One caller for each ship, because a command may wait for those of other ships.
+  std::map<int, std::unique_ptr<ServiceCaller>> helms_;
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_;
   ros::Subscriber plan_;
   ros::Subscriber plan_heartbeat_;
-  rviz::VisualizationManager* rviz_{};  // null outside rviz, where vis_manager_ is not set
+  rviz::VisualizationManager* rviz_{};  // null outside rviz, which does not set vis_manager_
   WholeView whole_view_;
   QTimer timer_;
   bool changed_{};

@@ -17,7 +17,7 @@
 namespace aquafarm_viz {
 namespace {
 
-// Height of a table's row [pixels].
+// Returns the height of a row of a table [pixels].
 int RowHeight(const QTableWidget* table) { return std::max(20, table->fontMetrics().height() + 2); }
 
 QTableWidget* MakeTable(const RanchModel::Row& columns) {
@@ -35,7 +35,8 @@ QTableWidget* MakeTable(const RanchModel::Row& columns) {
   return table;
 }
 
-// Shows rows. The table is as tall as they are; beyond `rows_seen` it may get a scroll bar.
+// Fills a table with rows. The table is tall enough for all rows, but if there is no space it may
+// shrink to `rows_seen` rows with a scroll bar.
 void Fill(QTableWidget* table, const std::vector<RanchModel::Row>& rows, int rows_seen) {
   const int count = static_cast<int>(rows.size());
   table->setRowCount(count);
@@ -51,7 +52,7 @@ void Fill(QTableWidget* table, const std::vector<RanchModel::Row>& rows, int row
   }
 }
 
-// The symbol of a device kind in the view.
+// Returns the symbol of a device kind, as in pictures.
 QIcon DeviceIcon(std::uint8_t kind) {
   constexpr int kSide = 32;
   QPixmap symbol(kSide, kSide);
@@ -84,7 +85,7 @@ RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget*
   reward_ = AddLine(all);
   all->addWidget(ships_ = MakeTable(RanchModel::ShipColumns()), 1);
   all->addWidget(devices_ = MakeTable(RanchModel::DeviceColumns()), 2);
-  for (const int column : {1, 3}) {  // symbols, and dangers
+  for (const int column : {1, 3}) {  // "kind" with symbols, and "status" with dangers
     devices_->horizontalHeader()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
   }
   plan_ = AddLine(all);
@@ -133,7 +134,8 @@ void RanchWidget::AddTime(QBoxLayout* layout) {
   pace->addItem("as is", "");
   pace->addItem("paced", "paced");
   pace->addItem("lockstep", "lockstep");
-  pace->setToolTip("paced: time advances by itself; lockstep: when every ship has a command");
+  pace->setToolTip(
+      "paced: a step at fixed intervals. lockstep: a step when every ship has a command");
   auto* rate = new QDoubleSpinBox();
   rate->setObjectName("rate");
   rate->setRange(0.1, 1000.0);
@@ -163,7 +165,7 @@ void RanchWidget::AddPlaces(QBoxLayout* layout) {
   QSpinBox* step = number("step");
   AddButton(row, "jump", [this, step] {
     buttons_.jump(std::uint64_t(step->value()));
-  })->setToolTip("in a replay: to that step of the episode shown");
+  })->setToolTip("in a replay: shows this step of the current episode");
 }
 
 void RanchWidget::AddHelm(QBoxLayout* layout) {
@@ -176,7 +178,7 @@ void RanchWidget::AddHelm(QBoxLayout* layout) {
   auto* rose = new QGridLayout();
   rose->setSpacing(2);
   row->addLayout(rose);
-  // Actions as in Command.action, arranged as a compass with north up; 10 is hold.
+  // Values of Command.action, arranged as on a compass with north up; 10 is hold.
   static constexpr std::uint8_t kRose[3][3]{{4, 0, 5}, {2, 10, 3}, {6, 1, 7}};
   for (int y = 0; y < 3; ++y) {
     for (int x = 0; x < 3; ++x) {
@@ -219,7 +221,7 @@ void RanchWidget::AddDisaster(QBoxLayout* layout) {
         model_.NextDisaster(),
         model_.MakeDisaster(static_cast<std::uint8_t>(kind->currentIndex()),
                             static_cast<std::uint8_t>(grade->currentIndex() + 1), radius->value()));
-  })->setToolTip("one more, beginning at ship 0");
+  })->setToolTip("adds a disaster at the cell of ship 0");
 }
 
 void RanchWidget::Refresh() {

@@ -20,7 +20,7 @@ class QBoxLayout;
 
 namespace aquafarm_viz {
 
-/// The actions of the buttons. Each must return immediately.
+/// The functions that the buttons call. Each must return immediately.
 struct RanchButtons {
   std::function<void(bool paused, std::uint32_t steps)> pause;
   std::function<void(std::uint64_t seed)> reset;
@@ -30,25 +30,25 @@ struct RanchButtons {
   std::function<void(std::uint64_t step)> jump;
 };
 
-/// The widget of the panel "Ranch", independent of rviz and ROS. It shows a model, and its buttons
-/// call functions.
+/// The widget of the panel "Ranch". It shows a RanchModel, and its buttons call RanchButtons. It
+/// needs neither rviz nor a node.
 class RanchWidget : public QWidget {
  public:
-  /// @param model is read by Refresh; must outlive the widget
+  /// @param model must outlive the widget; Refresh, RefreshPlanAge and buttons read it
   RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget* parent = nullptr);
 
   /// Shows the current content of the model.
   void Refresh();
-  /// Updates the line of the plan, which states for how long plan_node has been silent.
+  /// Updates the line of the plan, which warns if plan_node is silent (PlanHeadline).
   void RefreshPlanAge();
-  /// Sets the line at the bottom: the result of the last button.
+  /// Sets the line at the bottom, which contains the result of the last button.
   void ShowMessage(const std::string& line);
 
  private:
   QLabel* AddLine(QBoxLayout* layout);
   QPushButton* AddButton(QBoxLayout* layout, const QString& text, std::function<void()> act);
   void RefreshPlan();
-  /// Puts the symbol of the view next to the kind of each device.
+  /// Adds the symbol of each device in the column of its kind.
   void AddSymbols();
   void AddTime(QBoxLayout* layout);
   void AddPlaces(QBoxLayout* layout);

@@ -6,7 +6,7 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr std::size_t kMaxWaiting = 8;  // max waiting calls; further ones are refused
+constexpr std::size_t kMaxWaiting = 8;  // max number of waiting calls
 
 }  // namespace
 

@@ -19,20 +19,22 @@
 namespace aquafarm_viz {
 
 /// Calls services one after another from a separate thread, so that a window never blocks. A call
-/// without a response within the limit is aborted. A call is refused if too many calls wait.
+/// is aborted if there is no response within a time limit. A call is refused if eight others wait.
 class ServiceCaller {
  public:
   using OnAnswer = std::function<void(const std::string& line)>;
 
-  /// @param on_answer receives a readable line after each call, in the thread of this object; for a
-  ///        refused call, in the thread of the caller
+  /// @param limit_s time limit of each call [s]
+  /// @param on_answer is called with a readable line after each call. It is called from the thread
+  ///        of this object or, for a refused call, from the thread that called Call.
   ServiceCaller(ros::NodeHandle node, double limit_s, OnAnswer on_answer);
   ~ServiceCaller();
   ServiceCaller(const ServiceCaller&) = delete;
   ServiceCaller& operator=(const ServiceCaller&) = delete;
 
   /// Calls a service of the ranch whose response has the fields ok and message.
-  /// @param describe returns the line for a response with ok
+  /// Returns immediately.
+  /// @param describe returns the line for a response whose `ok` is true
   template <typename Service>
   void Call(const std::string& name, Service service,
             std::function<std::string(const Service&)> describe) {
@@ -55,7 +57,7 @@ class ServiceCaller {
   static std::string Describe(const std::string& name, const Service& service,
                               const Describer& describe) {
     if constexpr (std::is_same_v<Service, aquafarm_msgs::Command>) {
-      return describe(service);  // its message is in the field result
+      return describe(service);  // `ok` and `message` are in the field `result`
     } else {
       return service.response.ok ? describe(service) : name + ": " + service.response.message;
     }

@@ -10,8 +10,8 @@
 
 namespace aquafarm_viz {
 
-// Room for the texts around the farm, as fractions of its longer side: latitudes on the left, five
-// lines above, longitudes and a legend of three lines below.
+// Space for the texts around the farm, as fractions of its longer side: latitudes on the left, five
+// lines above, longitudes and three lines of the legend below.
 constexpr double kLeft = 0.115;
 constexpr double kRight = 0.035;
 constexpr double kAbove = 0.18;
@@ -56,7 +56,7 @@ void WholeView::Follow(rviz::VisualizationManager& rviz, const aquafarm_msgs::Fa
   if (!is_new && wanted_place == place_) return;
   const auto set = [view](const char* name, float value) {
     rviz::Property* property = view->subProp(name);
-    property->setShouldBeSaved(false);  // else rviz asks to save a change not made by the user
+    property->setShouldBeSaved(false);  // else rviz asks the user to save this change
     property->setValue(value);
     property->setShouldBeSaved(true);
   };

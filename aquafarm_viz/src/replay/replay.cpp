@@ -32,8 +32,8 @@ bool EndsWith(const std::string& text, const std::string& end) {
 // Returns the part of a topic before its last name.
 std::string Namespace(const std::string& topic) { return topic.substr(0, topic.rfind('/') + 1); }
 
-// Messages of an earlier version are published as those of this one. The types are those of
-// kOlderMessages.
+// The following functions translate messages of earlier versions to this version. The message types
+// are those of kOlderMessages.
 
 template <typename Message>
 bool IsOlder(const rosbag::MessageInstance& message) {
@@ -55,7 +55,8 @@ ros::AdvertiseOptions OptionsOf(const rosbag::MessageInstance& message, std::uin
   return options;
 }
 
-// Returns whether it was a message of an earlier version.
+// Returns true if an earlier version recorded the message. It is then published if it can be
+// translated.
 template <typename... Messages>
 bool PublishOlder(const rosbag::MessageInstance& message, const ros::Publisher& publisher) {
   const auto publish = [&](const auto& translated) {
@@ -108,7 +109,10 @@ void ReplayTape::Read(const std::string& path) {
     }
     messages_.push_back(message);
   }
-  if (steps_.empty()) throw std::runtime_error(path + ": no state follows its spec");
+  if (steps_.empty()) {
+    throw std::runtime_error(path +
+                             ": got no state of an episode with a spec, expected at least one");
+  }
 }
 
 const ReplayTape::Step& ReplayTape::At(std::size_t position) const {
@@ -152,8 +156,8 @@ std::optional<ReplayTape::Step> ReplayTape::Find(const Step& shown, std::uint64_
   return last;
 }
 
-// Returns the last spec before the step. Each topic has a separate connection, so the spec may also
-// be recorded after the step.
+// Returns the position of the last spec of the step's episode that was recorded before the step, or
+// else of the first one after it: each topic has a separate connection, so a spec may be late.
 std::optional<std::size_t> ReplayTape::SpecOf(const Step& step) const {
   const std::string space = Namespace(messages_[step.position].getTopic());
   std::optional<std::size_t> found;
@@ -190,7 +194,8 @@ std::vector<std::string> ReplayTape::Notes(const std::string& version) const {
   if (missing_ > 0) notes.push_back(MissingSteps(missing_));
   for (const std::string& other : versions_) {
     if (other == version) continue;
-    notes.push_back(aquafarm_sim::RecordedBy(other) + ", this is " + version + "; shown as it is");
+    notes.push_back(aquafarm_sim::RecordedBy(other) + ", this is " + version +
+                    "; shown nevertheless");
   }
   return notes;
 }

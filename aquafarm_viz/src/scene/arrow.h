@@ -5,13 +5,15 @@
 
 namespace aquafarm_viz {
 
-/// Adds a flat arrow of a head and a shaft to a triangle list: 9 points around (x, y) [cells],
-/// 0.7 * size cells long, pointing along a bearing.
+/// Adds a flat arrow with a shaft and a head to a triangle list: 9 points.
+/// @param x, y  middle of the arrow [cells]
+/// @param bearing_deg  direction, clockwise from north
+/// @param size  the arrow is 0.7 * size cells long
 void AddArrow(visualization_msgs::Marker& marker, double x, double y, int bearing_deg,
               double cell_m, double size = 1.0);
 
-/// Adds a frame inside the border of the cell (x, y) to a triangle list: 24 points. The symbol of a
-/// device or a port in the cell leaves its corners visible.
+/// Adds a frame along the inner side of the border of cell (x, y) to a triangle list: 24 points. A
+/// symbol in the cell does not cover the corners of the frame.
 void AddFrame(visualization_msgs::Marker& marker, double x, double y, double cell_m);
 
 }  // namespace aquafarm_viz

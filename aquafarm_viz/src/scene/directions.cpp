@@ -14,7 +14,7 @@ using Place = std::pair<int, int>;
 
 constexpr std::uint8_t kMoves = 8;
 
-// Returns the sign of the displacement along one axis: bearings are clockwise from north.
+// Return the sign of the displacement of a move to the east and to the north.
 int East(int bearing_deg) { return bearing_deg % 180 == 0 ? 0 : bearing_deg < 180 ? 1 : -1; }
 int North(int bearing_deg) { return East((bearing_deg + 90) % 360); }
 

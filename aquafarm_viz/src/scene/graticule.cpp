@@ -9,7 +9,8 @@ namespace {
 
 using aquafarm_msgs::FarmSpec;
 
-// @param start_deg  of the edge of the farm
+// @param start_deg  latitude or longitude of the southern or western edge of the farm
+// @param length  of the axis [cells]
 std::vector<ArcTick> Ticks(double start_deg, double cells_per_deg, int length, double min_cells) {
   int step = 1;
   for (const int minutes : {1, 2, 5, 10, 15, 30, 60, 120, 300, 600}) {
@@ -25,7 +26,8 @@ std::vector<ArcTick> Ticks(double start_deg, double cells_per_deg, int length, d
   }
 }
 
-// WGS 84 [m/degree].
+// The following functions return the length of a degree on the ellipsoid of WGS 84 [m]: the first
+// two terms of its series. `latitude` is in radians.
 double LatitudeMetres(double latitude) { return 111132.95 - 559.85 * std::cos(2.0 * latitude); }
 
 double LongitudeMetres(double latitude) {

@@ -19,7 +19,7 @@ int ZoneOf(const aquafarm_msgs::FarmSpec& spec) {
   return spec.has_origin ? NauticalZone(spec.origin_longitude_deg) : 0;
 }
 
-// The name of a typhoon's class until it is over, else that of the kind.
+// Returns the class of a typhoon until it ends, or the name of the kind of another disaster.
 std::string ClassNow(const aquafarm_msgs::DisasterState& disaster, const Course& course) {
   const bool has_class = disaster.kind == aquafarm_msgs::DisasterState::TYPHOON &&
                          disaster.steps_left > 0 && !course.ahead.empty() &&

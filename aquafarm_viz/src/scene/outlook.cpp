@@ -19,8 +19,8 @@ using aquafarm_msgs::DeviceState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr std::size_t kMaxOutlookDevices = 1000;  // of a scenario
-constexpr int kMaxSteps = 1000;
+constexpr std::size_t kMaxOutlookDevices = 1000;  // with more, the outlook is not computed
+constexpr int kMaxSteps = 1000;                   // steps ahead
 constexpr double kWorse = 0.5;  // a risk must be lower by this much to count as another ring
 
 double LargestRadius(const TrackPoint& storm) {
@@ -58,7 +58,7 @@ std::int32_t WindOf(const Course& course, std::size_t ring) {
 // Returns the name of the wind of a ring; empty if it is not given.
 const char* NameOf(std::int32_t wind_kt) { return wind_kt > 0 ? aquafarm::WindName(wind_kt) : ""; }
 
-// Adds the arrivals of one step to the outlook of each device.
+// Adds the rings that cover devices in one step to the outlook; step 0 is now.
 void AddStep(const FarmState& state, const std::vector<Course>& courses, int step,
              const std::vector<const DeviceState*>& devices, Outlook& outlook) {
   for (std::size_t i = 0; i < courses.size(); ++i) {
@@ -69,7 +69,7 @@ void AddStep(const FarmState& state, const std::vector<Course>& courses, int ste
     for (std::size_t d = 0; d < devices.size(); ++d) {
       const double east = devices[d]->x - storm.x;
       const double north = devices[d]->y - storm.y;
-      if (east * east + north * north > reach * reach) continue;  // most devices in most steps
+      if (east * east + north * north > reach * reach) continue;  // a fast test, usually true
       DeviceOutlook& device = outlook.devices[d];
       const auto [risk, ring] = RiskAt(storm, devices[d]->x, devices[d]->y);
       if (step == 0) {
@@ -88,7 +88,8 @@ void AddStep(const FarmState& state, const std::vector<Course>& courses, int ste
   }
 }
 
-// When the first ring covers a device, and the risk there and then.
+// Returns when a ring first covers a device [steps from now]; infinite if none does. FirstRisk
+// returns the risk in that ring.
 double FirstStep(const DeviceOutlook& device) {
   if (device.risk_now < 0.0) return 0.0;
   return device.arrivals.empty() ? std::numeric_limits<double>::infinity()
@@ -100,7 +101,7 @@ double FirstRisk(const DeviceOutlook& device) {
   return device.arrivals.front().risk;
 }
 
-// When the next ring arrives, after the one that covers the device now.
+// Returns when the next worse ring arrives [steps from now]; infinite if none does.
 double NextStep(const DeviceOutlook& device) {
   return device.arrivals.empty() ? std::numeric_limits<double>::infinity()
                                  : device.arrivals.front().steps;
@@ -136,7 +137,8 @@ bool IsOverFarm(const FarmSpec& spec, const TrackPoint& storm) {
                      [&](const auto& ring) { return IsOverFarm(spec, storm, ring); });
 }
 
-// Returns whether a leg is so far from the farm that no ring can cover a part of it.
+// Returns whether a leg of a course is so far from the farm that no ring can cover a part of the
+// farm.
 bool IsFar(const FarmSpec& spec, const TrackPoint& from, const TrackPoint& to) {
   const TrackPoint nearest = ClosestApproach(spec, {from, to}, from.step);
   const double away =
@@ -235,12 +237,13 @@ std::string AheadText(const FarmSpec& spec, double steps) {
 
 namespace {
 
-// Returns "risk -10", or "storm" where the wind is given.
+// Returns "risk -10", or the name of the wind, such as "storm", if it is given.
 std::string RingText(double risk, std::int32_t wind_kt) {
   return wind_kt > 0 ? aquafarm::WindName(wind_kt) : "risk " + Number(risk, 0);
 }
 
-// Returns the devices to which something applies, by id: "F0", "F0 and F1" or "3 devices".
+// Returns the labels of the devices for which `applies` is true, by id: "F0", "F0 and F1" or "3
+// devices". It must be true for at least one.
 std::string Names(const Outlook& outlook,
                   const std::function<bool(const DeviceOutlook& device)>& applies) {
   constexpr std::size_t kMaxNames = 2;
@@ -256,7 +259,7 @@ std::string Names(const Outlook& outlook,
                                      : names[0];
 }
 
-// Returns the first or the worst arrival at any device; null if no ring comes.
+// Returns the first arrival at any device in the order `is_before`; null if no ring arrives.
 const RingArrival* Extreme(
     const Outlook& outlook,
     const std::function<bool(const RingArrival&, const RingArrival&)>& is_before) {
@@ -269,7 +272,8 @@ const RingArrival* Extreme(
   return best;
 }
 
-// Returns the devices that a ring reaches at a time, as far as it is shown: "F0 and F1".
+// Returns the labels of the devices that the same ring reaches at the same time, compared as the
+// time is displayed: "F0 and F1".
 std::string WhomText(const FarmSpec& spec, const Outlook& outlook, const RingArrival& ring) {
   return Names(outlook, [&](const DeviceOutlook& one) {
     return std::any_of(one.arrivals.begin(), one.arrivals.end(), [&](const RingArrival& other) {
@@ -284,8 +288,8 @@ std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
   return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
 }
 
-// Returns ", Sun 06:24 UTC+8", the local time in some steps; empty within the hour, and without a
-// start time.
+// Returns the local time in some steps, ", Sun 06:24 UTC+8"; empty if that is less than an hour
+// away or the scenario has no start time.
 std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double steps) {
   if (!spec.has_start_time || steps * spec.step_duration_s < 3600.0) return "";
   const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
@@ -323,7 +327,7 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
   const DeviceOutlook& first = outlook.devices.front();
   const bool is_now = first.risk_now < 0.0;
   std::string text;
-  std::string whom;  // named last
+  std::string whom;  // devices of the previous part
   std::size_t disaster = first.disaster_now;
   if (is_now) {
     whom = Names(outlook, [&first](const DeviceOutlook& one) {
@@ -338,7 +342,7 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
   const RingArrival* worst = Extreme(outlook, [](const auto& a, const auto& b) {
     return a.risk < b.risk || (a.risk == b.risk && a.steps < b.steps);
   });
-  // The parts name a disaster and devices where these are others than in the part before.
+  // A part names the disaster and the devices only if they differ from those of the previous part.
   const auto add = [&](const RingArrival& ring, const std::string& when) {
     const std::string these = WhomText(spec, outlook, ring);
     if (text.empty()) {
@@ -368,7 +372,7 @@ std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
 std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
   const std::string before = device.risk_now < 0.0 ? NameOf(device.wind_now_kt) : "";
   const std::string after = device.arrivals.empty() ? "" : NameOf(device.arrivals.front().wind_kt);
-  // The same ring with a worse risk has no name of its own.
+  // If both rings have the same name, only their risks distinguish them.
   const bool has_names = (device.risk_now == 0.0 || !before.empty()) &&
                          (device.arrivals.empty() || !after.empty()) && before != after;
   if (!has_names) {
@@ -415,7 +419,7 @@ std::pair<std::string, std::string> NameAndDanger(
   const std::string full = label + " " + kind;
   std::string danger = DangerText(spec, device);
   if (fits(full, danger)) return {full, danger};
-  // The symbol next to the name shows the kind too.
+  // The kind can be left out, because the symbol next to the name shows it.
   for (const std::string& shorter :
        {WorstText(spec, device), RiskText(spec, device), RiskText(spec, device, ", ")}) {
     if (fits(label, danger)) break;

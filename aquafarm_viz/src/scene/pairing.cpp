@@ -22,7 +22,7 @@ std::string Pairing::AddState(const aquafarm_msgs::FarmStateConstPtr& state) {
 
 void Pairing::Pair() {
   if (newest_ == nullptr) return;
-  // An episode may have several specs, after a reset with the same seed: the last one is valid.
+  // After a reset with the same seed, several specs may be of this episode. The last one is valid.
   for (auto spec = specs_.rbegin(); spec != specs_.rend(); ++spec) {
     if (!SameEpisode(**spec, *newest_)) continue;
     shown_ = {*spec, newest_};
@@ -32,11 +32,11 @@ void Pairing::Pair() {
 
 std::string Pairing::Waiting() const {
   if (newest_ == nullptr || newest_ == shown_.state) return "";
-  std::string line = "state of episode " + std::to_string(newest_->episode) + " with seed " +
+  std::string line = "got a state of episode " + std::to_string(newest_->episode) + " with seed " +
                      std::to_string(newest_->seed) + ", but ";
-  if (specs_.empty()) return line + "no spec has come yet; nothing is drawn until it does";
+  if (specs_.empty()) return line + "no spec; nothing is drawn until its spec arrives";
   return line + "the last spec is of episode " + std::to_string(specs_.back()->episode) +
-         " with seed " + std::to_string(specs_.back()->seed) + "; waiting for the spec that fits";
+         " with seed " + std::to_string(specs_.back()->seed) + "; waiting for the matching spec";
 }
 
 }  // namespace aquafarm_viz

@@ -43,7 +43,7 @@ std::string OrderText(const RescuePlan& plan, const RescueOrder& order) {
   }
 }
 
-// With unknown winds no member stops a ship, which does not mean that it is safe.
+// If the winds are unknown, no sampled future stops a ship, so the probabilities mean nothing.
 std::string ChanceText(const RescuePlan& plan, float chance) {
   return plan.result == RescuePlan::STORM_UNKNOWN ? "unknown"
                                                   : PercentText(static_cast<double>(chance));
@@ -55,15 +55,15 @@ std::string DeadlineText(const RescuePlan& plan, const RescueDeadline& deadline)
   return (deadline.open ? "not known beyond " : "") + LocalText(plan, deadline.leave);
 }
 
-// Returns a sentence on the end of the departures; empty if there is none.
+// Returns a sentence about the time until which ships may leave; empty if the plan has none.
 std::string LastDepartureText(const RescuePlan& plan) {
   if (plan.result == RescuePlan::STORM_UNKNOWN) return "";
   if (!plan.no_departure_after.isZero()) {
     return " No ship should leave after " + LocalText(plan, plan.no_departure_after) + ".";
   }
   if (plan.not_known_beyond.isZero()) return "";
-  return " Until when ships may leave is not known beyond " +
-         LocalText(plan, plan.not_known_beyond) + ".";
+  return " Ships may leave at least until " + LocalText(plan, plan.not_known_beyond) +
+         ". What follows is not known: plan again at the next bulletin.";
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ std::string CellText(int x, int y) {
   return "(" + std::to_string(x) + ", " + std::to_string(y) + ")";
 }
 
-// Keeps the words of a text in one line.
+// Replaces spaces with no-break spaces, so that the text stays in one line.
 std::string Unbroken(const std::string& text) {
   std::string result;
   for (const char letter : text) {
@@ -161,8 +161,8 @@ aquafarm_msgs::DisasterInfo RanchModel::MakeDisaster(std::uint8_t kind, std::uin
   aquafarm_msgs::DisasterInfo info;
   info.kind = kind;
   info.grade = grade;
-  // The risk of the inner ring depends on the grade, from -5 (blue) to -20 (red). The outer ring
-  // has -5.
+  // The risk of the innermost ring depends on the grade, from -5 (blue) to -20 (red). The outermost
+  // ring has -5, and the ring between them the mean.
   const float worst = -5.0F * static_cast<float>(grade);
   for (const float share : {1.0F / 3.0F, 2.0F / 3.0F, 1.0F}) {
     info.radii.push_back(static_cast<float>(radius) * share);

@@ -22,10 +22,10 @@ using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr double kErrorLead_h = 24.0;           // between two entries of forecast_error_km
-constexpr double kSameCells = 1.0;              // a disaster this near its track follows it
-constexpr int kHorizon = 10000;                 // [steps]
-constexpr std::size_t kMaxErrorPoints = 4096U;  // of a course with errors
+constexpr double kErrorLead_h = 24.0;           // hours between two entries of forecast_error_km
+constexpr double kSameCells = 1.0;              // a disaster nearer to its track follows it
+constexpr int kHorizon = 10000;                 // max length of a course [steps]
+constexpr std::size_t kMaxErrorPoints = 4096U;  // max points of a course with errors
 
 TrackPoint ReadPoint(const YAML::Node& node) {
   TrackPoint point{
@@ -48,7 +48,8 @@ Track ReadTrack(const YAML::Node& points) {
   return track;
 }
 
-// Interpolates two rings. Rings that one of the points does not have keep those of the other.
+// Interpolates the lists of two points. If their lengths differ, returns the first one, or the
+// second one if the first is empty.
 template <typename T, typename Mix>
 std::vector<T> Between(const std::vector<T>& from, const std::vector<T>& to, Mix mix) {
   if (from.size() != to.size()) return from.empty() ? to : from;
@@ -66,7 +67,7 @@ TrackPoint Present(const DisasterState& disaster, double step) {
   return point;
 }
 
-// The rings of a forecast without rings are those of the true storm at that time.
+// Adds the rings and risks that a course lacks. They are those of the true storm at that time.
 void AddRings(Track& course, const Track& truth) {
   for (TrackPoint& point : course) {
     const TrackPoint true_storm = TrackAt(truth, point.step);
@@ -75,7 +76,7 @@ void AddRings(Track& course, const Track& truth) {
       point.risks = true_storm.risks;
     }
     if (point.risks.empty()) point.risks = true_storm.risks;
-    // A ring without a risk would count as calm.
+    // Without a risk, a ring would count as harmless.
     point.risks.resize(std::max(point.risks.size(), point.radii.size()),
                        double(aquafarm::kWorstRisk));
   }
@@ -99,7 +100,7 @@ TrackPoint Moved(TrackPoint point, const DisasterState& disaster, double steps) 
 }
 
 Course Extrapolated(const DisasterState& disaster, const TrackPoint& present, double growth) {
-  constexpr double kSteps = 60.0;  // farther ahead a present course means little
+  constexpr double kSteps = 60.0;  // farther ahead, the present motion predicts little
   const double steps = std::min(kSteps, double(std::max(disaster.steps_left, 1)));
   Course course{Course::Kind::kExtrapolated,
                 {present, Moved(present, disaster, steps)},
@@ -108,15 +109,16 @@ Course Extrapolated(const DisasterState& disaster, const TrackPoint& present, do
                 {}};
   for (auto& ring : course.ahead.back().radii) {
     for (double& radius : ring) {
-      // A missing quadrant stays missing, as in the farm.
+      // A quadrant of radius 0 does not grow, as in the farm.
       if (radius > 0.0 || disaster.quadrants.empty()) radius += steps * std::max(0.0, growth);
     }
   }
   return course;
 }
 
-// Continues a forecast after its last point, as the farm does (aquafarm/farm/forecast.h): along its
-// last two points, or with the present motion if it has one point, until the true track ends.
+// Continues a forecast after its last point until the true track ends, as the farm does
+// (aquafarm/farm/forecast.h): with the motion between its last two points, or with the present
+// motion if it has only one point.
 void Continue(Track& ahead, const Track& forecast, const DisasterState& disaster, double until) {
   const TrackPoint& last = forecast.back();
   const double steps = until - last.step;
@@ -182,7 +184,7 @@ StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m
 std::vector<std::pair<double, std::string>> NamedRisks(const FarmSpec& spec) {
   constexpr std::size_t kMaxNames = 4;
   const auto winds = ReadStormTracks(spec.scenario_yaml, spec.cell_size_m).ring_winds_kt;
-  std::map<double, std::string, std::greater<>> names;  // the mildest first
+  std::map<double, std::string, std::greater<>> names;  // by risk, the mildest first
   bool is_named = winds.size() == spec.disasters.size();
   for (std::size_t i = 0; is_named && i < winds.size(); ++i) {
     const auto& risks = spec.disasters[i].risks;
@@ -268,7 +270,7 @@ Course CourseOf(const FarmSpec& spec, const FarmState& state, std::size_t index,
   std::string kind = DisasterName(disaster.kind);
   std::replace(kind.begin(), kind.end(), ' ', '_');
   if (kind == tracks.kinds[index]) course.name = tracks.names[index];
-  // A bulletin may have replaced the rings by those of other winds.
+  // A bulletin may have replaced the rings, in which case their number may differ.
   const std::vector<std::int32_t>& winds = tracks.ring_winds_kt[index];
   if (winds.size() == present.radii.size()) course.ring_winds_kt = winds;
   for (const TrackPoint& point : source) {

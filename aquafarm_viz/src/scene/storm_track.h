@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Tracks, published forecasts and forecast errors of the disasters of a scenario, and the
-/// positions on them; private to this package.
+/// Tracks, published forecasts and forecast errors of the disasters of a scenario, and the expected
+/// courses of the disasters of a state; private to this package.
 
 #include <aquafarm_msgs/DisasterState.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -18,77 +18,85 @@ namespace aquafarm_viz {
 
 inline constexpr double kHour_s = 3600.0;
 
-/// A disaster at one time.
+/// Position, rings and wind of a disaster at one time.
 struct TrackPoint {
   double step{};  ///< steps since the start of the episode; may be negative
   double x{};     ///< centre [cells]
   double y{};
-  std::vector<std::array<double, 4>> radii{};  ///< to the NE, SE, SW, NW [cells], one per ring
-  std::vector<double> risks{};                 ///< one per ring, worst first; empty: not given
-  std::optional<double> wind_mps{};            ///< max sustained wind; nullopt: not given
+  /// Radii of each ring to the NE, SE, SW and NW [cells], the innermost ring first.
+  std::vector<std::array<double, 4>> radii{};
+  std::vector<double> risks{};       ///< one per ring, worst first; empty: not given
+  std::optional<double> wind_mps{};  ///< max sustained wind; nullopt: not given
 };
 
-/// The track of one disaster; empty if it has none.
-using Track = std::vector<TrackPoint>;  // steps ascending
+/// The track of one disaster, steps ascending; empty if it has none.
+using Track = std::vector<TrackPoint>;
 
-/// A published forecast.
+/// A forecast that an authority has published.
 struct PublishedForecast {
   double issued{};  ///< step of issue
   Track points;
 };
 
-/// The disasters of a scenario as far as their motion is given.
+/// What a scenario states about the motion of its disasters.
 struct StormTracks {
   std::vector<Track> tracks;                              ///< one per disaster
   std::vector<std::vector<PublishedForecast>> forecasts;  ///< one list per disaster
-  std::vector<double> growths;  ///< of every radius [cells/step], one per disaster
-  /// Wind within each ring [kn], one list per disaster; empty: not given.
+  std::vector<double> growths;  ///< growth of every radius [cells/step], one per disaster
+  /// Min wind within each ring [kn], one list per disaster; an empty list: not given.
   std::vector<std::vector<std::int32_t>> ring_winds_kt;
-  std::vector<std::string> kinds;   ///< one per disaster, as in a scenario: "storm_surge"
+  std::vector<std::string> kinds;   ///< one per disaster, spelled as in a scenario: "storm_surge"
   std::vector<std::string> names;   ///< one per disaster; empty: it has no name
   std::vector<double> error_cells;  ///< mean error after 24, 48, … hours; empty: not given
 };
 
-/// Reads a canonical scenario. The tracks are empty if the text cannot be read, and for a disaster
-/// that draws another storm in each episode.
+/// Reads a canonical scenario. Returns empty lists if the text cannot be read. The track of a
+/// disaster is empty if the scenario gives none, for example because each episode draws another
+/// storm.
 StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m);
 
-/// Returns risks for a key, the mildest first, and their words: those of the disasters' rings with
-/// their winds, such as "gale -5", if all are given, else four from "-5" to "-20".
+/// Returns the risks that a legend shows and their texts, the mildest first: those of all rings
+/// with their winds, such as "gale -5". If a ring has no wind, if two names share a risk, or if
+/// there are more than four risks, returns "-5", "-10", "-15" and "-20".
 std::vector<std::pair<double, std::string>> NamedRisks(const aquafarm_msgs::FarmSpec& spec);
 
-/// Returns a track's position and rings at a step; at a step outside the track those of the nearest
-/// end. Between two points all is interpolated, as in the farm.
+/// Returns the point of a track at a step. Between two points, position, rings and wind are
+/// interpolated, as in the farm. Before the first point and after the last one, returns that point
+/// with its own step.
 /// @param track  at least one point
 TrackPoint TrackAt(const Track& track, double step);
 
-/// Returns the point of a track that is nearest to the middle of a farm, at or after a step.
+/// Returns the point of a track at which the centre is nearest to the middle of a farm, at or after
+/// `from_step`; the earliest one if there are several.
 /// @param track  at least one point
 TrackPoint ClosestApproach(const aquafarm_msgs::FarmSpec& spec, const Track& track,
                            double from_step);
 
-/// The future of a disaster in a picture.
+/// The past and the expected motion of a disaster.
 struct Course {
   enum class Kind {
-    kRecorded,     ///< the storm follows its track
-    kPublished,    ///< newest forecast of an authority; after its last point as in the farm
+    kRecorded,     ///< the track of the scenario
+    kPublished,    ///< the newest forecast of an authority, continued as the farm does
     kExtrapolated  ///< present speed and heading; the rings grow by radius_growth, never shrink
   };
   Kind kind{Kind::kExtrapolated};
-  Track ahead;                 ///< from the present step on; at least one point
-  Track past;                  ///< up to the present step; may be empty
-  double known_until{};        ///< step until which it is recorded, published or extrapolated
+  Track ahead;           ///< from the present step on; at least two points
+  Track past;            ///< up to the present step; may be empty
+  double known_until{};  ///< step until which the course is recorded, published or extrapolated
   std::vector<double> errors;  ///< mean forecast error at each point of `ahead` [cells], or empty
-  std::vector<std::int32_t> ring_winds_kt{};  ///< wind within each ring [kn]; empty: not given
-  std::string name{};  ///< of the storm; empty: it has none, or this need not be its course
+  std::vector<std::int32_t> ring_winds_kt{};  ///< min wind within each ring [kn]; empty: not given
+  /// Name of the storm; empty if it has none, if the course is extrapolated, or if the disaster has
+  /// another kind than in the scenario.
+  std::string name{};
 };
 
-/// Returns the course of disaster `index`. An observation contains no track, so its course is
-/// extrapolated, and so is that of a disaster that is not where its track has it.
+/// Returns the course of a disaster. It is extrapolated if the state is an observation of a ship,
+/// if the disaster has no track, or if it is at least one cell away from its track.
+/// @param index  in FarmState.disasters
 Course CourseOf(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                 std::size_t index, const StormTracks& tracks);
 
-/// Returns the courses of the disasters of a state, and reads a scenario's text once.
+/// Returns the courses of the disasters of a state. Caches the tracks of the last scenario.
 class CourseReader {
  public:
   /// @return one course per disaster
@@ -96,13 +104,15 @@ class CourseReader {
                            const aquafarm_msgs::FarmState& state);
 
  private:
-  std::string scenario_yaml_;  // of the tracks
+  std::string scenario_yaml_;  // the text from which `tracks_` was read
   double cell_size_m_{};
   StormTracks tracks_;
 };
 
-/// Returns the mean forecast error at a lead time [cells]: 0 at lead 0, linear between the errors
-/// after 24, 48, … hours, and beyond along the last two. `errors` must not be empty.
+/// Returns the mean forecast error at a lead time [cells]. It is interpolated linearly between 0 at
+/// lead time 0 and the errors after 24, 48, … hours. Beyond them it is extrapolated from the last
+/// two.
+/// @param errors  at least one
 double MeanForecastError(const std::vector<double>& errors, double lead_h);
 
 }  // namespace aquafarm_viz

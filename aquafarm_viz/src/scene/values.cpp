@@ -46,7 +46,7 @@ void Check(const PointCloud2& cloud) {
   CheckField(cloud, "action", PointField::UINT8, 1);
   const auto points = static_cast<std::uint64_t>(cloud.width) * cloud.height;
   const std::uint64_t size = cloud.data.size();
-  // Divides first, because a product of input numbers may overflow.
+  // The division comes first, because the product of two input numbers may overflow.
   if (points <= size / cloud.point_step && points * cloud.point_step == size) return;
   throw std::invalid_argument("values/points: got " + std::to_string(size) + " bytes, expected " +
                               std::to_string(cloud.width) + " x " + std::to_string(cloud.height) +
@@ -73,7 +73,7 @@ geometry_msgs::Point At(double x, double y) {
   return point;
 }
 
-// Returns the cells in the colours of the values, the same as in pictures.
+// Returns a marker of the cells that have a value, in the same colours as in pictures.
 Marker ValueCells(const Values& values, double cell_m) {
   Marker cells = MakeMarker("values", 0, Marker::TRIANGLE_LIST, kPaper);
   cells.scale.x = cells.scale.y = cells.scale.z = 1.0;
@@ -148,7 +148,7 @@ Values ReadValues(const PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec)
   for (std::size_t i = 0; i < points; ++i, ++x, ++y, ++value, ++action) {
     const double column = std::round(double(*x) / spec.cell_size_m);
     const double row = std::round(double(*y) / spec.cell_size_m);
-    // false for NaN
+    // The condition in brackets is false for NaN.
     if (!(column >= 0 && row >= 0 && column < spec.width && row < spec.height)) continue;
     const std::size_t cell = read.Index(int(column), int(row));
     read.actions[cell] = *action <= 9 ? *action : Values::kNoAction;

@@ -66,12 +66,12 @@ class GreedyDqnPolicy final : public Policy {
 /// agents of a farm (VDN). Each agent of each sample has one row; R is the number of rows.
 template <typename Scalar>
 struct Batch {
-  std::vector<Scalar> seen;             // [2, R, …] observations before and after the transition
-  std::vector<std::uint8_t> actions;    // [R]
-  std::vector<float> present;           // [R] 1 if the agent is active, 0 if it was done before
-  std::vector<float> rewards;           // [B]
-  std::vector<float> discounts;         // [R] factor of the value after the transition
-  std::vector<ActionMask> allowed;      // [R] actions allowed after the transition
+  std::vector<Scalar> seen;           // [2, R, …] observations before and after the transition
+  std::vector<std::uint8_t> actions;  // [R]
+  std::vector<float> present;         // [R] 1 if the agent is active before the transition, else 0
+  std::vector<float> rewards;         // [B]
+  std::vector<float> discounts;       // [R] factor of the value after the transition
+  std::vector<ActionMask> allowed;    // [R] actions allowed after the transition
   std::vector<ActionMask> allowed_now;  // [R] actions allowed before the transition
   std::vector<float> weights;           // [B]
   std::vector<std::size_t> drawn;       // [B] row of the sample in the replay buffer
@@ -235,7 +235,7 @@ void DqnLearner<Scalar>::Evaluate() {
     const std::size_t i = k / group();
     const std::size_t row = k * kActionCount;
     batch_.predicted[i] += batch_.present[k] * online[row + batch_.actions[k]];
-    // An agent that is done may have no allowed action.
+    // An agent that is done has no next value.
     if (batch_.discounts[k] > 0.0F) {
       const Best best = BestOf(choosing + row, batch_.allowed[k]);
       batch_.targets[i] += batch_.discounts[k] * next[row + best.action];

@@ -29,7 +29,7 @@ struct PlanInputs {
 };
 
 /// Returns whether two inputs lead to the same plan. Compares scenario, files, request.at, refresh,
-/// and the seed, episode and step of the fleet. The rest of the request must be equal.
+/// the fleet and its step. The rest of the request must be equal.
 bool SamePlan(const PlanInputs& a, const PlanInputs& b);
 
 /// Makes a plan with one bulletin.

@@ -15,8 +15,9 @@
 
 namespace aquafarm::internal {
 
-/// Thrown if the time or the position of a point of a storm track is invalid. The reader leaves out
-/// that point and keeps the storm.
+/// Thrown if the time or the position of an entry is invalid: a point of a track, a landfall or a
+/// notice. Readers of tracks leave out such a point. They reject the file if more points of a storm
+/// are left out than kept.
 class FixError : public InputError {
  public:
   using InputError::InputError;
@@ -28,16 +29,17 @@ struct LeftOut {
   std::string first;  ///< error message of the first point left out
 };
 
-/// Position of a parser. Reports errors and warnings with the file and the line. Adds no warning to
-/// a list of 100 or more.
+/// Position of a parser. Reports errors and warnings with the file and the line. If the list
+/// already contains 100 warnings, further ones are dropped.
 class ParseContext {
  public:
   ParseContext(const std::string& file, std::vector<std::string>& warnings)
       : file_(file), warnings_(warnings) {}
 
   std::int32_t line{};  ///< current line, from 1; 0: `locate` finds it on demand
-  std::string path;     ///< path of the current JSON value, part of messages; else empty
-  /// Returns the line of the JSON value at a path. Empty if the text is not JSON.
+  /// Path of the current JSON value, which messages contain; empty if the text is not JSON.
+  std::string path;
+  /// Function that returns the line of the JSON value at a path; not set if the text is not JSON.
   std::function<std::int32_t(const std::string& path)> locate;
   std::size_t locate_bytes{};  ///< length of the text that `locate` searches
 

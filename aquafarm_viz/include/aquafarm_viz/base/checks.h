@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Validates messages before they are drawn, because they come from a network.
+/// Validates messages before they are drawn, because any program in the network may have sent them.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -10,18 +10,19 @@
 
 namespace aquafarm_viz {
 
-inline constexpr int kMaxSide = 4096;          ///< max number of cells along a side
-inline constexpr int kMaxShips = 4096;         ///< max number of ships in a state
-inline constexpr int kMaxDevices = 65536;      ///< max number of devices in a state
-inline constexpr int kMaxDisasters = 256;      ///< max number of disasters in a state
-inline constexpr int kMaxRings = 4;            ///< max number of rings of a disaster
-inline constexpr double kMaxDistance = 1.0e6;  ///< max distance from the origin, or radius [cells]
+inline constexpr int kMaxSide = 4096;      ///< max number of cells along a side
+inline constexpr int kMaxShips = 4096;     ///< max number of ships in a state
+inline constexpr int kMaxDevices = 65536;  ///< max number of devices in a state
+inline constexpr int kMaxDisasters = 256;  ///< max number of disasters in a state
+inline constexpr int kMaxRings = 4;        ///< max number of rings of a disaster
+/// Max radius of a ring, and max |x| and |y| of the centre of a disaster [cells].
+inline constexpr double kMaxDistance = 1.0e6;
 
 /// Returns the reason why a spec cannot be drawn, in one line; empty if it can be drawn.
 std::string CheckSpec(const aquafarm_msgs::FarmSpec& spec);
 
-/// Returns the reason why a state cannot be drawn, in one line; empty if it can be drawn. Objects
-/// outside the grid are allowed and are not drawn.
+/// Returns the reason why a state cannot be drawn, in one line; empty if it can be drawn. Ships and
+/// devices outside the grid are allowed and are not drawn. Unknown disasters are not checked.
 std::string CheckState(const aquafarm_msgs::FarmState& state);
 
 /// Returns true if a cell is inside the farm.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Colours and outlines of both the image and the markers.
+/// Colours and outlines that pictures and markers share.
 
 #include <cstdint>
 #include <opencv2/core/types.hpp>
@@ -20,7 +20,7 @@ struct Rgb {
 /// Converts a colour to OpenCV's BGR order.
 inline cv::Scalar Bgr(Rgb c) { return {double(c.b), double(c.g), double(c.r)}; }
 
-/// Interpolates two colours: share 0 gives `from`, 1 gives `to`.
+/// Interpolates two colours: `share` 0 gives `from`, 1 gives `to`; other values are clamped.
 Rgb Mix(Rgb from, Rgb to, double share);
 
 inline constexpr Rgb kSeaDeep{0x1b, 0x4f, 0x78};
@@ -34,51 +34,57 @@ inline constexpr Rgb kPort{0xff, 0xff, 0xff};
 inline constexpr Rgb kInk{0x12, 0x20, 0x2e};
 inline constexpr Rgb kPaper{0xf4, 0xf7, 0xf9};
 inline constexpr Rgb kUnknown{0xb4, 0xbd, 0xc4};
-/// Choice of a compared policy: cyan, which neither risks nor values have.
+/// Colour of the choice of a compared policy: cyan, which neither risks nor values have.
 inline constexpr Rgb kChoiceColor{0x4d, 0xe3, 0xff};
 
-inline constexpr Rgb kDirectionColor{0xff, 0xd1, 0x66};  ///< legal moves at ports, device labels
+/// Colour of legal moves at ports and of labels of devices.
+inline constexpr Rgb kDirectionColor{0xff, 0xd1, 0x66};
 
-/// The colour of a device kind (DeviceState.kind); grey for an unknown kind.
+/// Returns the colour of a device kind (DeviceState.kind); grey for an unknown kind.
 Rgb DeviceColor(std::uint8_t kind);
 
-/// The short name of a device kind, such as "monitoring".
+/// Returns the short name of a device kind, such as "monitoring"; "kind 7" for an unknown kind.
 std::string DeviceName(std::uint8_t kind);
 
-/// The outline of a device kind around the origin: y up, within the unit circle, counter-clockwise.
+/// Returns the outline of a device kind around the origin: y up, within the unit circle,
+/// counter-clockwise.
 const std::vector<cv::Point2f>& DeviceOutline(std::uint8_t kind);
 
-/// The colour of a health in [0, 1]: from green (1) over amber to red (0).
+/// Returns the colour of a health: from green at 1 over amber at 0.5 to red at 0.
 Rgb HealthColor(double health);
 
-/// The colour of a ship's deck, selected by id.
+/// Returns the colour of the deck of a ship. Six colours repeat by id.
 Rgb ShipColor(std::int32_t id);
 
-/// The outline of a ship's hull around the origin: bow at (0, 1), y up, counter-clockwise.
+/// Returns the outline of a ship's hull around the origin: bow at (0, 1), y up, counter-clockwise.
 const std::vector<cv::Point2f>& HullOutline();
 
-/// Severity of a risk: 0 at -5 and above, 1 at -20 and below, linear in between.
+/// Returns the severity of a risk: 0 at -5 and above, 1 at -20 and below, linear in between.
 double Severity(double risk);
 
-/// The colour of a severity in [0, 1] on dark water: yellow, orange, red, magenta.
+/// Returns the colour of a severity in [0, 1] on dark water: from yellow over orange and red to
+/// magenta.
 Rgb SeverityColor(double severity);
 
-/// The colour of a bulletin's grade: 1 blue, 2 yellow, 3 orange, 4 red.
+/// Returns the colour of a bulletin's grade: 1 blue, 2 yellow, 3 orange, 4 red; grey for another
+/// grade.
 Rgb GradeColor(std::uint8_t grade);
 
-/// The colour of a value, by its share of the range of all values in [0, 1]: viridis.
+/// Returns the colour of a value in the colour map viridis.
+/// @param share 0 for the lowest value, 1 for the highest
 Rgb ValueColor(double share);
 
-inline constexpr Rgb kPickupColor{0x5f, 0xe0, 0x8a};   ///< best move "pickup" in rviz
-inline constexpr Rgb kDropOffColor{0xff, 0x8c, 0x42};  ///< best move "drop-off" in rviz
+/// Frames of cells in rviz whose best move is a pickup or a drop-off.
+inline constexpr Rgb kPickupColor{0x5f, 0xe0, 0x8a};
+inline constexpr Rgb kDropOffColor{0xff, 0x8c, 0x42};
 
-/// The bearing of a move [degrees], clockwise from north; -1 if the action is not a move.
+/// Returns the bearing of a move [degrees], clockwise from north; -1 if the action is not a move.
 int MoveBearingDeg(std::uint8_t action);
 
-/// The compass point of a bearing in [0, 359] degrees, such as "NE".
+/// Returns the nearest of the 16 compass points to a bearing [degrees], such as "NE" or "NNE".
 std::string CompassPoint(int bearing_deg);
 
-/// The letters of a port: A ... Z, AA ...
+/// Returns the letters of a port, by id: A, B, …, Z, AA, AB, …
 std::string PortLetter(std::int32_t id);
 
 }  // namespace aquafarm_viz

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Anti-aliased text. Each character is drawn once and then copied, so that text is fast enough to
-/// draw in every frame.
+/// Anti-aliased text. A font draws each character once and then copies it, so that text is fast
+/// enough for every frame.
 
 #include <array>
 #include <cstdint>
@@ -13,25 +13,26 @@
 
 namespace aquafarm_viz {
 
-/// The Latin-1 characters at one size. Uses DejaVu or Liberation if installed, else OpenCV's
-/// stroke font.
+/// The characters of a font at one size: Latin-1 of a TrueType font, or ASCII of OpenCV's stroke
+/// font. "?" replaces all other characters, but an ellipsis is drawn as three dots.
 class Font {
  public:
-  /// @param size_px  nominal height, from ascender to descender, in pixels; at least 4.
-  /// @param file     a TrueType file; empty selects OpenCV's stroke font.
+  /// @param size_px  nominal height, from ascender to descender [pixels]; below 4 it counts as 4
+  /// @param file     a TrueType file, see FindFontFile; if it is empty or cannot be read, OpenCV's
+  ///                 stroke font is used
   Font(int size_px, const std::string& file);
 
-  /// Returns the width of a text (UTF-8) in pixels.
+  /// Returns the width of a text in UTF-8 [pixels].
   int Width(std::string_view text) const;
 
   /// Returns the text, truncated with an ellipsis if it is wider than `width_px`.
   std::string Fit(std::string_view text, int width_px) const;
 
-  /// Draws a text (UTF-8) with the left end of its baseline at `at`. Returns its width in pixels.
-  /// Parts outside the 8-bit BGR image are clipped.
+  /// Draws a text in UTF-8 with the left end of its baseline at `at`. Returns its width [pixels].
+  /// @param image 8-bit BGR; parts of the text outside it are clipped
   int Draw(cv::Mat& image, std::string_view text, cv::Point at, const cv::Scalar& color) const;
 
-  /// The height of a capital letter in pixels.
+  /// Returns the height of a capital letter [pixels].
   int cap_height() const { return cap_height_; }
 
  private:
@@ -50,17 +51,19 @@ class Font {
   int cap_height_{};
 };
 
-/// Returns the first suitable font file that is installed, regular or bold; empty if there is none.
+/// Returns the file of DejaVu Sans or, if that is not installed, of Liberation Sans, regular or
+/// bold; empty if neither is installed.
 std::string FindFontFile(bool bold);
 
-/// Formats a number with `decimals` decimal places; "-" if it is not finite.
+/// Formats a number with `decimals` decimal places, from 1e12 on with an exponent; "-" if it is not
+/// finite.
 std::string Number(double value, int decimals);
 
 /// Formats a count with commas between thousands.
 std::string Count(std::uint64_t value);
 
-/// Formats a seed: "7"; "evaluation 1000" for the seeds of evaluation episodes, which have the
-/// highest bit set (aquafarm/base/rng.h).
+/// Formats a seed: "7", or "evaluation 1000" for the seed of an evaluation. The latter has the
+/// highest bit set (kEvaluationSeedBit in aquafarm/base/rng.h).
 std::string SeedText(std::uint64_t seed);
 
 }  // namespace aquafarm_viz

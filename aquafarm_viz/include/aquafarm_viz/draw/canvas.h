@@ -10,22 +10,24 @@
 
 namespace aquafarm_viz {
 
-/// Pose of an outline (unit size, y up, bow at north) in an image.
+/// Pose of an outline in an image. The outline has y up and its bow at north.
 struct Pose2 {
-  cv::Point2d at;        ///< position of its origin [pixels]
-  double size_px{1.0};   ///< pixels per unit
+  cv::Point2d at;        ///< position of the outline's origin in the image [pixels]
+  double size_px{1.0};   ///< pixels per unit of the outline
   double bearing_deg{};  ///< rotation, clockwise from north
 };
 
-/// Bits after the point of OpenCV's coordinates, `shift` of its functions: 1/16 pixel.
+/// Number of fractional bits of fixed-point coordinates, which OpenCV's drawing functions call
+/// `shift`. Such coordinates have a resolution of 1/16 pixel.
 inline constexpr int kSubPixelBits = 4;
-/// Returns an image point [pixels] in such coordinates.
+/// Converts an image point [pixels] to fixed-point coordinates. Coordinates beyond +-1e6 pixels are
+/// clamped.
 cv::Point Fixed(cv::Point2d point);
 
-/// Returns the pixel coordinates of a point of a placed outline.
+/// Converts a point of an outline to pixels of the image.
 cv::Point2d Place(cv::Point2d point, const Pose2& placing);
 
-/// Fills an outline; the outline need not be convex.
+/// Fills an outline, which need not be convex.
 void FillShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Pose2& placing,
                const cv::Scalar& color);
 
@@ -44,7 +46,7 @@ void StrokeCircle(cv::Mat& image, cv::Point2d centre, double radius_px, const cv
 void DrawLine(cv::Mat& image, cv::Point2d from, cv::Point2d to, const cv::Scalar& color,
               int thickness);
 
-/// Blends a colour over a part of the image. Share 1 replaces the part completely.
+/// Blends a colour over a part of the image: `share` 0 changes nothing, 1 replaces the part.
 void Tint(cv::Mat& image, cv::Rect part, const cv::Scalar& color, double share);
 
 }  // namespace aquafarm_viz

@@ -3,18 +3,22 @@
 
 /// Draws the farm as a picture, without an X server.
 ///
-///     .---------------------------------------.
-///     | scenario                   world time |
-///     | episode  step  return                 |
-///     |-----------------------------.---------|
-///     |                             | ships   |
-///     |   map, north up             | devices |
-///     |                             | danger  |
-///     |                             | legend  |
-///     |-----------------------------'---------|
-///     | reward terms of the last step         |
-///     | training                              |
-///     '---------------------------------------'
+///     .-----------------------------------------.
+///     | scenario                     world time |
+///     | episode  step  return       next danger |
+///     |-----------------------------.-----------|
+///     |                             | devices   |
+///     |                             | disasters |
+///     |   map, north up             | ships     |
+///     |                             | policy    |
+///     |                             | region    |
+///     |                             | legend    |
+///     |-----------------------------'-----------|
+///     | reward terms of the last step           |
+///     | training                                |
+///     '-----------------------------------------'
+///
+/// A picture with a side below 300 pixels shows only the map.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -48,6 +52,7 @@ class FarmPainter {
 
   /// Draws a state. The returned 8-bit BGR picture is valid until the next call.
   /// The spec must pass CheckSpec and the state CheckState.
+  /// @throws std::invalid_argument if the scenario has no usable sea layer of the requested name
   const cv::Mat& Draw(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                       const Overlays& overlays = {});
 
@@ -57,7 +62,8 @@ class FarmPainter {
 };
 
 /// Draws one picture.
-/// @throws std::invalid_argument with the reason if the spec or state cannot be drawn
+/// @throws std::invalid_argument with the reason if the spec, the state or the requested sea layer
+///         cannot be drawn
 cv::Mat DrawFarm(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                  ImageSize size = {}, const Overlays& overlays = {},
                  const Style& style = DarkStyle());

@@ -15,20 +15,22 @@ namespace aquafarm_viz {
 inline constexpr int kMinImageSide = 160;   ///< min width and height [pixels]
 inline constexpr int kMaxImageSide = 4096;  ///< max width and height [pixels]
 
-/// The size of a picture in pixels. Values are clamped to [kMinImageSide, kMaxImageSide].
+/// The size of a picture [pixels]. FarmPainter and PlaceMap clamp each side to [kMinImageSide,
+/// kMaxImageSide].
 struct ImageSize {
   int width{800};
   int height{640};
 };
 
-/// Optional content of a picture in addition to the state; nullptr omits it.
+/// Optional content of a picture in addition to the state. A null pointer omits that content.
 struct Overlays {
   const Trail* trail{};                             ///< recent trails of the ships
   const aquafarm_msgs::TrainingStatus* training{};  ///< progress of the learner
   const Trail* route{};                             ///< trails since the start of the episode
   Layers layers{};                                  ///< layers to draw
   const Values* values{};                           ///< values and greedy actions of a policy
-  const aquafarm_msgs::PolicyChoice* choice{};      ///< choice of a compared policy in this state
+  const aquafarm_msgs::PolicyChoice* choice{};  ///< what a compared policy chooses in one state;
+                                                ///< drawn only with this state
 };
 
 }  // namespace aquafarm_viz

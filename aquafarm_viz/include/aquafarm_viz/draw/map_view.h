@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Maps cells to pixels. The origin of an image is at the top left, that of the farm in the
-/// south-west corner. Only this file flips y.
+/// Maps cells to pixels. The origin of an image is its top left corner. The origin of the farm is
+/// its south-west corner, so y changes its direction.
 ///
 ///       picture                     farm
 ///   (0,0)--> column               ^ y (north)
@@ -19,11 +19,11 @@ namespace aquafarm_viz {
 class MapView {
  public:
   MapView() = default;
-  /// @param cell_px  side length of a cell in pixels, above 0; may be fractional.
+  /// @param cell_px  side length of a cell [pixels], above 0; may be fractional
   MapView(int width, int height, double cell_px)
       : width_(width), height_(height), cell_px_(cell_px) {}
 
-  /// Returns the pixel coordinates of a point in cells. Cell centres have integer coordinates.
+  /// Converts a point in cells to pixels. Integer coordinates are centres of cells, and of pixels.
   cv::Point2d ToPixel(double x, double y) const {
     return {(x + 0.5) * cell_px_ - 0.5, (height_ - 0.5 - y) * cell_px_ - 0.5};
   }

@@ -14,39 +14,41 @@ namespace aquafarm_viz {
 /// The colours of a picture that depend on the style. Ships, devices and ports look the same in
 /// both styles.
 struct Style {
-  Rgb panel;      ///< background of text
-  Rgb rule;       ///< thin lines between parts
-  Rgb words;      ///< text
-  Rgb faint;      ///< secondary text
-  Rgb good;       ///< a reward above 0
-  Rgb bad;        ///< a reward below 0
-  Rgb alarm;      ///< a device in danger
-  Rgb sea_north;  ///< water away from the coast, at the upper and the lower end of the map
-  Rgb sea_south;
-  Rgb sea_shallow;
+  Rgb panel;        ///< background outside the map
+  Rgb rule;         ///< thin lines between the parts of the picture
+  Rgb words;        ///< text
+  Rgb faint;        ///< secondary text
+  Rgb good;         ///< a reward above 0
+  Rgb bad;          ///< a reward below 0
+  Rgb alarm;        ///< text about devices in danger
+  Rgb sea_north;    ///< water away from the coast, at the upper end of the map
+  Rgb sea_south;    ///< water away from the coast, at the lower end of the map
+  Rgb sea_shallow;  ///< water at the coast and around rocks
   Rgb sand;
   Rgb land;
   Rgb land_high;
   Rgb grid;
   Rgb label;                  ///< text and lines on the map
   Rgb halo;                   ///< outline of `label`
-  std::array<Rgb, 4> risks;   ///< at -5, -10, -15 and -20; each darker in the light style
-  std::array<Rgb, 4> grades;  ///< of text: blue, yellow, orange, red
-  double ring_tint{1.0};      ///< strength of the tint of rings between their lines, [0, 1]
+  std::array<Rgb, 4> risks;   ///< colours of the risks -5, -10, -15 and -20
+  std::array<Rgb, 4> grades;  ///< text colours of the grades blue, yellow, orange and red
+  double ring_tint{1.0};      ///< factor of the tint between the pattern lines of rings, [0, 1]
 
-  /// The colour of a severity in [0, 1], interpolated between `risks`.
+  /// Returns the colour of a severity, interpolated between `risks`; values outside [0, 1] are
+  /// clamped.
   Rgb Risk(double severity) const;
-  /// The colour of a grade in text; `faint` for an unknown grade.
+  /// Returns the text colour of a grade, 1 to 4; `faint` for an unknown grade.
   Rgb GradeText(std::uint8_t grade) const;
 };
 
-/// For screens; the default.
+/// Returns the style for screens, which is the default.
 const Style& DarkStyle();
-/// For print: light background, dark lines, readable in grey.
+/// Returns the style for print: a light background and dark lines. Higher risks are darker, so that
+/// they can be distinguished in a grey print.
 const Style& LightStyle();
 
 /// Returns a style by its name, "dark" or "light".
-/// @throws std::invalid_argument "style: got 'blue', expected dark or light"
+/// @throws std::invalid_argument "style: got 'blue', expected dark or light" for another name
 const Style& StyleByName(const std::string& name);
 
 }  // namespace aquafarm_viz

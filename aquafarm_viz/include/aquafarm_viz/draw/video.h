@@ -16,22 +16,26 @@ struct StorageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A video of pictures of one size. It is written to a temporary file in the same folder, which is
-/// renamed when the video is complete.
+/// A video of pictures of one size. The video is written to a temporary file in the same folder,
+/// which Close renames. The destructor removes a temporary file that was not renamed.
 class Video {
  public:
   /// @param path its extension selects the format: .mp4, .webm or .gif
-  /// @throws std::runtime_error for another extension, or if no codec is available
-  /// @throws StorageError if the file cannot be written
+  /// @param rate_hz pictures per second, above 0; a gif has at most 50
+  /// @throws std::runtime_error for another extension, or if an mp4 or webm file cannot be opened:
+  ///         no codec is available, or the folder is not writable
+  /// @throws StorageError if a gif file cannot be written
   static std::unique_ptr<Video> Open(const std::string& path, cv::Size size, double rate_hz);
 
   virtual ~Video() = default;
+  /// Appends a picture.
   /// @param picture 8-bit BGR, of the size given to Open
+  /// @throws StorageError if a gif file cannot be written
   virtual void Add(const cv::Mat& picture) = 0;
   /// Completes the file. @throws StorageError if it could not be written
   virtual void Close() = 0;
 
-  /// Returns true if a path has the extension of a video.
+  /// Returns true if a path has one of these extensions, in upper or lower case.
   static bool Is(const std::string& path);
 };
 

@@ -4,18 +4,18 @@
 /// Markers of the danger to devices, with the same words as in pictures.
 ///
 ///     | namespace        | id       | content                                                |
-///     | alarm            | 0        | the next danger, in one or two lines above the farm    |
-///     | outside          | 0        | above the clock: strength, place and motion of the     |
-///     |                  |          | disasters whose centres lie outside the farm           |
+///     | alarm            | 0        | text below the clock: the danger to the devices        |
+///     | outside          | 0        | text above the clock: strength, position and motion of |
+///     |                  |          | the disasters whose centres lie outside the farm       |
 ///     | danger           | device   | circle around a device that a ring covers or reaches   |
-///     | danger_label (1) | device   | the ring over it, the worst one and its arrival        |
-///     | pointer          | disaster | where a centre outside the farm lies                   |
+///     | danger_label (1) | device   | the ring over the device, and the arrival of the worst |
+///     | pointer          | disaster | triangle at the edge, towards a centre outside         |
 ///
-/// A label has a plate below it, in the namespace of the label with _plate, and a line to its
-/// symbol where it is not next to it, with _leader.
+/// A label lies on a dark plate, which has the namespace `danger_label_plate`. If a label is not
+/// next to its device, a line of the namespace `danger_label_leader` connects them.
 ///
-/// (1) of as many devices as have a free place nearby, up to 40, those that are reached first
-/// before others.
+/// (1) Up to 40 devices get a label if there is free space near them. Devices that a ring reaches
+/// earlier get theirs first, and the first one always gets one.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -25,13 +25,13 @@
 
 namespace aquafarm_viz {
 
-/// Makes the markers of one farm. Keeps the storm tracks of the last scenario.
+/// Makes the markers of one farm. Caches the storm tracks of the last scenario.
 class DangerMarkers {
  public:
   DangerMarkers();
   ~DangerMarkers();
 
-  /// Returns a marker for each id of the table; a marker without content deletes its predecessor.
+  /// Returns a marker for each id of the table. A marker without content has the action DELETE.
   /// The spec must pass CheckSpec and the state CheckState.
   visualization_msgs::MarkerArray Of(const aquafarm_msgs::FarmSpec& spec,
                                      const aquafarm_msgs::FarmState& state);

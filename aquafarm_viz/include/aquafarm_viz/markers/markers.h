@@ -9,10 +9,13 @@
 ///
 ///     | namespace                       | id                         |
 ///     | sea, island, shore, rocks       | 0                          |
-///     | axis                            | tick                       |
+///     | axis                            | 0, 1, …: ticks and names   |
+///     | legend, legend_text             | 0, 1, …: one sequence      |
+///     | sign_legend, sign_legend_text (4) | 0, 1, …: one sequence    |
 ///     | port, port_letter               | port                       |
 ///     | device, health, health_frame    | device                     |
 ///     | ship, ship_deck, ship_name      | ship                       |
+///     | path (5)                        | ship                       |
 ///     | ring, ring_edge                 | disaster * kMaxRings + ring |
 ///     | ring_pattern                    | disaster                   |
 ///     | heading, disaster, disaster_name (3) | disaster              |
@@ -20,9 +23,10 @@
 ///     | port_direction (1)              | port                       |
 ///     | device_label (2)                | device                     |
 ///
-/// (1) only with the layer `directions`, (2) only with the layer `labels`, (3) with the layer
-/// `risk` only if the centre lies on the farm, because DangerMarkers then point at a centre
-/// outside; other layers are ignored.
+/// (1) Only with the layer `directions`. (2) Only with the layer `labels`. (3) With the layer
+/// `risk`, only if the centre lies on the farm; DangerMarkers then have pointers to the other
+/// centres. (4) Only with the layer `risk`. (5) Only with the layer `trail`. Other layers have no
+/// effect.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -33,14 +37,16 @@
 
 namespace aquafarm_viz {
 
-/// Returns the sea, islands, rocks, axes and the legend, which are constant during an episode. If
-/// `clear`, the first one deletes all markers; use it at the start of an episode.
+/// Returns the markers that are constant during an episode: sea, islands, rocks, axes, legend and
+/// the legal moves at ports.
+/// @param clear true: the first marker deletes all markers; use it at the start of an episode
 visualization_msgs::MarkerArray SpecMarkers(const aquafarm_msgs::FarmSpec& spec, bool clear,
                                             const Layers& layers = {});
 
 /// Returns the markers of ports, ships, devices and disasters, and of the line with time, episode,
-/// step and return. A ship is drawn next to its port.
+/// step and return. A ship in the cell of a port is drawn next to the port.
 /// The spec must pass CheckSpec and the state CheckState.
+/// @param trail trails of the ships; nullptr: no paths, and ships that do not move point north
 visualization_msgs::MarkerArray StateMarkers(const aquafarm_msgs::FarmSpec& spec,
                                              const aquafarm_msgs::FarmState& state,
                                              const Trail* trail = nullptr,

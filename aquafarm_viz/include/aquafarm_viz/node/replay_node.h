@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Replays a bag with the services `pause` (also after a number of steps), `set_pace` and `jump` to
-/// a step. rosbag play supports neither jumps nor steps.
+/// The node that replays a bag. Clients control it with services: `pause` pauses it at once or
+/// after a number of steps, `set_pace` sets its speed, and `jump` shows a given step. rosbag play
+/// cannot jump, and its single step is a message, not a step of the ranch.
 
 #include <aquafarm_msgs/Jump.h>
 #include <aquafarm_msgs/Pause.h>
@@ -19,23 +20,25 @@ namespace aquafarm_viz {
 /// The parameters of the node, from its private namespace.
 struct ReplayParams {
   std::string bag;
-  double speed{1.0};      ///< speed relative to the recording, (0, 1000]
-  double start_s{};       ///< start position in the bag [s]
-  int start_episode{-1};  ///< episode to start with; -1: the first one
+  double speed{1.0};      ///< speed relative to the recording, [0.001, 1000]
+  double start_s{};       ///< start position in the bag [s]; above 0 it overrides start_episode
+  int start_episode{-1};  ///< episode to start with; -1: the first one of the bag
   int start_step{};       ///< step of that episode to start with
-  double delay_s{1.0};    ///< wall time before the start, so that other nodes can start
+  double delay_s{1.0};    ///< wall time before the start [s], so that other nodes can start
   bool paused{};          ///< true: starts paused
-  bool loop{};            ///< true: restarts at the end of the bag
-  bool keep_alive{};      ///< true: keeps running at the end and shows the last picture
+  bool loop{};            ///< true: restarts at the first step when the bag ends
+  bool keep_alive{};      ///< true: keeps running when the bag ends; false: shuts down
 };
 
-/// @throws InputError with the parameter, its value and the allowed values; also for an unknown one
+/// Reads the parameters.
+/// @throws InputError if `bag` is missing, a value is not allowed, or a parameter is unknown
 ReplayParams ReadReplayParams(const ros::NodeHandle& node);
 
+/// Publishes the messages of a bag and /clock, and offers the services.
 class ReplayNode {
  public:
   /// @param node namespace of the services and of topics without a leading slash
-  /// @throws std::runtime_error if the bag cannot be shown
+  /// @throws std::runtime_error if the bag cannot be shown, see ReplayTape
   ReplayNode(ros::NodeHandle node, const ReplayParams& params);
 
   const ReplayTape& tape() const { return tape_; }
@@ -59,9 +62,9 @@ class ReplayNode {
   double speed_;
   bool paused_;
   bool begun_{};
-  std::size_t next_{};  // index of the next message to publish
-  ros::Time now_;       // current bag time
-  ros::WallTime ticked_;
+  std::size_t next_{};    // index of the next message to publish
+  ros::Time now_;         // current bag time
+  ros::WallTime ticked_;  // time of the last tick; at first, the time at which the replay starts
   std::map<std::string, ros::Publisher> topics_;
   ros::Publisher clock_;
   ros::ServiceServer pause_;

@@ -21,22 +21,23 @@ namespace aquafarm_viz {
 
 /// The parameters of the node, from its private namespace.
 struct VizParams {
-  double rate_hz{20.0};              ///< max drawings per second of wall time, (0, 1000]
+  double rate_hz{20.0};              ///< max drawings per second of wall time, [0.1, 1000]
   ImageSize image;                   ///< [pixels], each side in [kMinImageSide, kMaxImageSide]
   Layers layers;                     ///< layers of the pictures and markers
   const Style* style{&DarkStyle()};  ///< colours of the pictures
 };
 
 /// Reads the parameters.
-/// @throws InputError with the parameter, its value and the allowed values; also for an unknown one
+/// @throws InputError if a number is out of range or a parameter is unknown
+/// @throws std::invalid_argument if a name in `layers` or `style` is unknown
 VizParams ReadVizParams(const ros::NodeHandle& node);
 
-/// Publishes `markers`, `moves`, `image`, `image/compressed` and each ship's `ship_<id>/route`, max
-/// rate_hz times per second of wall time. Only new states are drawn, and only topics with a
-/// subscriber are published.
+/// Publishes `markers`, `moves`, `image`, `image/compressed` and each ship's `ship_<id>/route`, at
+/// most rate_hz times per second of wall time. A topic is published only if it has a subscriber,
+/// and if its content has changed or a subscriber is new.
 class VizNode {
  public:
-  /// @param node  namespace of the topics.
+  /// @param node  namespace of the topics
   VizNode(ros::NodeHandle node, const VizParams& params);
 
  private:
@@ -65,11 +66,11 @@ class VizNode {
   bool pictured_{};                         // true: the images are up to date
   bool routed_{};                           // true: the routes are up to date
   bool moved_{true};                        // true: the moves are up to date
-  sensor_msgs::PointCloud2ConstPtr cloud_;  // last message of `values/points`; null after reading
+  sensor_msgs::PointCloud2ConstPtr cloud_;  // message of `values/points` to be read; null if none
   std::optional<Values> values_;
   std::deque<std::pair<ros::Time, std::uint64_t>> stamps_;  // stamps and steps of the last states
   aquafarm_msgs::PolicyChoiceConstPtr choice_;
-  Shown marked_episode_;  // the episode whose constant markers were sent
+  Shown marked_episode_;  // the constant markers of its spec were published last
 
   ros::Publisher markers_;
   ros::Publisher moves_;
@@ -79,7 +80,8 @@ class VizNode {
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_topic_;
-  ros::Subscriber values_topic_;  // only while they are shown: the publisher computes on demand
+  // Subscribed only while values are shown, because they are computed only for subscribers.
+  ros::Subscriber values_topic_;
   ros::Subscriber choice_topic_;
   ros::WallTimer timer_;
 };

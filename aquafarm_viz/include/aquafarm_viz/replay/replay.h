@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Random access to the messages and steps of a recorded bag.
+/// Random access to the messages of a recorded bag and to the steps of its episodes.
 
 #include <aquafarm_msgs/FarmState.h>
 #include <ros/advertise_options.h>
@@ -19,60 +19,64 @@
 
 namespace aquafarm_viz {
 
-/// Returns true if a message is the state of a ranch. Observations of ships have the same type and
-/// give false.
+/// Returns true if a message is the state of a ranch. Returns false for the observation of a ship,
+/// which has the same type but the topic `observation`.
 bool IsState(const rosbag::MessageInstance& message);
 
-/// Returns the options of a topic for messages of a bag. Messages of an earlier version are
-/// published as those of this one.
+/// Returns the options with which the topic of a message is advertised. If an earlier version
+/// recorded the message, the topic gets the message definition of this version.
+/// @param queue queue size of the publisher
 ros::AdvertiseOptions AdvertiseOptionsOf(const rosbag::MessageInstance& message,
                                          std::uint32_t queue);
-/// Publishes a message of a bag. @param publisher advertised with AdvertiseOptionsOf
+/// Publishes a message of a bag. A message of an earlier version is translated to this version.
+/// @param publisher advertised with AdvertiseOptionsOf
 void PublishMessage(const rosbag::MessageInstance& message, const ros::Publisher& publisher);
 
-/// The messages of a bag in time order, and the positions of its steps among them.
+/// The messages of a bag in time order, without /clock, and the positions of its states among them.
 class ReplayTape {
  public:
-  /// Position of a state.
+  /// A recorded state and its position.
   struct Step {
     std::size_t position{};  ///< index in messages()
     std::uint64_t seed{};
     std::uint64_t episode{};
     std::uint64_t step{};
-    std::size_t run{};  ///< unique number of one playthrough of an episode
+    std::size_t run{};  ///< number of the playthrough of an episode, unique in the bag
   };
 
-  static constexpr std::size_t kMaxStates = 10'000;  ///< max states sent before a jump's target
-  /// Queue size for publishers and subscribers: a jump sends all these states at once.
+  static constexpr std::size_t kMaxStates = 10'000;  ///< max earlier states that a jump publishes
+  /// Queue size of publishers and subscribers of states, because a jump publishes all states at
+  /// once.
   static constexpr std::uint32_t kQueueOfStates = kMaxStates + 100;
 
-  /// @throws std::runtime_error with a message of one line if the bag cannot be shown: not a bag,
-  ///         another version, no state
+  /// @throws std::runtime_error with a message of one line if the bag cannot be shown: it is not a
+  ///         bag or is damaged, its messages are of an unknown version, or it has no spec or state
   explicit ReplayTape(const std::string& path);
 
   const std::vector<rosbag::MessageInstance>& messages() const { return messages_; }
-  const std::vector<Step>& steps() const { return steps_; }  ///< never empty
+  const std::vector<Step>& steps() const { return steps_; }  ///< by position; never empty
 
-  /// Returns the last step at or before a position; the first step if there is none.
+  /// Returns the last state at or before a position; the first state if there is none.
   const Step& At(std::size_t position) const;
 
   /// Returns the requested step. If it is not recorded, returns the next recorded step of the
   /// episode, or its last one.
-  /// @param shown the step that is shown now. If several runs have this episode index, its own run
-  ///        is preferred, then the first run with its seed, then the first run.
+  /// @param shown the step that is shown now. If several runs have the requested episode index, the
+  ///        run of `shown` is preferred, then the first run with its seed, then the first run.
   /// @returns nullopt if the bag does not contain the episode
   std::optional<Step> Find(const Step& shown, std::uint64_t episode, std::uint64_t step) const;
 
-  /// Returns the positions of the messages to send for showing a step: the spec of its episode,
-  /// then, in ascending order, the newest message of each other topic and the earlier states of its
-  /// run (for trails and routes). The state of the step is the last one.
+  /// Returns the positions of the messages that must be published to show a step. The first is the
+  /// spec of the episode. Then follow, in ascending order, the newest message of each other topic
+  /// and up to kMaxStates earlier states of the run, for trails and routes. The state of the step
+  /// is the last one.
   std::vector<std::size_t> UpTo(const Step& step) const;
 
-  /// Returns warnings about the bag, one line each: missing steps, another version.
+  /// Returns warnings about the bag, one line each: missing steps, and a bag of another version.
   /// @param version version of aquafarm that is running
   std::vector<std::string> Notes(const std::string& version) const;
 
-  /// Returns the mean bag time between two steps of a run [s], above 0.
+  /// Returns the mean bag time between two steps of a run [s]; 0.1 if the bag does not give it.
   double StepPeriod_s(std::size_t run) const;
 
  private:
@@ -83,19 +87,19 @@ class ReplayTape {
   };
 
   void Read(const std::string& path);
-  /// @param message the message that contains `state`, the next one in time order
+  /// Adds a state. @param message the message that contains it, the next one in time order
   void AddStep(const rosbag::MessageInstance& message, const aquafarm_msgs::FarmState& state);
-  std::optional<std::size_t> SpecOf(const Step& step) const;
+  std::optional<std::size_t> SpecOf(const Step& step) const;  // nullopt: not recorded
 
   rosbag::Bag bag_;
   rosbag::View view_;
   std::vector<rosbag::MessageInstance> messages_;
   std::vector<Step> steps_;
   std::vector<Spec> specs_;
-  std::map<std::string, Step> last_;  // by topic, while reading
+  std::map<std::string, Step> last_;  // last state of each topic that was read
   std::size_t runs_{};                // number of runs found so far
   std::uint64_t missing_{};           // number of missing steps between recorded ones
-  std::set<std::string> versions_;    // versions that recorded the bag
+  std::set<std::string> versions_;    // versions of aquafarm that recorded the bag
 };
 
 }  // namespace aquafarm_viz

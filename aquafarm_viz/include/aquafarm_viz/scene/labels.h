@@ -15,49 +15,54 @@
 
 namespace aquafarm_viz {
 
-/// Name of an action: "NE", "pickup", "drop-off" or "hold".
+/// Returns the name of an action: a compass point such as "NE" for a move, "pickup", "drop-off", or
+/// "hold" for any other action.
 std::string ActionName(std::uint8_t action);
 
-/// A compared policy's choice for a ship: "NW (value 87.5)", or "NW" without values; empty if it
-/// has none.
+/// Returns the choice of a compared policy for a ship: "NW (value 87.5)", or "NW" if the policy has
+/// no values; empty if the choice has no action for the ship, or if the ship is not active.
 std::string ChoiceText(const aquafarm_msgs::PolicyChoice& choice,
                        const aquafarm_msgs::ShipState& ship);
 
-/// Name of an outcome: "crash", "edge", …; empty for OK.
+/// Returns a short name of an outcome: "edge", "crash", "collision", "illegal" or "delivered";
+/// empty for all other outcomes, such as OK.
 std::string OutcomeName(std::uint8_t outcome);
 
-/// The time in the scenario: "2021-07-24 16:00 UTC", or "0 h 51 min" without a start time.
+/// Returns the time in the scenario: "2021-07-24 16:00 UTC", or "0 h 51 min" if the scenario has no
+/// start time.
 std::string ClockText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state);
 
-/// The result of a command: "executed, -1.0, step 5", "illegal pickup, -10.0, step 5"; paced:
-/// "accepted for step 6", because its result is not known yet.
+/// Returns the result of a command with its reward: "executed, -1.0, step 5" or "illegal pickup,
+/// -10.0, step 5". On a paced ranch the result is not known yet: "accepted for step 6".
 std::string DescribeResult(const aquafarm_msgs::CommandResult& result);
 
-/// Name of a device status: "deployed", "aboard" or "delivered".
+/// Returns the name of a device status: "deployed", "aboard" or "delivered"; empty if it is
+/// unknown.
 std::string StatusName(std::uint8_t status);
 
-/// Label of a device in a drawing: F_j of Fig. 5 of the paper, where j is the id, such as "F2".
+/// Returns the label of a device: F and its id, such as "F2" (F_j in Fig. 5 of the paper).
 std::string DeviceLabel(std::int32_t id);
 
-/// Returns true if a drawing labels the device: inside the grid, neither aboard nor delivered.
+/// Returns true if drawings label the device: it is deployed, and its cell is inside the grid.
 bool IsLabelled(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::DeviceState& device);
 
-/// Name of a training phase, such as "evaluating"; empty for an unknown phase.
+/// Returns the name of a training phase, such as "evaluating"; empty for an unknown phase.
 std::string PhaseName(std::uint8_t phase);
 
-/// Formats a duration as 1:02:03 (hours, minutes, seconds); empty if it is not a valid duration.
+/// Formats a duration as "1:02:03" (hours, minutes, seconds), or "2:03" below an hour; empty if it
+/// is not in [0, 1e8] seconds.
 std::string Duration(double seconds);
 
-/// Formats a rate with three digits and a suffix for thousands.
+/// Formats a rate with a suffix for thousands and millions: "850", "1.23 k", "12.3 M".
 std::string Rate(double value);
 
-/// Formats a number with its sign and one decimal.
+/// Formats a number with one decimal, and with "+" if it is above 0.
 std::string Signed(double value);
 
-/// Warning about missing steps: "2 steps are missing; 'verify' names the first".
+/// Returns a warning about missing steps: "2 steps are missing; 'verify' names the first".
 std::string MissingSteps(std::uint64_t count);
 
-/// Returns the reward terms of the last step with their names, each summed over ships.
+/// Returns the name and the value of each reward term of the last step, summed over the ships.
 std::vector<std::pair<std::string, float>> RewardTermsOf(const aquafarm_msgs::FarmState& state);
 
 }  // namespace aquafarm_viz

@@ -5,25 +5,27 @@
 
 namespace aquafarm_viz {
 
-/// Optional layers of a picture, in addition to the chart, ships and devices. `directions` and
-/// `labels` are also layers of the markers.
+/// Optional layers of a picture, in addition to the chart, ships and devices. `trail`, `risk`,
+/// `directions` and `labels` are also layers of the markers. Figures are those of the paper
+/// (docs/model.md).
 struct Layers {
   bool trail{true};   ///< recent trail of each ship
   bool risk{true};    ///< rings of disasters, shaded by severity
   bool route{};       ///< whole trail of each ship, coloured in time order (Fig. 11)
-  bool sight{};       ///< sensor range of each ship in partial view
+  bool sight{};       ///< sensor range of each ship, if the scenario has partial view
   bool values{};      ///< V_π of each cell, if a policy publishes it
-  bool moves{};       ///< greedy action of the policy in each cell
+  bool moves{};       ///< greedy actions of the policy, see ShownActions
   bool directions{};  ///< arrows of the legal moves at each port (Fig. 5)
-  bool labels{};      ///< F and the id of each device that is not delivered (Fig. 5)
-  std::string sea{};  ///< sea layer of the scenario that is the background; empty: no sea layer
+  bool labels{};      ///< F and the id of each device (Fig. 5); of fetched ones, at their old cell
+  std::string sea{};  ///< sea layer of the scenario, drawn below all others; empty: none
 };
 
-/// Parses names separated by commas, such as "risk,route,sea:warmth"; "none" for no layer.
-/// @throws std::invalid_argument "layers: got 'rain', expected some of: trail, risk, …"
+/// Parses names of layers separated by commas, such as "risk,route,sea:warmth". "none" selects no
+/// layer.
+/// @throws std::invalid_argument "layers: got 'rain', expected some of: trail, risk, …; or none"
 Layers ParseLayers(const std::string& names);
 
-/// Returns the names of all layers: "trail, risk, …".
+/// Returns the names of all layers: "trail, risk, …, sea:NAME".
 std::string LayerNames();
 
 }  // namespace aquafarm_viz

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Matches specs with states. They arrive over different connections, in any order.
+/// Matches states with the specs of their episodes. They arrive in any order, because their
+/// connections are separate.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -23,16 +24,16 @@ class Pairing {
  public:
   static constexpr std::size_t kSpecs = 16;  ///< max number of stored specs
 
-  /// Adds a spec. Returns the reason if it is refused; empty if it is accepted.
+  /// Adds a spec. Returns an empty text, or the reason if CheckSpec refuses the spec.
   std::string AddSpec(const aquafarm_msgs::FarmSpecConstPtr& spec);
 
-  /// Adds a state. Returns the reason if it is refused; empty if it is accepted.
+  /// Adds a state. Returns an empty text, or the reason if CheckState refuses the state.
   std::string AddState(const aquafarm_msgs::FarmStateConstPtr& state);
 
-  /// Returns the newest state whose spec is known, with this spec.
+  /// Returns the newest state whose spec was added, with that spec.
   const Shown& shown() const { return shown_; }
 
-  /// Returns a line of text if the spec of the newest state is missing; empty if it is not.
+  /// Returns a line about the missing spec of the newest state; empty if no spec is missing.
   std::string Waiting() const;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A rescue plan as text for the panel, independent of Qt and nodes.
+/// The texts of a rescue plan in the panel. They need neither Qt nor a node.
 
 #include <aquafarm_msgs/RescuePlan.h>
 
@@ -10,26 +10,30 @@
 
 namespace aquafarm_viz {
 
+/// The texts of one row of a table.
 using PlanRow = std::vector<std::string>;
 
-/// Silence of plan_node after which its plan counts as no longer renewed [s]. Its heartbeat has a
-/// period of 1 s.
+/// The panel warns that the plan is not renewed if it has received neither a plan nor a heartbeat
+/// of plan_node for this time [s]. The heartbeat has a period of 1 s.
 inline constexpr double kPlanSilence_s = 5.0;
 
-/// Returns the outcome, the time from which no ship should leave, and what is outdated.
+/// Returns the result of the plan, the time after which no ship should leave, the warnings of
+/// severity "stop", and why the plan is outdated or not renewed.
 /// @param silent_s time since the last plan or heartbeat of plan_node [s]
 std::string PlanHeadline(const aquafarm_msgs::RescuePlan& plan, double silent_s);
 
-/// Column titles of the tables. Each row has the same number of entries.
+/// Returns the column titles of the table of PlanShips. Each row has the same number of entries.
 const PlanRow& PlanShipColumns();
+/// Returns the column titles of the table of PlanDevices.
 const PlanRow& PlanDeviceColumns();
 
-/// Returns the next order of each ship at a time of the ranch: {"ship 1", "fetch D3", "14:05",
-/// "87 %"}.
+/// Returns the next order of each ship, its time and its probability: {"ship 1", "fetch D3",
+/// "14:05", "87 %"}.
+/// @param now world time [UTC]; earlier orders are skipped
 std::vector<PlanRow> PlanShips(const aquafarm_msgs::RescuePlan& plan, ros::Time now);
 
-/// Returns the probability of each device to come home, and its deadlines: the latest departures
-/// for 95, 80 and 50 %.
+/// Returns the probability that each device comes home, and the latest departures at which that
+/// probability is at least 95, 80 and 50 %.
 std::vector<PlanRow> PlanDevices(const aquafarm_msgs::RescuePlan& plan);
 
 }  // namespace aquafarm_viz

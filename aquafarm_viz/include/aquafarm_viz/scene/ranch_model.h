@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The content of the panel "Ranch" as plain text and numbers, independent of Qt windows and nodes.
+/// The content of the panel "Ranch" as plain text and numbers. It needs neither Qt nor a node.
 
 #include <aquafarm_msgs/DisasterInfo.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -29,63 +29,72 @@ struct CurvePoint {
   double success{};  ///< [0, 1]
 };
 
+/// Stores the last messages of a ranch and returns the texts and numbers that the panel shows.
 class RanchModel {
  public:
   RanchModel();
 
+  /// The texts of one row of a table.
   using Row = std::vector<std::string>;
-  /// Capacity of the curve. A long training keeps between half this number and this number of
-  /// points, spread over the whole training.
+  /// Capacity of the curve. When it is reached, every second point is removed, so the points of a
+  /// long training cover all of it.
   static constexpr std::size_t kMaxPoints = 1000;
 
-  /// Each Take adds a message. Returns the reason if it is refused; empty if it is accepted.
+  /// Each Take adds a message. Those for specs and states return an empty text, or the reason if
+  /// the message is refused.
   std::string Take(const aquafarm_msgs::FarmSpecConstPtr& spec) { return pairing_.AddSpec(spec); }
   std::string Take(const aquafarm_msgs::FarmStateConstPtr& state);
   void Take(const aquafarm_msgs::TrainingStatusConstPtr& training);
-  /// @param now steady time at which the plan was received
+  /// @param now time at which the plan was received
   void Take(const aquafarm_msgs::RescuePlanConstPtr& plan, ros::SteadyTime now) {
     plan_ = plan;
     plan_node_seen_ = now;
   }
-  /// Notes a heartbeat of plan_node.
+  /// Adds a heartbeat of plan_node. @param now time at which it was received
   void MarkPlanNodePresent(ros::SteadyTime now) { plan_node_seen_ = now; }
 
-  /// Returns "paper   episode 12   step 17 / 5,000   return −42.5", or "no ranch yet" before the
-  /// first state.
+  /// Returns "paper   episode 12   step 17 / 5,000   return -42.5   seed 7", followed by "paused"
+  /// if the ranch is paused; "no ranch yet" before the first state.
   std::string Headline() const;
-  /// Returns "reward −5.0:   disaster −5.0".
+  /// Returns the last reward and its terms, "reward -5.0:   disaster -5.0"; empty before the first
+  /// state.
   std::string RewardLine() const;
-  /// Returns, for example:
-  /// "q_learning, training   120 / 2,000 episodes   mean return 81.2   success 62 %   left 0:42"
+  /// Returns the progress of the training, such as "q_learning, training   120 / 2,000 episodes
+  /// mean return 81.2   success 62 %   1.23 k steps/s   left 0:42"; empty without a training.
   std::string TrainingLine() const;
 
-  /// Column titles of the tables. Each row has the same number of entries.
+  /// Returns the column titles of the table of Ships. Each row has the same number of entries.
   static const Row& ShipColumns();
+  /// Returns the column titles of the table of Devices.
   static const Row& DeviceColumns();
+  /// Returns a row for each ship and self-propelled device; empty before the first state.
   std::vector<Row> Ships() const;
-  /// The status of a device in danger is its danger: "gale now, hurricane in 6.4 h".
+  /// Returns a row for each device; empty before the first state. The column "status" of a device
+  /// in danger contains its danger, such as "gale now, hurricane in 6.4 h".
   std::vector<Row> Devices() const;
 
   /// Returns the last rescue plan; null before the first one.
   const aquafarm_msgs::RescuePlanConstPtr& plan() const { return plan_; }
   /// Returns the time since the last plan or heartbeat of plan_node [s].
   double PlanSilence(ros::SteadyTime now) const { return (now - plan_node_seen_).toSec(); }
-  /// Returns the time of the plan's next orders: that of the ranch if the plan follows it, else the
-  /// plan's start.
+  /// Returns the time from which orders of the plan are due, for PlanShips. It is the time of the
+  /// ranch if the plan follows the ranch and has started, else the start of the plan. plan() must
+  /// not be null.
   ros::Time PlanNow() const;
 
   const std::vector<CurvePoint>& curve() const { return curve_; }
   const Shown& shown() const { return pairing_.shown(); }
+  /// Returns true if the ranch is paused; false before the first state.
   bool paused() const;
 
-  /// Returns a disaster for `set_disaster`. Its centre is a ship's cell, or the centre of the farm
-  /// if there is no ship.
+  /// Returns a disaster for the service `set_disaster`. Its centre is the cell of the first ship,
+  /// or the middle of the farm if that ship is not visible, or (0, 0) before the first state.
   /// @param kind kind of DisasterState
   /// @param grade 1 blue … 4 red; also determines the risks of its rings
   /// @param radius radius of the largest of its three rings [cells]
   aquafarm_msgs::DisasterInfo MakeDisaster(std::uint8_t kind, std::uint8_t grade,
                                            double radius) const;
-  /// Returns the id that adds a disaster.
+  /// Returns the id with which `set_disaster` adds a disaster: the number of present disasters.
   std::int32_t NextDisaster() const;
 
  private:
@@ -95,8 +104,8 @@ class RanchModel {
   aquafarm_msgs::RescuePlanConstPtr plan_;
   ros::SteadyTime plan_node_seen_;
   std::vector<CurvePoint> curve_;
-  std::uint64_t every_{1};  // keeps one of this many received points
-  std::uint64_t came_{};
+  std::uint64_t every_{1};  // one of this many received points is kept
+  std::uint64_t came_{};    // number of received points
 };
 
 }  // namespace aquafarm_viz

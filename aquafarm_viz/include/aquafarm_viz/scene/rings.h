@@ -7,8 +7,9 @@
 
 namespace aquafarm_viz {
 
-/// Returns the radii of a ring to the north-east, south-east, south-west and north-west [cells];
-/// all equal for a circle. The disaster must pass CheckState.
+/// Returns the radii of a ring to the north-east, south-east, south-west and north-west [cells].
+/// The radii of a circular ring are equal. The disaster must pass CheckState.
+/// @param ring index in DisasterState.radii
 inline std::array<double, 4> RingQuadrants(const aquafarm_msgs::DisasterState& disaster,
                                            std::size_t ring) {
   std::array<double, 4> radii{};

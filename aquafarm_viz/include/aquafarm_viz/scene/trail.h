@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Tracks the past positions and headings of ships and the times at which devices were fetched,
-/// which a single state does not contain.
+/// Collects what a single state does not contain: the past cells and the headings of ships, and the
+/// times at which devices were fetched and delivered.
 
 #include <aquafarm_msgs/FarmState.h>
 
@@ -16,38 +16,41 @@ namespace aquafarm_viz {
 
 /// The trail of a ship.
 struct ShipTrail {
-  int bearing_deg{};             ///< bearing of its last move, [0, 359], clockwise from north
+  int bearing_deg{};             ///< bearing of the last move, [0, 359]; 0 before the first move
   std::deque<cv::Point> places;  ///< visited cells, oldest first, the current one last
 
-  /// Returns the index of the first cell after the last gap; 0 if there is no gap.
+  /// Returns the index of the first cell after the last gap; 0 if there is no gap (IsGap).
   std::size_t UnbrokenFrom() const;
 };
 
-/// Stores the trail of each ship of one farm: its last cells, or its whole route.
+/// Stores the trail of each ship of one farm: the last cells of the ship, or its whole route.
 class Trail {
  public:
   static constexpr std::size_t kLength = 24;        ///< max cells of a trail
   static constexpr std::size_t kWhole = 1'000'000;  ///< max cells of a route
-  static constexpr int kMaxJump = 2;                ///< max distance [cells] that is not a gap
+  static constexpr int kMaxJump = 2;  ///< max distance [cells] along an axis that is not a gap
 
+  /// @param length max cells of each trail; kWhole: routes
   explicit Trail(std::size_t length = kLength) : length_(length) {}
 
-  /// Adds the next state. Another episode or an earlier step clears all trails.
+  /// Adds the next state. A state of another episode or of an earlier step first clears everything.
+  /// The trail of a ship that is not visible is cleared.
   void Update(const aquafarm_msgs::FarmState& state);
 
-  /// Returns true if states between two cells are missing. A trail restarts after a gap. A route
-  /// continues, and the gap is not drawn.
+  /// Returns true if two successive cells of a trail are more than kMaxJump apart along an axis,
+  /// because states between them are missing. A trail restarts after a gap. A route continues after
+  /// it, and drawings leave the gap out.
   static bool IsGap(cv::Point from, cv::Point to);
 
-  /// Returns when a device was last picked up or delivered [s of the world time]; nullopt if that
-  /// was before the first state.
+  /// Returns when the status of a device last changed, because it was picked up or delivered [s of
+  /// the world time]; nullopt if no such change was observed.
   std::optional<std::int64_t> ChangedAt(std::int32_t device) const;
 
-  /// Returns when a device was taken aboard [s of the world time]; nullopt if that was before the
-  /// first state, or never.
+  /// Returns when a device was last picked up [s of the world time]; nullopt if that was not
+  /// observed.
   std::optional<std::int64_t> FetchedAt(std::int32_t device) const;
 
-  /// Returns the trail of a ship; nullptr for an unknown ship.
+  /// Returns the trail of a ship; nullptr if the ship is unknown or not visible.
   const ShipTrail* Find(std::int32_t ship) const;
 
  private:
@@ -56,12 +59,14 @@ class Trail {
   std::uint64_t episode_{};
   std::uint64_t step_{};
   std::map<std::int32_t, ShipTrail> ships_;
-  std::map<std::int32_t, std::uint8_t> statuses_;    // of devices
-  std::map<std::int32_t, std::int64_t> changed_at_;  // last change of a status [s]
-  std::map<std::int32_t, std::int64_t> fetched_at_;  // [s]
+  std::map<std::int32_t, std::uint8_t> statuses_;    // by device
+  std::map<std::int32_t, std::int64_t> changed_at_;  // by device [s of the world time]
+  std::map<std::int32_t, std::int64_t> fetched_at_;  // by device [s of the world time]
 };
 
-/// Returns the bearing to draw a ship at: that of its move in this state, else of its trail, or 0.
+/// Returns the bearing with which a ship is drawn [degrees]: that of its move in this state. If it
+/// does not move, that of its last move in `trail`, or 0 if that is unknown.
+/// @param trail may be null
 int ShipBearingDeg(const aquafarm_msgs::ShipState& ship, const Trail* trail);
 
 }  // namespace aquafarm_viz

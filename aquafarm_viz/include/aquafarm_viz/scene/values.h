@@ -17,44 +17,50 @@
 
 namespace aquafarm_viz {
 
-/// Values and greedy actions of a farm, [height, width] row-major, from the south.
+/// Values and greedy actions of the cells of a farm, [height, width] row-major; row 0 is the
+/// southernmost.
 struct Values {
   static constexpr std::uint8_t kNoAction = 255;
 
   int width{};
   int height{};
-  std::vector<float> values;          ///< NaN: no value
+  std::vector<float> values;          ///< NaN: the cell has no value
   std::vector<std::uint8_t> actions;  ///< 0-7 moves, 8 pickup, 9 drop-off; kNoAction: no action
-  float lowest{};                     ///< min of the values; lowest and highest are 0 without any
-  float highest{};
-  ros::Time stamp;
-  std::optional<std::uint64_t> step;  ///< step of the state that they belong to; nullopt if unknown
+  float lowest{};                     ///< min of the values; 0 if no cell has a value
+  float highest{};                    ///< max of the values; 0 if no cell has a value
+  ros::Time stamp;                    ///< stamp of the message
+  std::optional<std::uint64_t> step;  ///< step of the state with this stamp; nullopt if unknown
 
-  /// Sets `step` if the values belong to this state.
+  /// Sets `step` if this state has the same stamp, as in bags of bag_policy.
   void Pair(const aquafarm_msgs::FarmState& state) {
     if (stamp == state.header.stamp) step = state.step;
   }
+  /// Returns the index of a cell in `values` and `actions`.
   std::size_t Index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(x);
   }
 };
 
-/// Reads a cloud for the farm of `spec`. Points outside the farm are ignored.
-/// @throws std::invalid_argument "values/points: got no field value …"
+/// Reads a message of `values/points` for the farm of `spec`. Points outside the farm are ignored.
+/// @throws std::invalid_argument if a field is missing or has another type, or if the size of the
+///         data is wrong: "values/points: got no field value, expected x, y, value and action"
 Values ReadValues(const sensor_msgs::PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec);
 
-/// Returns the cells whose greedy action is shown: every `every`-th cell along each axis, so that
-/// the map stays readable, and up to 12 pickups and drop-offs wherever they are.
+/// Returns the cells whose greedy action is drawn: one of `every` cells along each axis, so that
+/// the map stays readable. Cells between them are added if their action is a pickup or a drop-off
+/// and there are at most 12 of them.
 std::vector<cv::Point> ShownActions(const Values& values, int every);
 
-/// Returns the greedy actions as markers: `moves` 0 are arrows, 1 pickups, 2 drop-offs. Along the
-/// longer side of a farm there are at most 13.
+/// Returns values and greedy actions as markers. `values` 0 contains the coloured cells, `moves` 0
+/// the arrows of the moves, `moves` 1 the pickups and `moves` 2 the drop-offs. The moves of at most
+/// 13 cells along the longer side of the farm are drawn, see ShownActions.
 visualization_msgs::MarkerArray MoveMarkers(const Values& values,
                                             const aquafarm_msgs::FarmSpec& spec);
 
-/// Returns the choice of a compared policy as markers: namespace `choice`, id of the ship. They
-/// delete the markers if the choice belongs to another state.
+/// Returns the choice of a compared policy as a marker for each ship: namespace `choice`, id of the
+/// ship. A marker has the action DELETE if the choice was made in another state or has no action
+/// for the ship, or if the ship is not drawn.
 visualization_msgs::MarkerArray ChoiceMarkers(const aquafarm_msgs::PolicyChoice& choice,
                                               const aquafarm_msgs::FarmSpec& spec,
                                               const aquafarm_msgs::FarmState& state);

@@ -10,8 +10,9 @@
 /// is_first = 1, its rewards are 0, and its slots hold no transition.
 ///
 /// An agent may be done before its farm: a delivered self-propelled device is no longer active (as
-/// in PettingZoo's parallel API). Its last transition is terminal. The results in its slot are
-/// padding until the next episode.
+/// in PettingZoo's parallel API). Its last transition, the delivery, is terminal. After it the slot
+/// holds no transition of this agent until the next episode; its reward is 0, or the team's reward
+/// if the scenario has a team reward.
 
 #include <cstdint>
 #include <stdexcept>
@@ -72,7 +73,7 @@ struct StepResults {
   }
 
   std::vector<float> rewards;             ///< [N, S]
-  std::vector<float> terms;               ///< [N, S, kRewardTermCount]; empty unless requested
+  std::vector<float> terms;               ///< [N, S, kRewardTermCount]; see kOwnRewardsBit
   std::vector<float> energy;              ///< [N, S] consumed in the step [kWh]
   std::vector<float> distance;            ///< [N, S] travelled in the step [km]
   std::vector<std::uint8_t> outcomes;     ///< [N, S] Outcome
@@ -138,8 +139,9 @@ class Environment {
   ///   unchanged
   virtual const StepResults& Load(const std::string& bytes) = 0;
 
-  /// Returns true once after the farms were lost and replaced by new ones (a ROS node restarted).
-  /// The results of the last call are then first observations of new episodes.
+  /// Returns true once after Step has started new episodes in all farms, because the sim node
+  /// restarted or another client changed its farms. The results of the last call are then first
+  /// observations.
   virtual bool ConsumeRestart() { return false; }
 };
 

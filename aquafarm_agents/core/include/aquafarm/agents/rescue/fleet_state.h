@@ -3,6 +3,7 @@
 
 /// Replaces the ships and devices of a case by those of a running ranch, to make a new plan.
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -16,6 +17,9 @@ namespace aquafarm::agents {
 struct ShipNow {
   Cell cell{};
   std::vector<std::int32_t> aboard;  ///< ids of the devices aboard
+  bool operator==(const ShipNow& other) const {
+    return cell == other.cell && aboard == other.aboard;
+  }
 };
 
 /// A device of a running ranch.
@@ -23,6 +27,12 @@ struct DeviceNow {
   bool is_deployed{true};  ///< false: aboard a ship, or in port
   bool self_propelled{};   ///< true: the device moves by itself, and plans leave it out
   double health{1.0};      ///< [0, 1]
+  bool operator==(const DeviceNow& other) const {
+    const bool same_health =
+        health == other.health || (std::isnan(health) && std::isnan(other.health));
+    return is_deployed == other.is_deployed && self_propelled == other.self_propelled &&
+           same_health;
+  }
 };
 
 /// State of a running ranch.
@@ -31,6 +41,10 @@ struct FleetState {
   std::uint64_t episode{};     ///< number of the episode; with the seed it determines the layout
   std::vector<ShipNow> ships;  ///< by id, rescue ships only
   std::vector<DeviceNow> devices;  ///< by id, all devices
+  bool operator==(const FleetState& other) const {
+    return seed == other.seed && episode == other.episode && ships == other.ships &&
+           devices == other.devices;
+  }
 };
 
 /// Replaces the layout, the ships and the devices of a case by those of a running ranch.

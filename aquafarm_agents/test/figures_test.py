@@ -307,7 +307,7 @@ class FiguresTest(unittest.TestCase):
         np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
         np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
         self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
-                         "time limit after 3 steps, the last 2 without a stop",
+                         "time limit at step 3, last stop at 1",
                          self.axes.get_title())
         low, high = self.axes.get_ylim()
         self.assertEqual(8.7, self.axes.get_xlim()[1], "the scale of the largest ranch")

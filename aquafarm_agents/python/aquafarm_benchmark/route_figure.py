@@ -124,10 +124,11 @@ def plot_unfinished(axes, name, route, size):
     axes.scatter(*last["cell"], s=150, marker="*", color="#f0e442", edgecolor="black", zorder=9,
                  label="ship at the end")
     result = f"{route['return']:.0f}".replace("-", "−")
+    end = len(route["steps"]) - 1
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
                    f"return {result}\n"
-                   f"{route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} steps, "
-                   f"the last {len(last_leg) - 1} without a stop", fontsize=11)
+                   f"{route['reason'].replace('_', ' ')} at step {end}, "
+                   f"last stop at {end - len(last_leg) + 1}", fontsize=10.5)
 
 
 def _symbols(charts):

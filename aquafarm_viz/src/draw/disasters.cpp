@@ -114,18 +114,18 @@ SignPlace PlaceSign(const DisasterState& disaster, const Layout& layout) {
 
 std::vector<SignPlace> PlaceSigns(const FarmState& state, const Layout& layout) {
   const double apart = 26.0 * layout.unit;
+  const cv::Rect2d inside({0.0, 0.0}, cv::Size2d(layout.map.size()));
+  const cv::Point2d middle(layout.map.width / 2.0, layout.map.height / 2.0);
   std::vector<SignPlace> signs;
   std::vector<cv::Point2d> pointers;
   for (const auto& disaster : state.disasters) {
     SignPlace sign = PlaceSign(disaster, layout);
     signs.push_back(sign);
     if (sign.is_inside || !IsDrawn(disaster)) continue;
-    const cv::Point2d middle(layout.map.width / 2.0, layout.map.height / 2.0);
     const cv::Point2d from_middle = sign.at - middle;
     // True if the pointer is at the left or right border.
     const bool is_aside = std::abs(from_middle.x) * middle.y > std::abs(from_middle.y) * middle.x;
     const cv::Point2d along = is_aside ? cv::Point2d(0.0, apart) : cv::Point2d(apart, 0.0);
-    const cv::Rect2d inside({0.0, 0.0}, cv::Size2d(layout.map.size()));
     for (const double moved : {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0}) {
       const cv::Point2d at = sign.at + moved * along;
       const bool is_near = std::any_of(pointers.begin(), pointers.end(), [&](cv::Point2d other) {

@@ -175,21 +175,6 @@ class Labels {
   std::vector<Plate> land_;  // islands and rocks
 };
 
-// Adds a text on a dark plate, so that it can be read on any background.
-void AddText(MarkerArray& array, const Maker& maker, const std::string& space, std::int32_t id,
-             const Plate& place, const std::string& text) {
-  Marker plate =
-      maker.Make((space + "_plate").c_str(), id, Marker::CUBE, kWordLayer, place.x, place.y);
-  plate.pose.position.z -= 0.5 * maker.layer_m();
-  plate.scale.x = 2.0 * place.half_width * maker.cell_m();
-  plate.scale.y = 2.0 * place.half_height * maker.cell_m();
-  plate.scale.z = 0.1 * maker.layer_m();
-  plate.color = Color(kInk, 0.72);
-  array.markers.push_back(plate);
-  array.markers.push_back(
-      maker.Text(space.c_str(), id, place.x, place.y, text, maker.word_m(), kPaper));
-}
-
 void DeleteText(MarkerArray& array, const Maker& maker, const std::string& space, std::int32_t id) {
   array.markers.push_back(maker.Delete((space + "_plate").c_str(), id));
   array.markers.push_back(maker.Delete((space + "_leader").c_str(), id));
@@ -252,7 +237,10 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     const std::string text = DeviceLabel(one.id) + ": " + NowAndWorstText(spec, one);
     const auto plate = labels.Place(text, device.x, device.y, /*must_show=*/labelled.empty());
     if (!plate) continue;
-    AddText(array, maker, "danger_label", one.id, *plate, text);
+    AddOnPlate(
+        array, maker, "danger_label", one.id, {plate->x, plate->y},
+        {2.0 * plate->half_width * maker.cell_m(), 2.0 * plate->half_height * maker.cell_m()},
+        text);
     AddLeader(array, maker, "danger_label", one.id,
               labels.Leader(cv::Point2d(device.x, device.y), radius, *plate));
     labelled.insert(one.id);

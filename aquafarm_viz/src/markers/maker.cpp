@@ -39,6 +39,20 @@ double TextWidth(const std::string& text) {
   return longest;
 }
 
+void AddOnPlate(visualization_msgs::MarkerArray& array, const Maker& maker,
+                const std::string& space, std::int32_t id, cv::Point2d at, cv::Size2d size_m,
+                const std::string& text) {
+  visualization_msgs::Marker plate = maker.Make(
+      (space + "_plate").c_str(), id, visualization_msgs::Marker::CUBE, kWordLayer, at.x, at.y);
+  plate.pose.position.z -= 0.5 * maker.layer_m();
+  plate.scale.x = size_m.width;
+  plate.scale.y = size_m.height;
+  plate.scale.z = 0.1 * maker.layer_m();
+  plate.color = Color(kInk, 0.72);
+  array.markers.push_back(plate);
+  array.markers.push_back(maker.Text(space.c_str(), id, at.x, at.y, text, maker.word_m(), kPaper));
+}
+
 void AddBand(visualization_msgs::Marker& marker, const QuadrantRadii& inner,
              const QuadrantRadii& outer) {
   static_assert(kCircleCorners % 4 == 0, "quadrants begin at a corner");

@@ -5,10 +5,12 @@
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <visualization_msgs/Marker.h>
+#include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -162,6 +164,14 @@ inline geometry_msgs::Quaternion Turned(double bearing_deg, double rest_deg) {
 
 /// Returns the width of the longest line of a text in rviz, in heights of its letters.
 double TextWidth(const std::string& text);
+
+/// Adds a text on a dark plate, so that it can be read on any background. The namespace of the
+/// plate is `space` with "_plate" appended.
+/// @param at  middle of the text [cells]
+/// @param size_m  width and height of the plate [m]
+void AddOnPlate(visualization_msgs::MarkerArray& array, const Maker& maker,
+                const std::string& space, std::int32_t id, cv::Point2d at, cv::Size2d size_m,
+                const std::string& text);
 
 /// Radii to the NE, SE, SW and NW [m].
 using QuadrantRadii = std::array<double, 4>;

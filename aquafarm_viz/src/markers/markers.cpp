@@ -308,19 +308,6 @@ double RadiusTowards(const DisasterState& disaster, double side) {
   return side > 0.0 ? std::max(radii[0], radii[3]) : std::max(radii[1], radii[2]);
 }
 
-// Adds a word on a dark plate, so that it can be read over the arrows of a policy.
-void AddOnPlate(MarkerArray& array, const Maker& maker, const std::string& space, std::int32_t id,
-                cv::Point2d at, const std::string& word) {
-  Marker plate = maker.Make((space + "_plate").c_str(), id, Marker::CUBE, kWordLayer, at.x, at.y);
-  plate.pose.position.z -= 0.5 * maker.layer_m();
-  plate.scale.x = (TextWidth(word) + 0.8) * maker.word_m();
-  plate.scale.y = 1.2 * maker.word_m();
-  plate.scale.z = 0.1 * maker.layer_m();
-  plate.color = Color(kInk, 0.72);
-  array.markers.push_back(plate);
-  array.markers.push_back(maker.Text(space.c_str(), id, at.x, at.y, word, maker.word_m(), kPaper));
-}
-
 void AddDisasterSigns(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                       const DisasterState& disaster) {
   Marker eye =
@@ -337,8 +324,10 @@ void AddDisasterSigns(MarkerArray& array, const Maker& maker, const FarmSpec& sp
   const double far = near + RadiusTowards(disaster, side);
   const double outside = disaster.y + side * far;
   const double aside = side * (outside > 0.0 && outside < spec.height - 1.0 ? far : near);
+  const std::string name = DisasterName(disaster.kind);
   AddOnPlate(array, maker, "disaster_name", disaster.id,
-             {double(disaster.x), double(disaster.y) + aside}, DisasterName(disaster.kind));
+             {double(disaster.x), double(disaster.y) + aside},
+             {(TextWidth(name) + 0.8) * maker.word_m(), 1.2 * maker.word_m()}, name);
   if (!(disaster.speed > 0.0F)) {
     array.markers.push_back(maker.Delete("heading", disaster.id));
     return;

@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
-from aquafarm_benchmark import figures, route_figure
+from aquafarm_benchmark import figures, route_figure, style
 from aquafarm_benchmark.protocol import CONTESTANTS, PROFILES
 
 WINDOW = 50
@@ -95,7 +95,7 @@ class FiguresTest(unittest.TestCase):
 
     def test_names_stand_at_the_ends_of_the_lines_and_apart_from_each_other(self):
         self.runs["lstm_dqn"] = self.runs["sarsa"]  # both lines end at the same place
-        figures._name_ends(self.axes, figures.plot_repeated(self.axes, self.contestants, self.runs,
+        style.name_ends(self.axes, figures.plot_repeated(self.axes, self.contestants, self.runs,
                                                             OPTIMUM))
         names = {text.get_text(): text.get_position()[1] for text in self.axes.texts}
         self.assertEqual({"SARSA", "LSTM-DQN", "clairvoyant 90"}, set(names))
@@ -110,7 +110,7 @@ class FiguresTest(unittest.TestCase):
                 for i, value in enumerate((-3000.0, 120.0, 125.0, 131.0, 132.0, 133.0))]
         self.axes.set_xlim(0.0, 100.0)
         self.axes.set_ylim(-3500.0, 140.0)
-        figures._name_ends(self.axes, ends)
+        style.name_ends(self.axes, ends)
         figure = self.axes.figure
         figure.canvas.draw()
         renderer = figure.canvas.get_renderer()
@@ -134,7 +134,7 @@ class FiguresTest(unittest.TestCase):
             self.assertEqual(1, sum(one.overlaps(other) for other in boxes.values()))
 
     def test_places_are_spread_within_the_axes(self):
-        spread = figures.spread([0.5, 0.95, 0.96, 0.97, 0.98], 0.06)
+        spread = style.spread([0.5, 0.95, 0.96, 0.97, 0.98], 0.06)
         self.assertEqual(0.5, spread[0])
         self.assertLessEqual(spread[-1], 1.0)
         for lower, upper in zip(spread, spread[1:]):
@@ -193,8 +193,8 @@ class FiguresTest(unittest.TestCase):
             return 1.05 / (0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2] + 0.05)
 
         for one in CONTESTANTS:
-            self.assertGreaterEqual(contrast(figures._legible(one.colour)), 4.5, one.label)
-        self.assertEqual((0.0, 0.0, 0.0), figures._legible("black"))
+            self.assertGreaterEqual(contrast(style.legible(one.colour)), 4.5, one.label)
+        self.assertEqual((0.0, 0.0, 0.0), style.legible("black"))
 
     def test_fig_13_shows_the_return_per_step(self):
         figures.plot_mean_score(self.axes, self.contestants, self.runs, {})
@@ -308,7 +308,7 @@ class FiguresTest(unittest.TestCase):
         np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
         self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
                          "time limit at step 3, last stop at 1",
-                         self.axes.get_title())
+                         self.axes.get_title("left"))
         low, high = self.axes.get_ylim()
         self.assertEqual(8.7, self.axes.get_xlim()[1], "the scale of the largest ranch")
         self.assertAlmostEqual(4.7 + 0.7, high - low, msg="the scale of the largest ranch")

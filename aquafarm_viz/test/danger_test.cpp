@@ -106,7 +106,7 @@ TEST(DangerMarkers, HaveLabelsInTheFarmThatCoverNeitherEachOtherNorDevices) {
     scene.state.devices.push_back(test::MakeDevice(i, 0, 0, 11 + i, 1.0F));
   }
   const auto markers = scene.Draw();
-  const auto half = [](const Marker& label) { return 0.22 * label.scale.z * label.text.size(); };
+  const auto half = [](const Marker& label) { return 0.21 * label.scale.z * label.text.size(); };
   for (int i = 0; i < 4; ++i) {
     const Marker& label = markers.at({"danger_label", i});
     EXPECT_GE(label.pose.position.x - half(label), -501.0);

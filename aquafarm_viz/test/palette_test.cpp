@@ -75,6 +75,15 @@ TEST_P(Colours, OfRisksDifferForColourBlindPeople) {
   }
 }
 
+TEST_P(Colours, OfDevicesDifferFromThoseOfRisks) {
+  for (std::size_t i = 0; i < style_.risks.size(); ++i) {
+    for (std::uint8_t kind = 0; kind < 4; ++kind) {
+      EXPECT_GT(Difference(style_.risks[i], DeviceColor(kind)), 15.0)
+          << "risk " << i << " and " << DeviceName(kind);
+    }
+  }
+}
+
 TEST_P(Colours, OfAChoiceDifferFromThoseOfRisksValuesAndTheSea) {
   for (std::size_t i = 0; i < style_.risks.size(); ++i) {
     EXPECT_GT(Difference(style_.risks[i], kChoiceColor), 15.0) << "risk " << i;

@@ -48,6 +48,49 @@ TEST(ShipMarkers, ShowTheLastMovesOfAShip) {
   EXPECT_EQ(path.colors.back().a, 1.0F);
 }
 
+TEST(ShipMarkers, ShowMovesWithNothingAboardAsDashes) {
+  const auto spec = test::MakeSpec();
+  // Returns the length of the drawn part of three moves [cells].
+  const auto drawn = [&](bool is_loaded, std::int32_t own_device) {
+    auto state = test::MakeState();
+    state.ships.resize(1);
+    state.ships[0].own_device = own_device;
+    state.ships[0].aboard.assign(is_loaded ? 1 : 0, 0);
+    Trail trail;
+    for (int step = 0; step < 4; ++step) {
+      state.step = std::uint64_t(step);
+      state.ships[0].x = 5 + step;
+      trail.Update(state);
+    }
+    const auto path = ByKey(StateMarkers(spec, state, &trail)).at({"path", 0});
+    double length = 0.0;
+    for (std::size_t i = 0; i + 5 < path.points.size(); i += 6) {
+      length += (path.points[i + 1].x - path.points[i].x) / spec.cell_size_m;
+    }
+    return length;
+  };
+  EXPECT_GE(drawn(true, -1), 3.0);
+  EXPECT_NEAR(drawn(false, -1), 1.8, 0.01);
+  EXPECT_GE(drawn(false, 0), 3.0) << "a self-propelled device";
+}
+
+TEST(ShipMarkers, ShowTheOutlineOfAFetchedDeviceInItsFormerCell) {
+  auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  spec.devices = state.devices;
+  spec.devices[1].x = 3;
+  spec.devices[1].y = 4;
+  const auto markers = ByKey(StateMarkers(spec, state));
+  EXPECT_EQ(markers.at({"fetched", 0}).action, Marker::DELETE) << "still deployed";
+  const Marker& outline = markers.at({"fetched", 1});
+  ASSERT_EQ(outline.action, Marker::ADD);
+  EXPECT_DOUBLE_EQ(outline.pose.position.x, 3 * spec.cell_size_m);
+  EXPECT_DOUBLE_EQ(outline.pose.position.y, 4 * spec.cell_size_m);
+  for (const auto& point : outline.points) {
+    EXPECT_GT(std::hypot(point.x, point.y), 0.1 * spec.cell_size_m) << "hollow";
+  }
+}
+
 TEST(ShipMarkers, ShowAShipNextToThePortInItsCell) {
   const auto spec = test::MakeSpec();
   auto state = test::MakeState();

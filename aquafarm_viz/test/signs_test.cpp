@@ -30,10 +30,13 @@ TEST(Signs, HaveOneLineOfTheKeyEach) {
   auto state = test::MakeState();
   state.disasters.push_back(test::MakeDisaster(1, 60.0F, 12.0F));
   Trail trail;
+  const auto aboard = state.ships.front().aboard;
   for (int x = 3; x < 9; ++x) {
     state.ships.front().x = x;
+    state.ships.front().aboard.assign(x > 5 ? 1 : 0, 0);
     trail.Update(state);
   }
+  state.ships.front().aboard = aboard;
   Overlays overlays;
   overlays.trail = &trail;
   overlays.layers = ParseLayers("trail,risk,directions,sight");
@@ -49,9 +52,9 @@ TEST(Signs, HaveOneLineOfTheKeyEach) {
     EXPECT_LE(fonts.small.Width(SignWords(sign)), (layout.panel.width - 16) / 2 - 20)
         << SignWords(sign) << " fits";
   }
-  EXPECT_EQ(words,
-            (std::set<std::string>{"at risk", "first hit", "in danger", "in port", "ship path",
-                                   "to centre", "heading", "legal move", "sensors", "fetched"}));
+  EXPECT_EQ(words, (std::set<std::string>{"at risk", "first hit", "in danger", "in port", "loaded",
+                                          "empty", "to centre", "heading", "legal move", "sensors",
+                                          "fetched"}));
   const RiskKey key{{34, -5.0, aquafarm_msgs::DisasterState::TYPHOON}};
   EXPECT_EQ(SignsOf(spec, state, overlays, outlook, key, layout).size() + 1, signs.size())
       << "the key of risks shows the pattern";
@@ -59,6 +62,31 @@ TEST(Signs, HaveOneLineOfTheKeyEach) {
   state.disasters.clear();
   state.devices.clear();
   EXPECT_TRUE(SignsOf(spec, state, overlays, {}, {}, layout).empty());
+}
+
+TEST(Paths, OfShipsWithNothingAboardAreDashed) {
+  const auto spec = test::MakeSpec();
+  const Layout layout = MakeLayout(spec.width, spec.height, kSignsSize);
+  // Counts the cells whose middle the path covers.
+  const auto covered = [&](bool is_loaded, std::int32_t own_device) {
+    auto state = test::MakeState();
+    auto& ship = state.ships.front();
+    ship.own_device = own_device;
+    ship.aboard.assign(is_loaded ? 1 : 0, 0);
+    Trail trail;
+    for (ship.x = 3; ship.x < 12; ++ship.x) trail.Update(state);
+    cv::Mat map(layout.map.size(), CV_8UC3, cv::Scalar::all(0));
+    DrawPaths(map, state, trail, layout);
+    int count = 0;
+    for (int x = 4; x < 11; ++x) {
+      const cv::Point at(layout.view.ToPixel(x, ship.y));
+      count += cv::norm(map.at<cv::Vec3b>(at)) > 50.0 ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(covered(true, -1), 7);
+  EXPECT_EQ(covered(false, -1), 0) << "gaps are at the middles of cells";
+  EXPECT_EQ(covered(false, 0), 7) << "a self-propelled device";
 }
 
 TEST(RiskSample, DiffersByKindAndRiskAndStaysInItsBox) {

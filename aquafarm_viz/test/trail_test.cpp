@@ -26,10 +26,21 @@ TEST(Trail, RemembersPlacesOldestFirst) {
   EXPECT_EQ(way->places.back().x, 7);
 }
 
+TEST(Trail, RemembersWhereADeviceWasAboard) {
+  Trail trail;
+  for (int i = 0; i < 4; ++i) {
+    auto state = At(static_cast<std::uint64_t>(i), 5 + i, 3);
+    state.ships.front().aboard.assign(i >= 2 ? 1 : 0, 0);
+    trail.Update(state);
+  }
+  EXPECT_EQ(trail.Find(0)->loaded, (std::deque<bool>{false, false, true, true}));
+}
+
 TEST(Trail, HasALimit) {
   Trail trail;
   for (int i = 0; i < 100; ++i) trail.Update(At(static_cast<std::uint64_t>(i), i % 20, 3));
   EXPECT_LE(trail.Find(0)->places.size(), Trail::kLength);
+  EXPECT_EQ(trail.Find(0)->loaded.size(), trail.Find(0)->places.size());
 }
 
 TEST(Trail, WithRoomForItIsTheWholeRoute) {

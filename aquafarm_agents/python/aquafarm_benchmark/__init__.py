@@ -11,6 +11,7 @@ losses        losses of money in evaluated episodes
 human         episodes that people played, as a row of the benchmark
 results       the tables and result files of a benchmark
 figures       Figs. 12 to 14 of the paper, and other charts of the results
+style         headlines, names of lines and colours of the figures
 route_figure  Fig. 11 of the paper, and other charts of routes
 sweep, many   the programs aquafarm_sweep and aquafarm_many
 """

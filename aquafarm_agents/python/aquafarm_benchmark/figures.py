@@ -3,34 +3,29 @@
 
 Each function draw_… creates a figure and saves it. The functions plot_… draw on given axes.
 """
-import matplotlib
+import numpy as np
+from matplotlib import ticker
 
-matplotlib.use("Agg")  # needs no display
-import numpy as np  # noqa: E402
-from matplotlib import colors, pyplot as plt, ticker  # noqa: E402
+from aquafarm_benchmark import losses, measures
+from aquafarm_benchmark.style import explain, label_axes, legible, name_ends, number, plt, save, shade
 
-from aquafarm_benchmark import losses, measures  # noqa: E402
-
-_DPI = 110
-
-
-def save(figure, path):
-    """Writes a figure as PNG and closes it."""
-    figure.savefig(path, dpi=_DPI, bbox_inches="tight")
-    plt.close(figure)
+_NBSP = "\N{NO-BREAK SPACE}"
+_REACHED = 0.9  # a learner has learnt once it reaches this fraction of the best reference
 
 
-def _axes(title, ylabel, xlabel="episode"):
-    figure, axes = plt.subplots(figsize=(8, 4.5))
-    _label(axes, title, ylabel, xlabel)
-    return figure, axes
+def _listed(contestants, ends, digits=0):
+    """Returns the learners and the last values of their lines, the highest first: "DQN 271, PPO
+    259"."""
+    learners = {one.label for one in contestants if one.name != "random"}
+    last = sorted(((y, name) for _, y, _, name in ends if name in learners), reverse=True)
+    return ", ".join(f"{name}{_NBSP}{number(y, digits)}" for y, name in last)
 
 
-def _label(axes, title, ylabel, xlabel="episode"):
-    axes.set_title(title)
-    axes.set_xlabel(xlabel)
-    axes.set_ylabel(ylabel)
-    axes.grid(alpha=0.3)
+def _shading(contestants, runs):
+    """Returns the note about lines and shades over all runs."""
+    count = _count(contestants, runs)
+    return ("One run of each learner." if count == 1 else
+            f"Median of {count} runs, shaded from the lowest to the highest run.")
 
 
 def _smooth(values):
@@ -65,76 +60,29 @@ def _scale_returns(axes):
     axes.axhspan(1.15 * low, 0.0, color=_LOGARITHMIC, linewidth=0, zorder=0)
 
 
-def _draw_returns(path, title, ylabel, plots):
+def _draw_returns(path, find, note, ylabel, plots):
     """Draws charts of returns, one below the other, on the scale of _scale_returns. Lines are named
     at their right end.
 
+    find: function of the ends of the lines of the last chart that returns the headline
+    note: how the data were computed
     plots: for each chart, from top to bottom: (function, xlabel). The function plots on axes and
-        returns the ends of the lines, as _name_ends expects them
+        returns the ends of the lines, as name_ends expects them
     """
     figure, rows = plt.subplots(len(plots), 1, figsize=(8.7, 1.0 + 4.4 * len(plots)),
                                 squeeze=False, layout="constrained")
-    figure.suptitle(title, fontsize=13)
-    for (plot, xlabel), axes in zip(plots, rows[:, 0]):
-        ends = plot(axes)
-        _label(axes, "", f"{ylabel}\n(logarithmic below 0)", xlabel)
+    charts = [(axes, plot(axes), xlabel) for (plot, xlabel), axes in zip(plots, rows[:, 0])]
+    explain(figure, find(charts[-1][1]), note)
+    for axes, ends, xlabel in charts:
+        label_axes(axes, "", f"{ylabel}\n(logarithmic below 0)", xlabel)
         _scale_returns(axes)
-        axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
-        _name_ends(axes, ends)
+        axes.yaxis.set_major_formatter(lambda value, _: number(value))
+        name_ends(axes, ends)
     save(figure, path)
 
 
 _LOGARITHMIC = "#eef1f4"  # background of the logarithmic part of a scale
 _ALIKE = 0.02  # references whose relative difference is less share one line
-_NAME_PT = 15.0  # height of a name [pt]
-_TEXT = 4.5  # min contrast ratio of names on white (WCAG 2.1, 1.4.3)
-
-
-def spread(places, gap, low=0.0, high=1.0):
-    """Moves places apart to distances of at least `gap`, each as little as possible (least
-    squares), and into [low, high] if they fit. Expects and returns them in ascending order."""
-    groups = []  # of places that touch each other: (position of the first one, number of places)
-    for i, place in enumerate(places):
-        groups.append((place - i * gap, 1))
-        while len(groups) > 1 and groups[-2][0] >= groups[-1][0]:
-            (first, n), (second, m) = groups[-2:]
-            groups[-2:] = [((n * first + m * second) / (n + m), n + m)]
-    moved = [start for start, count in groups for _ in range(count)]
-    room = high - gap * (len(places) - 1)
-    return [min(max(start, low), max(room, low)) + i * gap for i, start in enumerate(moved)]
-
-
-def _name_ends(axes, ends):
-    """Writes the name of each line to the right of its end, and connects both. Names do not
-    overlap.
-
-    ends: (x, y, colour, name) of each line
-    """
-    axes.margins(x=0.0)
-    axes.set_ylim(axes.get_ylim())  # fixes the limits
-    ends = sorted(ends, key=lambda end: end[1])
-    axes.figure.draw_without_rendering()  # sets the size of the axes
-    to_axes = axes.transData + axes.transAxes.inverted()
-    height_pt = 72.0 * axes.get_window_extent().height / axes.figure.dpi
-    places = spread([float(to_axes.transform((x, y))[1]) for x, y, _, _ in ends],
-                    _NAME_PT / height_pt, high=1.0 + 0.3 * _NAME_PT / height_pt)
-    for (x, y, colour, name), place in zip(ends, places):
-        end = float(to_axes.transform((x, y))[0])
-        axes.annotate(name, (x, y), xytext=(min(end, 1.0) + 0.04, place), textcoords=axes.transAxes,
-                      color=_legible(colour), va="center", fontsize=10, annotation_clip=False,
-                      bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
-                      arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8,
-                                  "relpos": (0.0, 0.5), "shrinkA": 1.0, "shrinkB": 0.0})
-
-
-def _legible(colour):
-    """Returns a colour, darkened until it is legible on white."""
-    rgb = np.array(colors.to_rgb(colour))
-    while True:
-        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
-        if 1.05 / (float(linear @ (0.2126, 0.7152, 0.0722)) + 0.05) >= _TEXT:
-            return tuple(rgb)
-        rgb = 0.95 * rgb
 
 
 def _plot_references(axes, references, end, digits=0):
@@ -160,10 +108,6 @@ def _count(contestants, runs):
     """Returns the number of runs that most contestants have."""
     counts = [len(runs[one.name]) for one in contestants]
     return max(set(counts), key=counts.count)
-
-
-def _runs_text(count):
-    return f"{count} {'run' if count == 1 else 'runs'}"
 
 
 def _plot_one_run(axes, one, curve, x):
@@ -198,19 +142,42 @@ def plot_rewards_by_episodes(axes, contestants, runs, references):
 def draw_rewards(path, contestants, runs, references):
     """Draws Fig. 12a, and below it the same data by episodes."""
     data = (contestants, runs, references)
-    _draw_returns(path, f"Return of the first run of each learner (Fig. 12a): mean of "
-                  f"{measures.WINDOW} episodes", "return of an episode", [
-                      (lambda axes: plot_rewards_by_steps(axes, *data),
-                       "time steps so far (logarithmic)"),
-                      (lambda axes: plot_rewards_by_episodes(axes, *data), "episode")])
+    _draw_returns(
+        path, lambda ends: _learning_times(contestants, runs, references) or
+        f"Return at the end of the training: {_listed(contestants, ends)}",
+        f"Fig. 12a: the first run of each learner, means of {measures.WINDOW} episodes.",
+        "return of an episode", [
+            (lambda axes: plot_rewards_by_steps(axes, *data), "time steps so far (logarithmic)"),
+            (lambda axes: plot_rewards_by_episodes(axes, *data), "episode")])
+
+
+def _learning_times(contestants, runs, references):
+    """Returns the headline of Fig. 12a: after how many steps the first run of each learner reaches
+    _REACHED of the best reference. "" if there is no positive reference."""
+    best = max(references, key=references.get, default=None)
+    if best is None or references[best] <= 0.0:
+        return ""
+    found = []
+    for one in contestants:
+        curve = runs[one.name][0]["curve"]
+        episodes, means = _smooth(curve["return"])
+        reached = means >= _REACHED * references[best]
+        steps = np.cumsum(curve["steps"])[episodes[np.argmax(reached)] - 1] if reached.any() else np.inf
+        if one.name != "random":
+            found.append((steps, one.label))
+    texts = [f"{name}{_NBSP}{float(f'{steps:.2g}'):,.0f}" if steps < np.inf else
+             f"{name}{_NBSP}never" for steps, name in sorted(found)]
+    return (f"Time steps until {100 * _REACHED:.0f} % of the return of the {best}: "
+            f"{', '.join(texts)}")
 
 
 def draw_average_rewards(path, contestants, runs, references):
     """Draws Fig. 12b: the mean return of all episodes so far, over all runs."""
-    _draw_returns(path, f"Mean return of all episodes so far (Fig. 12b):\n"
-                  f"median of {_runs_text(_count(contestants, runs))}, shaded from the lowest to the "
-                  "highest", "mean return so far", [
-        (lambda axes: plot_average_rewards(axes, contestants, runs, references), "episode")])
+    _draw_returns(
+        path, lambda ends: f"Mean return of all episodes: {_listed(contestants, ends)}",
+        f"Fig. 12b: mean return of all episodes so far. {_shading(contestants, runs)}",
+        "mean return so far",
+        [(lambda axes: plot_average_rewards(axes, contestants, runs, references), "episode")])
 
 
 def plot_average_rewards(axes, contestants, runs, references):
@@ -225,22 +192,45 @@ def plot_average_rewards(axes, contestants, runs, references):
 
 
 def draw_square_error(path, contestants, runs):
-    """Draws Fig. 12c: the mean square error of the learners' value estimates, over all runs."""
-    figure, axes = _axes("Mean square error of the value estimates (Fig. 12c):\nmedian of "
-                         f"{_runs_text(_count(contestants, runs))}, shaded from the lowest to the "
-                         "highest",
-                         f"{measures.WINDOW}-episode mean [reward²]\n(logarithmic scale)")
-    plot_square_error(axes, contestants, runs)
-    axes.text(0.0, -0.17, "The error is relative to each learner's own targets and cannot be compared "
-              "between learners.\nA low error means consistent estimates; a policy that fails can have "
-              "one too.",
-              transform=axes.transAxes, fontsize=9, va="top")
+    """Draws Fig. 12c: the mean square error of the value estimates, a chart for each learner, over
+    all runs. Omits contestants without updates, such as RANDOM."""
+    learners = [one for one in contestants
+                if np.isfinite(_curves(runs[one.name], "loss")).any()]
+    columns = min(3, max(1, len(learners)))
+    rows = max(1, -(-len(learners) // columns))
+    figure, all_axes = plt.subplots(rows, columns, figsize=(3.3 * columns, 1.2 + 2.5 * rows),
+                                    squeeze=False, sharex=True, layout="constrained")
+    trends = {"falls": [], "stays": [], "rises": []}
+    for axes, one in zip(all_axes.flat, learners):
+        ends = plot_square_error(axes, [one], runs)
+        label_axes(axes, "", "", "episode")
+        axes.tick_params(labelbottom=True)
+        if ends:
+            first, last = axes.lines[0].get_ydata()[[0, -1]]
+            axes.set_title(f"{one.label}: {_significant(first)} → {_significant(last)}", fontsize=11,
+                           color=legible(one.colour))
+            trend = "falls" if last < 0.8 * first else "rises" if last > 1.25 * first else "stays"
+            trends[trend].append(one.label)
+    for axes in all_axes.flat[len(learners):]:
+        axes.axis("off")
+    for axes in all_axes[:, 0]:
+        axes.set_ylabel("error [reward²]")
+    found = "; ".join(f"{trend} for {', '.join(names)}" for trend, names in trends.items() if names)
+    explain(figure, f"The error of the value estimates {found or 'is unknown'}",
+             f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic; the titles "
+             f"give the first and the last value. {_shading(contestants, runs)} The error is relative to each learner's own targets and "
+             "cannot be compared between learners. A policy that fails can have a low error too.")
     save(figure, path)
+
+
+def _significant(value):
+    return f"{value:,.0f}" if value >= 100.0 else f"{value:.2g}"
 
 
 def plot_square_error(axes, contestants, runs):
     """Plots the 50-episode mean of the squared TD error: the median of the runs, shaded between
-    their lowest and highest value. Omits contestants without updates, such as RANDOM."""
+    their lowest and highest value. Omits contestants without updates, such as RANDOM. Returns the
+    ends of the lines."""
     ends = []
     for one in contestants:
         errors = _curves(runs[one.name], "loss")
@@ -255,13 +245,13 @@ def plot_square_error(axes, contestants, runs):
         low, median, high = np.exp(np.quantile(logs, (0.0, 0.5, 1.0), axis=0))
         axes.plot(episodes[known], median, **_line_style(one), linewidth=2.2, label=one.label)
         if len(smooth) > 1:
-            _shade(axes, episodes[known], low, high, one.colour)
+            shade(axes, episodes[known], low, high, one.colour)
         ends.append((episodes[known][-1], float(median[-1]), one.colour, one.label))
     axes.set_yscale("log")
     axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.6g}")
-    if ends:
-        _name_ends(axes, ends)
+    axes.yaxis.set_minor_formatter(ticker.NullFormatter())
+    return ends
 
 
 def draw_mean_score(path, contestants, runs, references):
@@ -273,19 +263,18 @@ def draw_mean_score(path, contestants, runs, references):
     panels = [("a", [one for one in contestants if one.algorithm_name == "lstm_dqn"]),
               ("b", [one for one in contestants if one.algorithm_name == "sarsa"])]
     panels = [(letter, panel) for letter, panel in panels if panel]
-    figure = plt.figure(figsize=(9, 8 if panels else 4.5), layout="constrained")
-    figure.suptitle(f"Return per step, {measures.WINDOW}-episode means: median of "
-                    f"{_runs_text(_count(contestants, runs))},\nshaded from the lowest to the highest",
-                    fontsize=13)
+    figure = plt.figure(figsize=(9, 8.4 if panels else 4.9), layout="constrained")
     places = [[letter for letter, _ in panels], ["c"] * len(panels)] if panels else [["c"]]
     all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)
     for letter, panel in [("c", contestants), *panels]:
         whose = panel[0].label if len(panel) == 1 else "All learners"
-        _label(all_axes[letter], f"{whose} (Fig. 13{letter})", "return per step")
+        label_axes(all_axes[letter], f"{whose} (Fig. 13{letter})", "return per step")
         limits = None if letter == "c" else all_axes["c"].get_ylim()
         ends = plot_mean_score(all_axes[letter], panel, runs, references, limits)
         if letter == "c":  # in the other panels the title names the line
-            _name_ends(all_axes[letter], ends)
+            explain(figure, f"Return per step at the end: {_listed(contestants, ends, digits=1)}",
+                     f"Fig. 13: means of {measures.WINDOW} episodes. {_shading(contestants, runs)}")
+            name_ends(all_axes[letter], ends)
     save(figure, path)
 
 
@@ -316,9 +305,9 @@ def draw_evaluation(path, contestants, rows):
     above, only the part above 0; below, the whole range."""
     figure, (zoom, whole) = plt.subplots(2, 1, figsize=(8, 6), sharex=True, layout="constrained",
                                          height_ratios=[3, 2])
-    _label(zoom, "Return on episodes never trained on", "return of an episode\nenlarged: above 0",
+    label_axes(zoom, "Return on episodes never trained on", "return of an episode\nenlarged: above 0",
            "")
-    _label(whole, "", "whole range", "")
+    label_axes(whole, "", "whole range", "")
     for axes in (zoom, whole):
         plot_evaluation(axes, contestants, rows)
     if zoom.get_ylim()[1] > 0.0:
@@ -348,9 +337,9 @@ def draw_losses(path, contestants, rows):
     device."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(13, 4.5), layout="constrained")
     unit = next(row["money"]["currency"] for row in rows if row["money"])
-    _label(left, "Exceedance of losses", "probability of a larger loss", f"loss x [{unit}]")
+    label_axes(left, "Exceedance of losses", "probability of a larger loss", f"loss x [{unit}]")
     plot_exceedance(left, contestants, rows)
-    _label(right, "Mean loss by kind of device", f"loss per episode [{unit}]", "")
+    label_axes(right, "Mean loss by kind of device", f"loss per episode [{unit}]", "")
     plot_loss_by_kind(right, contestants, rows)
     save(figure, path)
 
@@ -393,10 +382,11 @@ def plot_loss_by_kind(axes, contestants, rows):
 
 def draw_repeated(path, contestants, runs, references):
     """Draws Fig. 14: the 50-episode mean return over all runs."""
-    _draw_returns(path, f"Repeated trainings (Fig. 14): median of "
-                  f"{_runs_text(_count(contestants, runs))},\nshaded from the lowest to the highest",
-                  f"{measures.WINDOW}-episode mean return", [
-        (lambda axes: plot_repeated(axes, contestants, runs, references), "episode")])
+    _draw_returns(
+        path, lambda ends: f"Return after the training: {_listed(contestants, ends)}",
+        f"Fig. 14: repeated trainings, means of {measures.WINDOW} episodes. "
+        f"{_shading(contestants, runs)}", f"{measures.WINDOW}-episode mean return",
+        [(lambda axes: plot_repeated(axes, contestants, runs, references), "episode")])
 
 
 def plot_repeated(axes, contestants, runs, references):
@@ -410,18 +400,12 @@ def plot_repeated(axes, contestants, runs, references):
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
-def _shade(axes, x, low, high, colour):
-    """Shades a range. Its thin edges stay visible where ranges overlap."""
-    axes.fill_between(x, low, high, facecolor=(*colors.to_rgb(colour), 0.16),
-                      edgecolor=(*colors.to_rgb(colour), 0.45), linewidth=0.5)
-
-
 def _plot_shaded(axes, episodes, values, one, label):
     """Plots the median of values [runs, episodes], shaded between their lowest and highest value.
     Returns the end of the line."""
     median = np.median(values, axis=0)
     axes.plot(episodes, median, **_line_style(one), label=label)
-    _shade(axes, episodes, values.min(axis=0), values.max(axis=0), one.colour)
+    shade(axes, episodes, values.min(axis=0), values.max(axis=0), one.colour)
     return episodes[-1], median[-1], one.colour, label
 
 

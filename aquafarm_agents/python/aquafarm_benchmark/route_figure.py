@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Polygon, Rectangle
 
-from aquafarm_benchmark.figures import plt, save
+from aquafarm_benchmark.style import plt, save
 
 _DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0),
                "north_west": (-1, 1), "north_east": (1, 1), "south_west": (-1, -1),
@@ -89,7 +89,7 @@ def draw_unfinished(path, routes, title):
         plot_unfinished(axes, name, route, size)
     for empty in all_axes[len(routes):]:
         empty.axis("off")
-    figure.suptitle(title, fontsize=13)
+    figure.suptitle(title, fontsize=13.5, weight="bold", x=0.01, ha="left")
     symbols = _symbols(charts)
     all_axes[-1].legend(symbols.values(), symbols.keys(), loc="center", frameon=False, fontsize=11,
                         labelspacing=0.9)
@@ -128,7 +128,7 @@ def plot_unfinished(axes, name, route, size):
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
                    f"return {result}\n"
                    f"{route['reason'].replace('_', ' ')} at step {end}, "
-                   f"last stop at {end - len(last_leg) + 1}", fontsize=10.5)
+                   f"last stop at {end - len(last_leg) + 1}", fontsize=10.5, loc="left")
 
 
 def _symbols(charts):

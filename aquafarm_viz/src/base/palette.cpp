@@ -36,13 +36,13 @@ Rgb Mix(Rgb from, Rgb to, double share) {
 Rgb DeviceColor(std::uint8_t kind) {
   switch (kind) {
     case DeviceState::TEMPORARY_BREEDING:
-      return {0xff, 0xa9, 0x4d};
+      return {0xe8, 0xdc, 0xc8};
     case DeviceState::MONITORING:
-      return {0xff, 0xe0, 0x3d};
+      return {0xa8, 0xe6, 0xa0};
     case DeviceState::BREEDING_RELEASE:
-      return {0xf7, 0x83, 0xc9};
+      return {0xc4, 0xc4, 0xff};
     case DeviceState::DEEP_WATER_BREEDING:
-      return {0xb5, 0x9c, 0xff};
+      return {0xf2, 0xf6, 0xfa};
     default:
       return kUnknown;
   }
@@ -121,7 +121,8 @@ Rgb ValueColor(double share) {
     cv::applyColorMap(ramp, colors, cv::COLORMAP_VIRIDIS);
     return colors;
   }();
-  const auto i = static_cast<int>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
+  constexpr double kLast = 0.8 * 255.0;
+  const auto i = static_cast<int>(std::lround(kLast * std::clamp(share, 0.0, 1.0)));
   const cv::Vec3b bgr = kColors(0, i);
   return {bgr[2], bgr[1], bgr[0]};
 }

@@ -113,7 +113,7 @@ SignPlace PlaceSign(const DisasterState& disaster, const Layout& layout) {
 }
 
 std::vector<SignPlace> PlaceSigns(const FarmState& state, const Layout& layout) {
-  const double apart = 26.0 * layout.unit;
+  const double apart = 42.0 * layout.unit;  // space for labels of two lines
   const cv::Rect2d inside({0.0, 0.0}, cv::Size2d(layout.map.size()));
   const cv::Point2d middle(layout.map.width / 2.0, layout.map.height / 2.0);
   std::vector<SignPlace> signs;
@@ -125,16 +125,23 @@ std::vector<SignPlace> PlaceSigns(const FarmState& state, const Layout& layout) 
     const cv::Point2d from_middle = sign.at - middle;
     // True if the pointer is at the left or right border.
     const bool is_aside = std::abs(from_middle.x) * middle.y > std::abs(from_middle.y) * middle.x;
-    const cv::Point2d along = is_aside ? cv::Point2d(0.0, apart) : cv::Point2d(apart, 0.0);
-    for (const double moved : {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0}) {
-      const cv::Point2d at = sign.at + moved * along;
+    std::vector<cv::Point2d> places{sign.at};  // also those next to another pointer
+    for (const cv::Point2d other : pointers) {
+      for (const double along : {apart, -apart}) {
+        places.push_back(is_aside ? cv::Point2d(sign.at.x, other.y + along)
+                                  : cv::Point2d(other.x + along, sign.at.y));
+      }
+    }
+    std::stable_sort(places.begin(), places.end(), [&sign](cv::Point2d a, cv::Point2d b) {
+      return cv::norm(a - sign.at) < cv::norm(b - sign.at);
+    });
+    const auto free = std::find_if(places.begin(), places.end(), [&](cv::Point2d at) {
       const bool is_near = std::any_of(pointers.begin(), pointers.end(), [&](cv::Point2d other) {
         return cv::norm(other - at) < 0.99 * apart;
       });
-      if (is_near || (moved != 0.0 && !inside.contains(at))) continue;
-      signs.back().at = signs.back().arrow_to = at;
-      break;
-    }
+      return !is_near && (at == sign.at || inside.contains(at));
+    });
+    if (free != places.end()) signs.back().at = signs.back().arrow_to = *free;
     pointers.push_back(signs.back().at);
   }
   return signs;

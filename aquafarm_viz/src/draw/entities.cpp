@@ -134,7 +134,14 @@ constexpr double kBetweenHeads = 50.0;  // min distance of two arrowheads on a p
 // @param age  0: now, 1: the oldest part
 Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
   const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.6) : style.good;
-  return Mix(fresh, style.sea_south, 0.55 * age);
+  return Mix(fresh, style.sea_south, 0.4 * age);
+}
+
+// Draws one move of a path: a line, or a shorter line that is a dash of the path.
+void DrawMoved(cv::Mat& map, cv::Point2d from, cv::Point2d to, bool is_dashed,
+               const cv::Scalar& color, const Layout& layout) {
+  const cv::Point2d gap = (is_dashed ? 0.22 : 0.0) * (to - from);
+  DrawLine(map, from + gap, to - gap, color, layout.Px(is_dashed ? 1.8 : 3.2));
 }
 
 // Draws an arrowhead between two points of a path, in the direction of the motion.
@@ -148,14 +155,12 @@ void DrawDirection(cv::Mat& map, cv::Point2d from, cv::Point2d to, const cv::Sca
 
 }  // namespace
 
-void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, const FarmState& state,
-                    const Layout& layout) {
-  constexpr int kParts = 12;
-  for (int i = 0; i < kParts; ++i) {
-    const auto at = [&](int part) { return from + (to - from) * (double(part) / kParts); };
-    const Rgb color = PathColor(state, 0, 1.0 - (i + 0.5) / kParts, *layout.style);
-    DrawLine(image, at(i), at(i + 1), Bgr(color), layout.Px(2.5));
-  }
+void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, bool is_dashed,
+                    const FarmState& state, const Layout& layout) {
+  const cv::Scalar color = Bgr(PathColor(state, 0, 0.3, *layout.style));
+  const cv::Point2d middle = (from + to) * 0.5;
+  DrawMoved(image, from, middle, is_dashed, color, layout);
+  DrawMoved(image, middle, to, is_dashed, color, layout);
 }
 
 void DrawPaths(cv::Mat& map, const FarmState& state, const Trail& paths, const Layout& layout) {
@@ -171,7 +176,7 @@ void DrawPaths(cv::Mat& map, const FarmState& state, const Trail& paths, const L
       const cv::Scalar color = Bgr(PathColor(state, ship.id, age, *layout.style));
       const cv::Point2d start = layout.view.ToPixel(from.x, from.y);
       const cv::Point2d end = layout.view.ToPixel(to.x, to.y);
-      DrawLine(map, start, end, color, layout.Px(2.5));
+      DrawMoved(map, start, end, ship.own_device < 0 && !way->loaded[i], color, layout);
       since_head_px += cv::norm(end - start);
       if (since_head_px < kBetweenHeads * layout.unit) continue;
       DrawDirection(map, start, end, color, layout);
@@ -221,7 +226,7 @@ void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, cons
 void DrawFetched(cv::Mat& image, std::uint8_t kind, cv::Point2d at, double radius_px,
                  const Layout& layout) {
   StrokeShape(image, DeviceOutline(kind), {at, radius_px, 0.0},
-              Bgr(Mix(DeviceColor(kind), layout.style->sea_south, 0.3)), 1);
+              Bgr(Mix(DeviceColor(kind), layout.style->sea_south, 0.3)), layout.Px(1.2));
 }
 
 namespace {

@@ -161,6 +161,22 @@ std::string FittingRingName(std::int32_t wind_kt, int width_px, const Font& font
   return full.substr(0, space) + full.substr(knots);
 }
 
+namespace {
+
+// Adds the signs of the moves of a trail.
+void AddPathSigns(std::set<Sign>& signs, const FarmState& state, const Trail& trail) {
+  for (const auto& ship : state.ships) {
+    const ShipTrail* way = ship.visible ? trail.Find(ship.id) : nullptr;
+    for (std::size_t i = 1; way != nullptr && i < way->loaded.size(); ++i) {
+      signs.insert(ship.own_device >= 0 ? Sign::kPath
+                   : way->loaded[i]     ? Sign::kLoadedPath
+                                        : Sign::kEmptyPath);
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Overlays& overlays,
                           const Outlook& outlook, const RiskKey& key, const Layout& layout) {
   std::vector<Sign> signs;
@@ -185,15 +201,10 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
                            !device.self_propelled;
                   }),
       Sign::kFetched);
-  const auto has_way = [&state](const Trail* trail) {
-    return trail != nullptr &&
-           std::any_of(state.ships.begin(), state.ships.end(), [trail](const auto& ship) {
-             const ShipTrail* way = ship.visible ? trail->Find(ship.id) : nullptr;
-             return way != nullptr && way->places.size() > 1;
-           });
-  };
-  add((layers.route && has_way(overlays.route)) || (layers.trail && has_way(overlays.trail)),
-      Sign::kPath);
+  std::set<Sign> paths;
+  if (layers.route && overlays.route != nullptr) AddPathSigns(paths, state, *overlays.route);
+  if (layers.trail && overlays.trail != nullptr) AddPathSigns(paths, state, *overlays.trail);
+  signs.insert(signs.end(), paths.begin(), paths.end());
   bool has_heading = false;
   bool has_pointer = false;
   for (const auto& disaster : state.disasters) {
@@ -222,7 +233,11 @@ const char* SignWords(Sign sign) {
     case Sign::kFetched:
       return "fetched";
     case Sign::kPath:
-      return "ship path";
+      return "path";
+    case Sign::kLoadedPath:
+      return "loaded";
+    case Sign::kEmptyPath:
+      return "empty";
     case Sign::kPointer:
       return "to centre";
     case Sign::kHeading:
@@ -274,7 +289,9 @@ void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
       DrawFetched(image, 0, at, 6.0 * unit, layout);
       break;
     case Sign::kPath:
-      DrawPathSample(image, at - half, at + half, state, layout);
+    case Sign::kLoadedPath:
+    case Sign::kEmptyPath:
+      DrawPathSample(image, at - half, at + half, sign == Sign::kEmptyPath, state, layout);
       break;
     case Sign::kPointer: {
       const Pose2 placing{at, 6.0 * unit, 225.0};

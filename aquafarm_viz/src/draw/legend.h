@@ -48,7 +48,9 @@ enum class Sign {
   kFirstReached,  ///< two rings around a device that is the first in danger
   kDelivered,     ///< small device at a port
   kFetched,       ///< outline in the former cell of a fetched device
-  kPath,          ///< path of a ship
+  kPath,          ///< path of a self-propelled device
+  kLoadedPath,    ///< path of a rescue ship with a device aboard
+  kEmptyPath,     ///< path of a rescue ship with nothing aboard
   kHeading,       ///< arrow along the motion of a disaster
   kPointer,       ///< triangle towards a centre outside the map
   kDirection,     ///< arrow of a legal move at a port

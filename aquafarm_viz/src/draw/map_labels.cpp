@@ -75,9 +75,9 @@ void DrawPlate(cv::Mat& map, cv::Rect plate, const std::vector<std::string>& lin
 
 constexpr double kMaxLine = 200.0;  // max width of a line of a label [design units]
 
-// Breaks a text after commas into lines of at most kMaxLine. Only a part without a comma may be
-// longer.
-std::vector<std::string> BrokenAtCommas(const std::string& text, const Layout& layout,
+// Breaks a text after commas into lines of at most `width` design units. Only a part without a
+// comma may be longer.
+std::vector<std::string> BrokenAtCommas(const std::string& text, double width, const Layout& layout,
                                         const Fonts& fonts) {
   std::vector<std::string> lines{""};
   for (std::size_t from = 0; from < text.size();) {
@@ -85,7 +85,7 @@ std::vector<std::string> BrokenAtCommas(const std::string& text, const Layout& l
     const std::size_t end = comma == std::string::npos ? text.size() : comma + 1;
     const std::string part = text.substr(from, end - from);
     const std::string longer = lines.back() + (lines.back().empty() ? "" : " ") + part;
-    if (lines.back().empty() || fonts.bold.Width(longer) <= layout.Px(kMaxLine)) {
+    if (lines.back().empty() || fonts.bold.Width(longer) <= layout.Px(width)) {
       lines.back() = longer;
     } else {
       lines.push_back(part);
@@ -184,7 +184,7 @@ std::set<std::int32_t> LabelDanger(cv::Mat& map, const FarmSpec& spec, const Far
     const std::string danger = DangerText(spec, one);
     if (device == nullptr || danger.empty()) continue;
     if (tries++ == kMaxDangerLabels) break;
-    const auto lines = BrokenAtCommas(DeviceLabel(one.id) + ": " + danger, layout, fonts);
+    const auto lines = BrokenAtCommas(DeviceLabel(one.id) + ": " + danger, kMaxLine, layout, fonts);
     const cv::Point2d at = layout.view.ToPixel(device->x, device->y);
     const cv::Size size = PlateSize(lines, layout, fonts);
     auto plate = space.Take(Cover::kNothing, size, at, 110.0 * layout.unit);
@@ -314,15 +314,27 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     const DisasterState& disaster = state.disasters[i];
     const SignPlace& sign = signs[i];
     if (!IsDrawn(disaster) || sign.is_inside) continue;
-    auto lines = BrokenAtCommas(CentreText(spec, disaster, courses[i]), layout, fonts);
-    if (layout.panel.empty()) lines.push_back(MotionNow(spec, disaster));
-    const cv::Size size = PlateSize(lines, layout, fonts);
-    // The label is next to the pointer if possible, because labels of other pointers may be above
-    // and below it.
-    const double aside = size.width / 2.0 + 14.0 * layout.unit;
-    const cv::Point2d place_aside(
-        sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside, sign.at.y);
-    auto place = space.Take(Cover::kNothing, size, place_aside, 24.0 * layout.unit);
+    // The label is next to the pointer if possible, if necessary with shorter lines, because labels
+    // of other pointers may be above and below it.
+    std::vector<std::string> lines;
+    cv::Size size;
+    cv::Point2d place_aside;
+    std::optional<cv::Rect> place;
+    const auto break_lines = [&](double width) {
+      lines = BrokenAtCommas(CentreText(spec, disaster, courses[i]), width, layout, fonts);
+      if (layout.panel.empty()) lines.push_back(MotionNow(spec, disaster));
+      size = PlateSize(lines, layout, fonts);
+      const double aside = size.width / 2.0 + 14.0 * layout.unit;
+      place_aside = {sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside, sign.at.y};
+    };
+    for (const Cover cover : {Cover::kNothing, Cover::kPaths}) {
+      for (const double width : {kMaxLine, 0.0}) {
+        if (place) break;
+        break_lines(width);
+        place = space.Take(cover, size, place_aside, 24.0 * layout.unit);
+      }
+    }
+    if (!place) break_lines(kMaxLine);
     if (!place) place = TakeInSight(space, Cover::kNothing, size, sign.at, 0.8 * size.width);
     if (!place) place = TakeInSight(space, Cover::kPaths, size, sign.at, 0.8 * size.width);
     if (!place) place = TakeInSight(space, Cover::kNothing, size, sign.at, 1.2 * size.width);

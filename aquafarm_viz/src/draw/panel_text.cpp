@@ -385,15 +385,36 @@ std::vector<std::string> ChoiceLines(const FarmState& state, const Overlays& ove
   return lines;
 }
 
+// Returns whether the map shows a pickup or a drop-off as the best move of a cell: symbols of ports
+// and devices cover most of them.
+bool HasPickupSigns(const FarmSpec& spec, const FarmState& state, const Values& values, int every) {
+  const auto is_covered = [&](cv::Point cell) {
+    return std::any_of(
+               spec.ports.begin(), spec.ports.end(),
+               [&](const auto& port) { return port.cell.x == cell.x && port.cell.y == cell.y; }) ||
+           std::any_of(state.devices.begin(), state.devices.end(), [&](const auto& device) {
+             return device.status == DeviceState::DEPLOYED && device.x == cell.x &&
+                    device.y == cell.y;
+           });
+  };
+  const auto shown = ShownActions(values, every);
+  return std::any_of(shown.begin(), shown.end(), [&](cv::Point cell) {
+    return values.actions[values.Index(cell.x, cell.y)] >= 8 && !is_covered(cell);
+  });
+}
+
 // Explains the colours and symbols of a policy, if there is a policy and space for the explanation.
 // Returns whether it was drawn.
-bool ListPolicy(Panel& panel, const FarmState& state, const Overlays& overlays,
-                const Values* values, const Layout& layout) {
+bool ListPolicy(Panel& panel, const FarmSpec& spec, const FarmState& state,
+                const Overlays& overlays, const Values* values, const Layout& layout) {
   const std::vector<std::string> choices = ChoiceLines(state, overlays);
   const bool has_scale =
       overlays.layers.values && values != nullptr && values->highest > values->lowest;
   const bool has_moves = overlays.layers.moves && values != nullptr;
-  const int rows = (has_scale ? 3 : 0) + (has_moves ? 2 : 0) + int(choices.size());
+  const int every = MoveSpacing(layout);
+  const bool has_signs = has_moves && HasPickupSigns(spec, state, *values, every);
+  const int rows =
+      (has_scale ? 3 : 0) + (has_moves ? 1 : 0) + (has_signs ? 1 : 0) + int(choices.size());
   if (rows == 0 || panel.RowsLeft() < rows + 2) return false;
   const bool has_step = values != nullptr && values->step;
   panel.Heading("POLICY " + PolicyName(overlays), has_step ? "step " + Count(*values->step) : "");
@@ -406,9 +427,10 @@ bool ListPolicy(Panel& panel, const FarmState& state, const Overlays& overlays,
   }
   if (has_moves) {
     DrawMove(panel.image(), panel.SymbolAt(), 3, 13.0 * layout.unit, layout);
-    const int every = MoveSpacing(layout);
     panel.Item(every == 1 ? "best move" : "best move, every " + std::to_string(every) + " cells",
                "", layout.style->words);
+  }
+  if (has_signs) {
     DrawMove(panel.image(), panel.SymbolAt(), 8, 15.0 * layout.unit, layout);
     DrawMove(panel.image(), panel.SecondSymbolAt(), 9, 15.0 * layout.unit, layout);
     panel.Pair("pickup", "drop-off");
@@ -466,7 +488,7 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   ListDevices(panel, spec, state, trail, forecasts.outlook, layout);
   ListDisasters(panel, spec, state, forecasts.courses, layout, std::max(3, panel.RowsLeft() - 7));
   ListShips(panel, state, layout);
-  const bool has_policy = ListPolicy(panel, state, overlays, values, layout);
+  const bool has_policy = ListPolicy(panel, spec, state, overlays, values, layout);
   DrawRegion(image, panel.Room(), spec, state, forecasts.courses, layout, fonts);
   return has_policy;
 }

@@ -12,13 +12,21 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr double kValueShare = 0.62;    // opacity of V_π over the sea
+constexpr double kValueShare = 0.82;    // opacity of V_π over the sea
 constexpr double kArrowSpacing = 34.0;  // min distance of two arrows [design units]
 constexpr double kLargestArrow = 19.0;  // max size of a symbol [design units]
 
 cv::Mat Colors(const cv::Mat& shares) {
+  static const cv::Mat3b kTable = [] {
+    cv::Mat3b table(256, 1);
+    for (int i = 0; i < table.rows; ++i) {
+      const Rgb color = ValueColor(i / 255.0);
+      table(i, 0) = {color.b, color.g, color.r};
+    }
+    return table;
+  }();
   cv::Mat colors;
-  cv::applyColorMap(shares, colors, cv::COLORMAP_VIRIDIS);
+  cv::applyColorMap(shares, colors, kTable);
   return colors;
 }
 
@@ -90,7 +98,7 @@ void DrawValueScale(cv::Mat& map, const Values& values, FreeSpace& space, const 
 
 void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
               const Layout& layout) {
-  const int thickness = size_px > 40.0 ? 2 : 1;
+  const int thickness = std::max(1, cvRound(size_px / 17.0));
   if (const int bearing = MoveBearingDeg(action); bearing >= 0) {
     DrawArrow(map, at, bearing, size_px, Bgr(kInk), thickness + 2);
     DrawArrow(map, at, bearing, size_px, Bgr(kPaper), thickness);

@@ -31,7 +31,7 @@ using visualization_msgs::MarkerArray;
 
 constexpr std::size_t kMaxLabels = 40;  // more labels would not be read, but need time
 constexpr double kRim = 0.2;            // min distance of a label from the edge of the farm [cells]
-constexpr double kMaxLine = 1.05;       // max width of a line above the farm [longer sides of it]
+constexpr double kMaxLine = 0.98;       // max width of a line above the farm [longer sides of it]
 constexpr Rgb kAlarm{0xff, 0xb4, 0x54};
 
 // A rectangle that a label covers [cells].
@@ -298,9 +298,8 @@ void AddLines(MarkerArray& array, const Maker& maker, const FarmSpec& spec, cons
   const double side_m = std::max(spec.width, spec.height) * maker.cell_m();
   const std::string lines = InLines(text, kMaxLine * side_m / maker.line_m());
   const auto more = double(std::count(lines.begin(), lines.end(), '\n'));
-  array.markers.push_back(maker.Text(space, 0, (spec.width - 1) / 2.0,
-                                     maker.LineAbove(kLineOfClock + side * (1.0 + 0.5 * more)),
-                                     lines, maker.line_m(), color));
+  array.markers.push_back(
+      maker.Line(space, kLineOfClock + side * (1.0 + 0.5 * more), lines, color));
 }
 
 // Returns the strength, the position and the motion of the disasters outside the farm: one line for

@@ -187,7 +187,7 @@ void AddSignLegend(MarkerArray& array, const FarmSpec& spec) {
   row.Pointer();
   row.Text("to the centre");
   row.Text("pattern: at risk");
-  row.Text("north is up");
+  row.Text("dashed: empty ship");
 }
 
 void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& values) {

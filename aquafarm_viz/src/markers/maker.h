@@ -122,6 +122,11 @@ class Maker {
     return marker;
   }
 
+  /// Returns a text above the farm that starts above its western edge.
+  /// @param line  LineAbove of its middle
+  visualization_msgs::Marker Line(const char* space, double line, const std::string& text,
+                                  Rgb color) const;
+
   /// Returns a flat shape as triangles around its origin. Each line from the origin to a
   /// corner must lie inside the shape, as in a convex shape.
   /// @param size_m  length of one unit of the outline [m]
@@ -150,6 +155,11 @@ class Maker {
   int height_;
   std_msgs::Header header_;
 };
+
+/// Adds the triangles of an outline, a narrow band around the position of the marker.
+/// @param size_m  length of one unit of the outline [m]
+void AddOutline(visualization_msgs::Marker& marker, const std::vector<cv::Point2f>& outline,
+                double size_m);
 
 /// Returns the orientation of a marker that points along a bearing. Bearings are clockwise from
 /// north, but the yaw of a marker is counter-clockwise.

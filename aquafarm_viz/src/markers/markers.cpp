@@ -177,6 +177,27 @@ void AddHealth(MarkerArray& array, const Maker& maker, const DeviceState& device
   array.markers.push_back(bar);
 }
 
+// Adds the outlines of fetched devices in their former cells.
+void AddFetched(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
+                const FarmState& state) {
+  std::set<std::int32_t> fetched;
+  for (const auto& device : state.devices) {
+    if (device.status != DeviceState::DEPLOYED) fetched.insert(device.id);
+  }
+  for (const auto& device : spec.devices) {
+    if (device.self_propelled || !InGrid(spec, device.x, device.y)) continue;
+    if (fetched.count(device.id) == 0) {
+      array.markers.push_back(maker.Delete("fetched", device.id));
+      continue;
+    }
+    Marker outline =
+        maker.Make("fetched", device.id, Marker::TRIANGLE_LIST, kRockLayer, device.x, device.y);
+    outline.color = Color(Mix(DeviceColor(device.kind), kSeaDeep, 0.2));
+    AddOutline(outline, DeviceOutline(device.kind), 0.42 * maker.thing_m());
+    array.markers.push_back(outline);
+  }
+}
+
 void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                 const FarmState& state) {
   std::map<std::pair<int, int>, int> delivered;
@@ -263,8 +284,9 @@ void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, con
     if (length == 0.0 || Trail::IsGap(way->places[i - 1], way->places[i])) continue;
     const cv::Point2d along = (to - from) * (half_m / length);  // overlaps the next rectangle
     const cv::Point2d side(-along.y, along.x);
-    const cv::Point2d a = from - along;
-    const cv::Point2d b = to + along;
+    const bool is_dash = ship.own_device < 0 && !way->loaded[i];
+    const cv::Point2d a = is_dash ? from + 0.2 * (to - from) : from - along;
+    const cv::Point2d b = is_dash ? to - 0.2 * (to - from) : to + along;
     std::vector<cv::Point2d> corners{a - side, b - side, b + side, a - side, b + side, a + side};
     since_head_m += length;
     if (since_head_m >= kBetweenHeads * maker.thing_m()) {  // an arrowhead in the middle
@@ -362,8 +384,7 @@ Marker Status(const Maker& maker, const FarmSpec& spec, const FarmState& state) 
   const std::string text = WorldTimeText(spec, state) + "  episode " + Count(state.episode) +
                            "  step " + Count(state.step) + "  return " +
                            Number(state.joint_return, 1);
-  return maker.Text("status", 0, (spec.width - 1) / 2.0, maker.LineAbove(kLineOfClock), text,
-                    maker.line_m(), kPaper);
+  return maker.Line("status", kLineOfClock, text, kPaper);
 }
 
 }  // namespace
@@ -394,6 +415,7 @@ MarkerArray StateMarkers(const FarmSpec& spec, const FarmState& state, const Tra
   MarkerArray array;
   AddDisasters(array, maker, spec, state, layers.risk);
   AddPorts(array, maker, spec);
+  AddFetched(array, maker, spec, state);
   AddDevices(array, maker, spec, state);
   AddShips(array, maker, spec, state, trail, /*has_paths=*/layers.trail);
   if (layers.labels) AddLabels(array, maker, spec, state);

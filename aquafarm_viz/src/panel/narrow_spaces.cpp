@@ -10,8 +10,8 @@
 namespace aquafarm_viz {
 namespace {
 
-// A space of Liberation Sans is 0.278 em wide, and rviz draws a letter of 1 em 0.9 heights wide.
-constexpr float kSpace = 0.25F;  // [heights of a text]
+// A space of Liberation Sans is 0.278 em wide, and rviz draws a letter of 1 em 0.853 heights wide.
+constexpr float kSpace = 0.237F;  // [heights of a text]
 
 void NarrowSpacesBelow(Ogre::Node& node) {
   if (auto* scene_node = dynamic_cast<Ogre::SceneNode*>(&node)) {

@@ -88,6 +88,10 @@ RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget*
   for (const int column : {1, 3}) {  // "kind" with symbols, and "status" with dangers
     devices_->horizontalHeader()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
   }
+  all->addWidget(disasters_ = MakeTable(RanchModel::DisasterColumns()), 1);
+  disasters_->setObjectName("disasters");
+  disasters_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  disasters_->horizontalHeader()->setStretchLastSection(true);
   plan_ = AddLine(all);
   plan_->setObjectName("plan");
   all->addWidget(plan_ships_ = MakeTable(PlanShipColumns()), 1);
@@ -231,6 +235,9 @@ void RanchWidget::Refresh() {
   Fill(ships_, model_.Ships(), 2);
   Fill(devices_, model_.Devices(), 4);
   AddSymbols();
+  Fill(disasters_, model_.Disasters(), 2);
+  // While the curve is shown, there is no space for this table.
+  disasters_->setVisible(model_.curve().empty() && disasters_->rowCount() > 0);
   curve_->Show(model_.curve());
   curve_->setVisible(!model_.curve().empty());
   RefreshPlan();

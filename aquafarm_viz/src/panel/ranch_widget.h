@@ -63,6 +63,7 @@ class RanchWidget : public QWidget {
   QLabel* message_;
   QTableWidget* ships_;
   QTableWidget* devices_;
+  QTableWidget* disasters_;
   QLabel* plan_;
   QTableWidget* plan_ships_;
   QTableWidget* plan_devices_;

@@ -58,6 +58,10 @@ double MetresFromFarm(const aquafarm_msgs::FarmSpec& spec, double x, double y) {
   return spec.cell_size_m * std::hypot(x - (spec.width - 1) / 2.0, y - (spec.height - 1) / 2.0);
 }
 
+std::string WhereText(const FarmSpec& spec, double x, double y) {
+  return DistanceText(MetresFromFarm(spec, x, y)) + " " + PointFromFarm(spec, x, y);
+}
+
 int NauticalZone(double longitude_deg) {
   return std::clamp(static_cast<int>(std::lround(longitude_deg / 15.0)), -12, 12);
 }

@@ -23,6 +23,9 @@ double RoundLength(double max_m);
 /// Returns the compass point from the middle of the farm to a point [cells], such as "SE".
 std::string PointFromFarm(const aquafarm_msgs::FarmSpec& spec, double x, double y);
 
+/// Returns where a point [cells] is, seen from the middle of the farm, such as "89 km SE".
+std::string WhereText(const aquafarm_msgs::FarmSpec& spec, double x, double y);
+
 /// Returns the distance from the middle of the farm to a point [m]; x and y in cells.
 double MetresFromFarm(const aquafarm_msgs::FarmSpec& spec, double x, double y);
 

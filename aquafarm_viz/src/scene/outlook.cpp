@@ -432,8 +432,7 @@ std::pair<std::string, std::string> NameAndDanger(
 std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
                        const Course& course) {
   return NameNow(disaster, course) + StrengthText(course.ahead.front()) + ", centre " +
-         DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) + " " +
-         PointFromFarm(spec, disaster.x, disaster.y);
+         WhereText(spec, disaster.x, disaster.y);
 }
 
 std::string MotionNow(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster) {
@@ -441,15 +440,19 @@ std::string MotionNow(const FarmSpec& spec, const aquafarm_msgs::DisasterState& 
   return disaster.speed > 0.0F ? "now moving " + motion : motion;
 }
 
+std::string ClosestText(const FarmSpec& spec, const Course& course) {
+  if (course.kind == Course::Kind::kExtrapolated) return "";
+  const double now = course.ahead.front().step;
+  const TrackPoint nearest = ClosestApproach(spec, course.ahead, now);
+  if (!(nearest.step > now)) return "";
+  return WhereText(spec, nearest.x, nearest.y) + " in " + AheadText(spec, nearest.step - now);
+}
+
 std::string ApproachText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
                          const Course& course) {
   const std::string motion = MotionText(spec, disaster.heading_deg, double(disaster.speed));
-  const double now = course.ahead.front().step;
-  if (course.kind == Course::Kind::kExtrapolated) return motion;
-  const TrackPoint nearest = ClosestApproach(spec, course.ahead, now);
-  if (!(nearest.step > now)) return motion;
-  return motion + ", closest " + DistanceText(MetresFromFarm(spec, nearest.x, nearest.y)) + " " +
-         PointFromFarm(spec, nearest.x, nearest.y) + " in " + AheadText(spec, nearest.step - now);
+  const std::string closest = ClosestText(spec, course);
+  return closest.empty() ? motion : motion + ", closest " + closest;
 }
 
 }  // namespace aquafarm_viz

@@ -135,6 +135,10 @@ std::string CentreText(const aquafarm_msgs::FarmSpec& spec,
 std::string MotionNow(const aquafarm_msgs::FarmSpec& spec,
                       const aquafarm_msgs::DisasterState& disaster);
 
+/// Returns the closest approach of a disaster: "29 km S in 11 h". Returns "" if its course is
+/// extrapolated or does not come nearer.
+std::string ClosestText(const aquafarm_msgs::FarmSpec& spec, const Course& course);
+
 /// Returns the present motion of a disaster, "NW at 13 km/h". If its course is not extrapolated and
 /// comes nearer, the closest approach follows: "NW at 13 km/h, closest 29 km S in 11 h".
 std::string ApproachText(const aquafarm_msgs::FarmSpec& spec,

@@ -8,6 +8,7 @@
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
+#include "scene/nautical.h"
 #include "scene/outlook.h"
 
 namespace aquafarm_viz {
@@ -116,6 +117,27 @@ const RanchModel::Row& RanchModel::ShipColumns() {
 const RanchModel::Row& RanchModel::DeviceColumns() {
   static const Row columns{"device", "kind", "cell", "status", "health", "value"};
   return columns;
+}
+
+const RanchModel::Row& RanchModel::DisasterColumns() {
+  static const Row columns{"disaster", "centre", "motion", "closest", "ends in"};
+  return columns;
+}
+
+std::vector<RanchModel::Row> RanchModel::Disasters() const {
+  std::vector<Row> rows;
+  if (shown().state == nullptr) return rows;
+  const auto& spec = *shown().spec;
+  const auto& state = *shown().state;
+  const std::vector<Course> courses = courses_->Read(spec, state);
+  for (std::size_t i = 0; i < state.disasters.size(); ++i) {
+    const auto& disaster = state.disasters[i];
+    if (!disaster.known || disaster.steps_left <= 0) continue;
+    rows.push_back({NameNow(disaster, courses[i]), WhereText(spec, disaster.x, disaster.y),
+                    MotionText(spec, disaster.heading_deg, double(disaster.speed)),
+                    ClosestText(spec, courses[i]), AheadText(spec, disaster.steps_left)});
+  }
+  return rows;
 }
 
 std::vector<RanchModel::Row> RanchModel::Ships() const {

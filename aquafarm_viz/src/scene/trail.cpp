@@ -46,10 +46,16 @@ void Trail::Update(const aquafarm_msgs::FarmState& state) {
     if (!trail.places.empty()) {
       const cv::Point last = trail.places.back();
       if (last == place) continue;
-      if (IsGap(last, place) && length_ < kWhole) trail.places.clear();
+      if (IsGap(last, place) && length_ < kWhole) {
+        trail.places.clear();
+        trail.loaded.clear();
+      }
     }
     trail.places.push_back(place);
-    if (trail.places.size() > length_) trail.places.pop_front();
+    trail.loaded.push_back(!ship.aboard.empty());
+    if (trail.places.size() <= length_) continue;
+    trail.places.pop_front();
+    trail.loaded.pop_front();
   }
 }
 

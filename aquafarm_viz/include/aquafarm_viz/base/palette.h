@@ -40,7 +40,8 @@ inline constexpr Rgb kChoiceColor{0x4d, 0xe3, 0xff};
 /// Colour of legal moves at ports and of labels of devices.
 inline constexpr Rgb kDirectionColor{0xff, 0xd1, 0x66};
 
-/// Returns the colour of a device kind (DeviceState.kind); grey for an unknown kind.
+/// Returns the colour of a device kind (DeviceState.kind); grey for an unknown kind. No risk has
+/// one of these colours.
 Rgb DeviceColor(std::uint8_t kind);
 
 /// Returns the short name of a device kind, such as "monitoring"; "kind 7" for an unknown kind.
@@ -70,7 +71,8 @@ Rgb SeverityColor(double severity);
 /// grade.
 Rgb GradeColor(std::uint8_t grade);
 
-/// Returns the colour of a value in the colour map viridis.
+/// Returns the colour of a value: the colour map viridis from dark violet to green. The yellow part
+/// is left out, because yellow marks a risk.
 /// @param share 0 for the lowest value, 1 for the highest
 Rgb ValueColor(double share);
 

@@ -67,6 +67,11 @@ class RanchModel {
   static const Row& ShipColumns();
   /// Returns the column titles of the table of Devices.
   static const Row& DeviceColumns();
+  /// Returns the column titles of the table of Disasters.
+  static const Row& DisasterColumns();
+  /// Returns a row for each known disaster that has not ended; empty before the first state. The
+  /// closest approach is empty unless a track or a forecast gives it.
+  std::vector<Row> Disasters() const;
   /// Returns a row for each ship and self-propelled device; empty before the first state.
   std::vector<Row> Ships() const;
   /// Returns a row for each device; empty before the first state. The column "status" of a device

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Style of the benchmark's figures: headlines, names of lines, colours."""
+import textwrap
+
+import matplotlib
+
+matplotlib.use("Agg")  # needs no display
+import numpy as np  # noqa: E402
+from matplotlib import colors, pyplot as plt  # noqa: E402
+
+_DPI = 150
+_LETTERS = 78  # max length of a line of a headline
+_NAME_PT = 15.0  # height of a name [pt]
+_NEAR = 0.15  # ends of lines whose distance along x is less [widths of the axes] are named together
+_TEXT = 4.5  # min contrast ratio of names on white (WCAG 2.1, 1.4.3)
+plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False,
+                     "axes.titlelocation": "left"})
+
+
+def save(figure, path):
+    """Writes a figure as PNG and closes it."""
+    figure.savefig(path, dpi=_DPI, bbox_inches="tight")
+    plt.close(figure)
+
+
+def explain(figure, finding, note):
+    """Writes what a figure shows above it, in bold, and how it was computed below it."""
+    figure.suptitle("\n".join(textwrap.wrap(finding, _LETTERS, break_on_hyphens=False)), fontsize=12.5, weight="bold",
+                    x=0.01, ha="left")
+    figure.supxlabel("\n".join(textwrap.wrap(note, 1.25 * _LETTERS)), fontsize=9.5, color="0.35",
+                     x=0.01, ha="left")
+
+
+def label_axes(axes, title, ylabel, xlabel="episode"):
+    """Writes the title and the names of the axes, and draws a faint grid."""
+    axes.set_title(title)
+    axes.set_xlabel(xlabel)
+    axes.set_ylabel(ylabel)
+    axes.grid(alpha=0.3)
+
+
+def number(value, digits=0):
+    """Formats a number with thousands separators and a minus sign: "−1,571"."""
+    return f"{value:,.{digits}f}".replace("-", "−")
+
+
+def spread(places, gap, low=0.0, high=1.0):
+    """Moves places apart to distances of at least `gap`, each as little as possible (least
+    squares), and into [low, high] if they fit. Expects and returns them in ascending order."""
+    groups = []  # of places that touch each other: (position of the first one, number of places)
+    for i, place in enumerate(places):
+        groups.append((place - i * gap, 1))
+        while len(groups) > 1 and groups[-2][0] >= groups[-1][0]:
+            (first, n), (second, m) = groups[-2:]
+            groups[-2:] = [((n * first + m * second) / (n + m), n + m)]
+    moved = [start for start, count in groups for _ in range(count)]
+    room = high - gap * (len(places) - 1)
+    return [min(max(start, low), max(room, low)) + i * gap for i, start in enumerate(moved)]
+
+
+def name_ends(axes, ends):
+    """Writes the name of each line to the right of its end, and connects both. Names do not
+    overlap.
+
+    ends: (x, y, colour, name) of each line
+    """
+    axes.margins(x=0.0)
+    axes.set_ylim(axes.get_ylim())  # fixes the limits
+    ends = sorted(ends, key=lambda end: end[1])
+    axes.figure.draw_without_rendering()  # sets the size of the axes
+    to_axes = axes.transData + axes.transAxes.inverted()
+    height_pt = 72.0 * axes.get_window_extent().height / axes.figure.dpi
+    places = spread([float(to_axes.transform((x, y))[1]) for x, y, _, _ in ends],
+                    _NAME_PT / height_pt, high=1.0 + 0.3 * _NAME_PT / height_pt)
+    lengths = [float(to_axes.transform((x, y))[0]) for x, y, _, _ in ends]
+    for (x, y, colour, name), place, length in zip(ends, places, lengths):
+        end = max(other for other in lengths if other <= length + _NEAR)  # right of all near ends
+        axes.annotate(name, (x, y), xytext=(min(end, 1.0) + 0.04, place), textcoords=axes.transAxes,
+                      color=legible(colour), va="center", fontsize=10, annotation_clip=False,
+                      bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
+                      arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8,
+                                  "relpos": (0.0, 0.5), "shrinkA": 1.0, "shrinkB": 0.0})
+
+
+def legible(colour):
+    """Returns a colour, darkened until it is legible on white."""
+    rgb = np.array(colors.to_rgb(colour))
+    while True:
+        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+        if 1.05 / (float(linear @ (0.2126, 0.7152, 0.0722)) + 0.05) >= _TEXT:
+            return tuple(rgb)
+        rgb = 0.95 * rgb
+
+
+def shade(axes, x, low, high, colour):
+    """Shades a range. Its thin edges stay visible where ranges overlap."""
+    axes.fill_between(x, low, high, facecolor=(*colors.to_rgb(colour), 0.16),
+                      edgecolor=(*colors.to_rgb(colour), 0.45), linewidth=0.5)

@@ -26,7 +26,7 @@ from paired_ratio import describe, mean, paired_ratio
 
 HIDDEN = 128
 FEATURES = 81  # of paper.yaml
-OUTPUTS = 10
+OUTPUTS = 11  # ten actions and the value
 WEIGHTS = (FEATURES + 1) * HIDDEN + (HIDDEN + 1) * HIDDEN + (HIDDEN + 1) * OUTPUTS
 ROLLOUT = 16384  # agent steps
 EPOCHS = 2

@@ -41,7 +41,7 @@ PROGRAMS = {
 }
 TAKE_ARGUMENTS_AS_THEY_ARE = ("many", "plan", "scenario")
 HELP = ("-h", "--help", "--ros-args")
-ALL = """setup, build, train, evaluate, benchmark, sweep, many, scenario, sim, play, record, replay, render, \
+ALL = """setup, build, train, plan, evaluate, benchmark, sweep, many, scenario, sim, play, record, replay, render, \
 report, values, ask, verify, test, bench or --help"""
 
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <locale>
 #include <sstream>
+#include <type_traits>
 
 namespace aquafarm::internal {
 namespace {
@@ -52,12 +53,16 @@ bool ParseAll(std::string_view text, T& value) {
   return true;
 }
 
-// As ParseAll, but accepts a leading '+'.
+// As ParseAll, but accepts a leading '+', and refuses "inf" and "nan".
 template <typename T>
 std::optional<T> ParseSigned(std::string_view text) {
-  if (!text.empty() && text[0] == '+') text.remove_prefix(1);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   T value{};
-  return ParseAll(text, value) ? std::optional<T>(value) : std::nullopt;
+  if (!ParseAll(text, value)) return std::nullopt;
+  if constexpr (std::is_floating_point_v<T>) {
+    if (!std::isfinite(value)) return std::nullopt;
+  }
+  return value;
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ from aquafarm_report import values_topics  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 
 from aquafarm_report.values import (ValuesError, compare, draw_map,  # noqa: E402
-                                    draw_places, draw_relation, make, read, verdict)
+                                    draw_places, draw_relation, headline, make, read, verdict)
 
 
 def slope(height=12, width=14):
@@ -138,6 +138,16 @@ class ValuesTest(unittest.TestCase):
         for words in (axis.get_title(), *(text.get_text() for text in axis.texts)):
             for jargon in ("SSIM", "Spearman", "rho", "turned over", "degC"):
                 self.assertNotIn(jargon, words)
+
+    def test_the_headline_names_what_the_return_falls_and_rises_with(self):
+        values = slope()
+        text = {"cell_size_m": 1000.0, "devices": [[0, 0]]}
+        layers = [("warmth", "degC", values), ("depth", "m", -values), ("flat", "m", 0.0 * values)]
+        found = headline(values, text, layers, [compare(values, field) for _, _, field in layers])
+        self.assertIn("rises with temperature (+1.00)", found)
+        self.assertIn("falls with depth (−1.00)", found)
+        self.assertNotIn("flat", found, "a constant layer has no rank correlation")
+        self.assertIn("distance to a device (", found)
 
     def test_the_lowest_returns_do_not_flatten_the_colours_of_the_others(self):
         values = slope()

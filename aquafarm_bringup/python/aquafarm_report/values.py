@@ -8,19 +8,22 @@ import matplotlib
 
 matplotlib.use("Agg")
 import numpy as np  # noqa: E402
-from matplotlib import patches, pyplot, ticker  # noqa: E402
+from matplotlib import colors, patches, pyplot, ticker  # noqa: E402
 from scipy import ndimage, stats  # noqa: E402
 from skimage.metrics import structural_similarity  # noqa: E402
 
 from aquafarm_bringup.files import open_atomically  # noqa: E402
 
 MOST_WINDOW = 7  # max side of the window of the SSIM [cells], the default of scikit-image
+_WEAK = 0.3  # below this rank correlation a headline says that the return hardly changes
 FEWEST_CELLS = 10  # min number of cells for a comparison
 NEXT_TO = 2.0  # max distance at which a cell counts as next to a device or port [cells]
 _COLUMN = 2.9  # width of a map in the figure [inch]
 _GAP = 1.1  # between columns and between rows [inch]
 _TOP = 1.05  # height of the titles [inch]
 _LOW_COLOUR = "#440154"  # the first colour of viridis
+# viridis without its yellow part, as in other pictures of values
+_VALUE_COLOURS = colors.ListedColormap(pyplot.get_cmap("viridis")(np.linspace(0.0, 0.8, 256)))
 _SEA_COLOURS = {"depth": "Blues", "warmth": "YlOrRd"}
 _LOWEST = 0.05  # fraction of the cells, those with the lowest returns, that have one colour
 
@@ -217,7 +220,7 @@ def draw(text, values, layers, results, path):
         left=0.7 * _GAP / width_in, right=1.0 - 0.9 * _GAP / width_in, wspace=_GAP / _COLUMN,
         top=1.0 - _TOP / height_in, bottom=0.3 * _GAP / height_in,
         hspace=0.95 * _GAP / (sum(heights) / len(heights)))
-    draw_map(axes[0][0], values, km, "viridis", "return [points]", _LOWEST)
+    draw_map(axes[0][0], values, km, _VALUE_COLOURS, "return [points]", _LOWEST)
     letters = iter("abcdefghijklmnopqrstuvwxyz")
     axes[0][0].set_title(f"({next(letters)}) Return if the ship starts here", fontsize=11)
     draw_places(axes[0][0], text, km)
@@ -235,12 +238,32 @@ def draw(text, values, layers, results, path):
     draw_key(figure, axes)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
+    if found := headline(values, text, layers, results):
+        figure.suptitle(found, fontsize=13, weight="bold", x=0.02, y=0.99, ha="left")
     said = verdict(values, text)
-    figure.suptitle("\n".join([*([said] if said else []), f"{text['policy']} on {text['scenario']}, "
-                               f"{episodes}"]), fontsize=11.5)
+    figure.text(0.02, 1.0 - 0.32 / height_in, "\n".join([
+        *([said] if said else []), f"{text['policy']} on {text['scenario']}, {episodes}"]),
+        fontsize=10.5, color="0.25", va="top")
     with open_atomically(path, "wb") as file:
         figure.savefig(file, dpi=150, format="png")
     pyplot.close(figure)
+
+
+def headline(values, text, layers, results):
+    """Returns the sentence above the figure, from the rank correlations of the return. Empty if none
+    is defined."""
+    pairs = [(sea_words(name), result["spearman_rho"])
+             for (name, _, _), result in zip(layers, results)]
+    if devices := text.get("devices"):
+        away = device_distance(values.shape, devices, text["cell_size_m"] / 1000.0)
+        pairs.append(("distance to a device", compare(values, away[2])["spearman_rho"]))
+    said = {"falls": [], "rises": [], "hardly changes": []}
+    for words, rho in sorted((pair for pair in pairs if pair[1] is not None),
+                             key=lambda pair: -abs(pair[1])):
+        trend = "hardly changes" if abs(rho) < _WEAK else "falls" if rho < 0.0 else "rises"
+        said[trend].append(f"{words} ({signed(rho)})")
+    parts = [f"{trend} with {' and '.join(names)}" for trend, names in said.items() if names]
+    return f"The return {', '.join(parts)}" if parts else ""
 
 
 def draw_relations(axes, text, values, layers, results, letters):

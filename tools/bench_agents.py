@@ -68,7 +68,7 @@ def measure(get_state, rounds, round_s):
     end = time.monotonic() + LIMIT_S
     while get_state().state.step < 100:
         if time.monotonic() > end:
-            raise SystemExit("bench_agents: the agents take no steps")
+            raise SystemExit("bench_agents: got no step of the agents; see their output")
         time.sleep(0.1)
     end = time.monotonic() + LIMIT_S
     while len(rates) < rounds:
@@ -129,7 +129,7 @@ def main():
             end = time.monotonic() + LIMIT_S
             while not rosgraph.is_master_online():
                 if time.monotonic() > end:
-                    raise SystemExit("bench_agents: no ROS master came up")
+                    raise SystemExit("bench_agents: no ROS master started; check rosmaster")
                 time.sleep(0.2)
             rospy.init_node("bench_agents", anonymous=True, disable_signals=True)
             scenario = scenario_of(arguments.ships, folder)

@@ -19,7 +19,7 @@ STEPS = 200
 
 
 def measure(name, unit, count, repetitions, call):
-    """Prints the rate of `call`, which makes `count` steps. Calls it once more to warm up."""
+    """Prints the rate of `call`, which makes `count` steps. Calls it once before to warm up."""
     call()
     rates = []
     for _ in range(repetitions):

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares the speed of two versions, each in a workspace that ./aquafarm bench has built. Their
-benchmarks run in turn; each figure has the geometric mean of the ratios new / old with its 95 %
-interval. Costs, such as seconds or bytes, count as old / new: 1.1 is always a tenth better."""
+"""Compares the speed of two versions, each in a workspace that ./aquafarm bench has built. Runs
+their benchmarks in turn. Prints for each figure the geometric mean of the ratios new / old with its
+95 % interval; for costs, such as seconds or bytes, old / new. So 1.1 always means 10 % better."""
 import argparse
 import pathlib
 import re
@@ -23,7 +23,7 @@ LIMIT_S = 900  # for one benchmark
 
 
 class Failed(Exception):
-    """A benchmark cannot be run; the reason in one line."""
+    """A benchmark cannot be run. The message is one line."""
 
 
 def measure(workspace, words):

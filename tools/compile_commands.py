@@ -4,7 +4,7 @@ import json
 import pathlib
 import re
 
-ONLY_FOR_FOLDERS = " -Wno-subobject-linkage"  # clang does not know it
+ONLY_FOR_FOLDERS = " -Wno-subobject-linkage"  # an option that clang does not have
 INCLUDED = re.compile(r'^#include "(.*\.cpp)"$', re.MULTILINE)
 
 
@@ -19,9 +19,10 @@ def split(entry):
 
 def read(build, by_folder=False):
     """Returns the entries of a build folder, one for each source; each has directory, command and
-    file. With `by_folder` one for each compilation, which may be of the sources of a folder.
+    file. With `by_folder`, returns one for each compilation, which may be that of all sources of a
+    folder.
 
-    Raises ValueError with one line if the folder has none.
+    Raises ValueError with one line if there is none.
     """
     path = pathlib.Path(build) / "compile_commands.json"
     try:

@@ -18,12 +18,12 @@ KINDS = {"home": "The device comes home", "gales": "Gales reach the device"}
 
 
 def bins_of(data, key):
-    """The bins of promised chances that have 20 cases or more."""
+    """Returns the bins of promised chances that have 20 cases or more."""
     return [one for one in data[key]["diagram"] if one["count"] >= 20]
 
 
 def reliability(data):
-    """What the simulated storms say about the promises, in a sentence."""
+    """Returns a sentence about how well the promises hold in simulated storms."""
     bins = [one for key in KINDS for one in bins_of(data, key)]
     far = [100 * (one["kept"]["mean"] - one["promised"]) for one in bins]
     close = sum(abs(one) <= 5 for one in far)
@@ -33,7 +33,7 @@ def reliability(data):
 
 
 def draw_reliability(data, path):
-    """Promised against kept chances, with 95 % intervals and the limits of the bars."""
+    """Draws kept against promised chances, with 95 % intervals."""
     figure, axes = plt.subplots(1, 2, figsize=(9, 5), sharey=True)
     for one, (key, title) in zip(axes, KINDS.items()):
         bins = bins_of(data, key)
@@ -61,8 +61,8 @@ def draw_reliability(data, path):
 
 
 def finding(storms):
-    """What the back-test found, in a sentence."""
-    staked = [s for s in storms if s["at_risk"] > 0.5]  # the others cost nothing, whatever the plan
+    """Returns a sentence about the results of the back-test."""
+    staked = [s for s in storms if s["at_risk"] > 0.5]  # other storms cost nothing with any plan
     as_good = sum(s["saved"] > s["clairvoyant"] - 0.5 for s in staked)
     share = sum(s["saved"] for s in storms) / sum(s["clairvoyant"] for s in storms)
     less = sum(s["promised"] < s["saved"] for s in storms)
@@ -72,13 +72,14 @@ def finding(storms):
 
 
 def name_of(storm):
-    """The name of a storm in one spelling: the two archives differ in capitals."""
+    """Returns the name and year of a storm. Changes names in capitals: the two archives differ."""
     name = storm["name"] or storm["id"]
     return f"{name.title() if name.isupper() else name} {storm['nearest'][:4]}"
 
 
 def draw_back_test(data, path):
-    """Saved, promised and clairvoyant value of each recorded storm."""
+    """Draws the value that is saved, promised, and saved by a clairvoyant in each recorded
+    storm."""
     storms = data["storms"]
     figure, axes = plt.subplots(figsize=(8.2, 0.27 * len(storms) + 1.2))
     places = range(len(storms), 0, -1)

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trade-off of return against energy: evaluates a policy on a scenario with several weights of
-energy, writes one line per weight to a CSV file, and draws the curve next to it (.svg).
+"""Evaluates a policy on a scenario with several weights of energy, writes one line per weight to a
+CSV file, and draws the curve of return against energy next to it (.svg).
 
 usage: energy_curve.py SCENARIO.yaml POLICY EPISODES OUT.csv [WEIGHT ...]
 
-The figures of energy are those of a small workboat (docs/data.md), unless the scenario has its
-own. The return is that without the term of energy. aquafarm_evaluate must be on the PATH.
+The energy of each action is that of a small workboat (docs/data.md), unless the scenario has its
+own block `energy`. The return excludes the term of energy. aquafarm_evaluate must be on the PATH.
 """
 import csv
 import json
@@ -50,7 +50,7 @@ def measure(text, policy, episodes, weight):
 
 
 def draw(rows, path):
-    """Draws return against energy; a point per weight."""
+    """Draws return against energy, with a point for each weight."""
     points = [(float(row["energy_kwh"]), float(row["return_without_energy"])) for row in rows]
     low, high = ([pick(axis) for axis in zip(*points)] for pick in (min, max))
     width, height, left, top = 640, 360, 80, 30

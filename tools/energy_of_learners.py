@@ -5,12 +5,13 @@
 usage: energy_of_learners.py SCENARIO.yaml ALGORITHM OUT.csv [--seeds N] [--weights W ...]
                              [--episodes N] [--from-first] [-- OPTION OF aquafarm_train ...]
 
-Each weight has a training per seed. With --from-first those of later weights start with the policy
-of the first weight (one above 0: with a weight the features contain the energy). The return is that
-without the term of energy. OUT.csv gets a row per training; a run that was interrupted continues.
-The table that is printed has the mean over seeds, and the change of return and energy relative to
-the first weight, each with a 95 % interval (bootstrap over seeds, pairs of the same seed).
-aquafarm_train and aquafarm_evaluate must be on the PATH. The run folders are next to OUT.csv.
+There is one training for each weight and seed. With --from-first, trainings of later weights start
+with the policy of the first weight. This weight must be above 0, as the features contain the energy
+only then. The return excludes the term of energy. OUT.csv has a row per training; an interrupted
+run continues. The printed table has the mean over seeds, and the change of return and energy
+relative to the first weight, each with a 95 % interval (bootstrap over seeds, pairs of the same
+seed). aquafarm_train and aquafarm_evaluate must be on the PATH. The run folders are next to
+OUT.csv.
 """
 import argparse
 import csv

@@ -4,12 +4,12 @@
 
 usage: evaluate_coasts.py CHART ARCHIVE OUTPUT [--ranches N] [--episodes N] [--seed SEED] [--policy P]
 
-`aquafarm_scenario` cuts each ranch from the chart: place, size (12 to 60 cells a side), cell (300 to
-1,200 m), 1 to 10 devices and 1 to 6 ports are drawn from the seed. A place without enough water or
-without a shore is replaced by the next. Episodes draw the archive's storms since 2010. OUTPUT gets the
-ranches and ranches.csv; a run that was interrupted continues. The last line is the share of the
-clairvoyant optimum over the episodes whose plan has at most 400,000 states, with a 95 % interval
-(bootstrap over ranches). Both programs must be on the PATH.
+`aquafarm_scenario` cuts each ranch from the chart: place, size (12 to 60 cells a side), cell (300
+to 1,200 m), 1 to 10 devices and 1 to 6 ports are drawn from the seed. A place without enough water
+or without a shore is replaced by the next. Episodes draw the archive's storms since 2010. The
+ranches and ranches.csv are written to OUTPUT; an interrupted run continues. The last line is the
+share of the clairvoyant optimum over the episodes whose plan has at most 400,000 states, with a
+95 % interval (bootstrap over ranches). Both programs must be on the PATH.
 """
 import argparse
 import csv

@@ -4,9 +4,10 @@
 
   tools/fit_wind_radii.py ../shared/data
 
-ln r = a + b sqrt(V / w - 1) + c (|latitude| - 25), r the radius of the circle of the ring's area.
-b and c come from the JMA (30 and 50 kt), a from each authority with these b and c. a of the CMA
-comes from the median errors of the former estimate over 24,494 bulletin rings (see docs/data.md).
+The relation is ln r = a + b sqrt(V / w - 1) + c (|latitude| - 25), where r is the radius of a
+circle with the area of the ring. b and c are fitted to rings of the JMA (30 and 50 kt), a to those
+of each authority with these b and c. a of the CMA comes from the median errors of the former
+estimate over 24,494 bulletin rings (see docs/data.md).
 """
 import csv
 import json
@@ -80,7 +81,8 @@ def jtwc(folder):
 
 
 def holland(w, wind, latitude, pressure):
-    """The former estimate: Holland (1980) with Rmax of Willoughby et al. (2006, Eq. 7a) [km]."""
+    """Returns the former estimate [km]: Holland (1980) with Rmax of Willoughby et al. (2006,
+    Eq. 7a)."""
     v = wind * KT_MPS
     f = 2 * 7.292e-5 * math.sin(math.radians(latitude))
     rmax = 46400 * math.exp(-0.0155 * v + 0.0169 * latitude)
@@ -97,7 +99,8 @@ def holland(w, wind, latitude, pressure):
 
 
 def knaff_zehr(w, wind, latitude):
-    """Rankine vortex of Knaff and Zehr (2007, Wea. Forecasting 22, 71-88), V in kt [km]."""
+    """Returns the radius [km] in the Rankine vortex of Knaff and Zehr (2007, Wea. Forecasting 22,
+    71-88), V in kt."""
     rmax = 66.785 - 0.09102 * wind + 1.0619 * (latitude - 25)
     return rmax * (wind / w) ** (1 / (0.1147 + 0.0055 * wind - 0.001 * (latitude - 25)))
 
@@ -107,7 +110,7 @@ def predictors(rows):
 
 
 def left_out(rows):
-    """The log-standard deviation of each storm's rings from the fit to the other storms."""
+    """Returns the standard deviation of ln r of all rings from the fit to the other storms."""
     x, y = predictors(rows), np.log([row[5] for row in rows])
     storms = np.array([row[1] for row in rows])
     rest = np.zeros(len(rows))
@@ -151,7 +154,7 @@ def main():
             errors("relation", np.exp(rest.mean() - rest))
             errors("former", [holland(w, *row[3:5], row[6]) / row[5] for row in some])
             errors("Knaff, Zehr", [knaff_zehr(w, *row[3:5]) / row[5] for row in some])
-    # The bulletins' storms are taken to have the winds and latitudes of the JMA's.
+    # The storms of the bulletins are assumed to have the winds and latitudes of those of the JMA.
     storms = sorted({(row[3], row[4], row[6]) for row in rows if row[0] == "JMA"})
     for w, former, chosen in ((34, FORMER_34_TS, lambda v: v < 48), (50, FORMER_50, lambda v: True),
                               (64, FORMER_64, lambda v: True)):

@@ -27,7 +27,7 @@ CREDIT = (
 
 
 def distance_km(a, b):
-    """Great-circle distance of two (latitude, longitude)."""
+    """Returns the great-circle distance between two (latitude, longitude)."""
     lat1, lon1, lat2, lon2 = (math.radians(x) for x in (*a, *b))
     half = (math.sin((lat2 - lat1) / 2) ** 2 +
             math.cos(lat1) * math.cos(lat2) * math.sin((lon2 - lon1) / 2) ** 2)
@@ -58,7 +58,7 @@ def read(path):
 
 
 def grade_of(code, wind):
-    """The grade of a fix; code 9 (extratropical) gives that of the wind, as the C++ reader does."""
+    """Returns the grade of a fix. Code 9 (extratropical) gives the grade of the wind, as in C++."""
     if code in GRADES:
         return GRADES[code]
     reached = [name for name, lowest in LOWEST_WIND if 0 < lowest <= wind and wind != 9]
@@ -72,7 +72,7 @@ def text_of(fix):
 
 
 def near(fixes, center, km):
-    """The run of fixes from the first to the last one within km."""
+    """Returns the fixes from the first to the last one within `km` of the center."""
     inside = [i for i, fix in enumerate(fixes) if distance_km(fix[1:3], center) <= km]
     return fixes[inside[0]:inside[-1] + 1] if inside else []
 

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A Slurm cluster of one node, made of Debian's packages munge, slurmctld, slurmd and slurm-client.
+"""Runs a command in a Slurm cluster of one node, which Debian's packages munge, slurmctld, slurmd
+and slurm-client provide.
 
 Usage, as root: one_node_slurm.py COMMAND [ARGUMENT…]
-runs a command with SLURM_CONF set, so that sbatch, srun and squeue reach the cluster, which ends
-with the command. All its files are in a temporary folder, and a Slurm of this host is not touched.
+The command has SLURM_CONF, so that its sbatch, srun and squeue use the cluster. The cluster ends
+when the command ends. All its files are in a temporary folder; a Slurm of this host is not changed.
 """
 import os
 import pathlib
@@ -19,7 +20,7 @@ import time
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "squeue", "sinfo")
 START_S = 120.0
 LIMIT_S = 600.0  # of a command in the cluster
-CPUS = 8  # that Slurm gives away, whatever the machine has
+CPUS = 8  # number that Slurm assigns; the machine may have fewer
 
 CONFIGURATION = """ClusterName=aquafarm_test
 SlurmctldHost={host}(127.0.0.1)
@@ -51,7 +52,7 @@ PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 
 
 class NoSlurm(RuntimeError):
-    """Slurm cannot be started here; one line."""
+    """Slurm cannot be started here. The message is one line."""
 
 
 def require():
@@ -66,7 +67,7 @@ def require():
 
 
 class OneNodeSlurm:
-    """The cluster, used as a context. environment reaches it."""
+    """The cluster, used as a context. Programs with `environment` use it."""
 
     def __init__(self):
         require()

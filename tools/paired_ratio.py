@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Means, and ratios of two quantities measured in turn, with their intervals."""
+"""Means, and ratios of two quantities that are measured in turn, with their intervals."""
 import math
 import statistics
 
@@ -17,7 +17,8 @@ def mean(values):
 
 
 def paired_ratio(numerators, denominators):
-    """As mean, for the ratios of pairs: their geometric mean, with the interval of the logarithms."""
+    """Returns (geometric mean, low, high) of the ratios of pairs, with the interval of the
+    logarithms."""
     logs = [math.log(a / b) for a, b in zip(numerators, denominators, strict=True)]
     return tuple(map(math.exp, mean(logs)))
 

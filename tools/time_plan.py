@@ -36,7 +36,8 @@ MOST_S = 120
 
 
 def infa():
-    """(seconds after 2021-07-24 00:00 UTC, latitude, longitude, wind) of In-Fa in the archive."""
+    """Returns the fixes of In-Fa in the archive: (hours after 2021-07-24 00:00 UTC, latitude,
+    longitude, wind)."""
     inside, points = False, []
     for line in ARCHIVE.read_text(encoding="utf-8").splitlines():
         if line.startswith("storm "):
@@ -51,7 +52,7 @@ def infa():
 
 
 def bulletin(seed):
-    """A bulletin of 2021-07-24 00:00 UTC with a forecast of 72 hours."""
+    """Returns a bulletin of 2021-07-24 00:00 UTC with a forecast of 72 hours."""
     draw = random.Random(seed)
 
     def point(hours, latitude, longitude, wind, moved):
@@ -97,7 +98,7 @@ def processor_s(pid):
 
 
 def measure_node(folder, options, pid):
-    """Puts new bulletins into the folder; (wall, processor, compute_s) of each plan."""
+    """Writes new bulletins to the folder; returns (wall, processor, compute_s) of each plan."""
     import rospy
     from aquafarm_msgs.msg import RescuePlan
     plans = []

@@ -181,7 +181,8 @@ class AgentNodesTest(unittest.TestCase):
                          lambda array: told.append(array.status[0].message))
         words = self.die_and_join_again("_late_ships_hold:=true", "_barrier_timeout_s:=0.5",
                                         warning="no command from ship 1")
-        self.ranch.wait_for(lambda: "returned: ship 1" in words(), "a word of its return")
+        self.ranch.wait_for(lambda: "late ship 1 sends commands again" in words(),
+                            "a word of its return")
         self.assertEqual(1, words().count(
             "no command from ship 1 within ~barrier_timeout_s, 0.5 s; it holds until its next "
             "command"))

@@ -175,7 +175,7 @@ class BagPolicyTest(unittest.TestCase):
         data[place:place + 4] = struct.pack("<I", 0x7ffffff0)
         damaged = self.folder / "damaged.bag"
         damaged.write_bytes(data)
-        self.refused(f"bag_policy: {damaged}: damaged: an index that is not of its chunk", 2,
+        self.refused(f"bag_policy: {damaged}: damaged: an index that does not match its chunk", 2,
                      damaged, policy)
         self.refused("no topic spec, so it is unknown what was played", 2, self.changed(
             bag, lambda topic, message: None if topic.endswith("/spec") else message), policy)
@@ -197,7 +197,7 @@ class BagPolicyTest(unittest.TestCase):
                      "expected aquafarm_msgs/FarmSpec; ", 2, self.changed(
                          bag, lambda topic, message: PolicyChoice() if topic.endswith("/spec")
                          else message), policy)
-        self.refused("got no state of an episode with a spec", 2, self.changed(
+        self.refused("got no episode with a spec and states", 2, self.changed(
             bag, lambda topic, message: None if topic.endswith("/state") else message), policy)
         self.refused("no ranch /other/, there is: /aquafarm/", 2, bag, policy, "--ns", "/other")
         self.refused("is the input bag, expected another file", 2, bag, policy, "-o", bag)

@@ -119,7 +119,7 @@ TEST_F(Keeper, ABadBulletinLeavesTheOneBeforeInUseAndIsNamed) {
   EXPECT_EQ(plan.storm_name, "First");
   EXPECT_EQ(plan.result, RescuePlan::PLAN);
   EXPECT_EQ(plan.fault.find(bad), 0U) << plan.fault;
-  EXPECT_NE(plan.fault.find("this plan is of " + (folder_ / "1.json").string()), std::string::npos)
+  EXPECT_NE(plan.fault.find("this plan uses " + (folder_ / "1.json").string()), std::string::npos)
       << plan.fault;
   EXPECT_EQ(plan.fault.find('\n'), std::string::npos);
   Put("3.json", Bulletin("First", 28.0), 0);

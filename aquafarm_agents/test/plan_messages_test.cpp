@@ -422,7 +422,7 @@ TEST_F(PlanMessages, AnotherFileThanAPlanIsRefusedInOneLine) {
   const std::pair<std::string, std::string> cases[] = {
       {"{", "x.json: "},
       {"{}", "'version'"},
-      {other, "version: got another one"},
+      {other, "version: got another version than 1"},
       {early, "a time before 1970"},
   };
   for (const auto& [json, words] : cases) {

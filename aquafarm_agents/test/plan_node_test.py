@@ -201,7 +201,7 @@ class PlanNodeTest(unittest.TestCase):
         self.put("b.json", '[{"tfbh": "202106", "points": [')
         plan = self.wait(lambda one: "b.json" in one.fault, "the fault")
         self.assertEqual("First", plan.storm_name)
-        self.assertRegex(plan.fault, r"b\.json.*; this plan is of \S+a\.json")
+        self.assertRegex(plan.fault, r"b\.json.*; this plan uses \S+a\.json")
         self.put("c.json", bulletin("First"))
         self.assertEqual("", self.wait(lambda one: "c.json" in one.storm_file, "the next").fault)
 

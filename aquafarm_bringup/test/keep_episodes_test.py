@@ -140,7 +140,7 @@ class KeepEpisodesTest(unittest.TestCase):
         self.assertEqual(0, code, words)
         # The only missing part may be the index at its end.
         self.assertRegex(words, r": identical: 1 episode, \d+ steps"
-                         r"(, the end of one is not in the bag)?\n")
+                         r"(, episodes without their end: 1)?\n")
 
     def test_a_recording_that_was_cut_off_is_reported_and_can_be_reindexed(self):
         with Ranch("evaluate", "policy:=random", "episodes:=1", "record:=all", "viz:=false",

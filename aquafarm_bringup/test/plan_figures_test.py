@@ -33,6 +33,18 @@ class PlanFiguresTest(unittest.TestCase):
         for one, other in zip(dates, dates[1:]):
             self.assertGreaterEqual(other["x"] - one["x"], figures.DATE_WIDTH)
 
+    def test_a_row_of_orders_ends_with_the_time_in_port(self):
+        plan = plan_sample.sample(members=100)
+        clock = document.Clock(plan["clock"])
+        rows = figures.timeline(plan)["rows"]
+        end = rows[0]["bars"][-1]["x"] + rows[0]["bars"][-1]["w"]
+        for right, expected in ((end + 2000.0, "{}; dark: to a device, light: to a port"),
+                                (end + 200.0, "{}"), (end, "")):
+            figures._name_ends(plan, rows, clock, right)
+            at = f"in port {clock.time(plan['plan']['routes'][0]['orders'][-1]['time'])}"
+            self.assertEqual(expected.format(at), rows[0]["end"])
+            self.assertFalse(any("dark" in row["end"] for row in rows[1:]), "said once")
+
     def test_ships_have_numbers_and_ports_letters(self):
         plan = plan_sample.sample(members=100)
         drawing = chart.chart(plan)

@@ -205,7 +205,7 @@ class ReportTest(unittest.TestCase):
         self.assertIn(f"{summary['episodes']} episodes, {distinct} distinct", self.page.words)
 
     def test_the_policy_stands_next_to_the_references_with_intervals(self):
-        section = self.page.text[self.page.text.index("Next to the references"):]
+        section = self.page.text[self.page.text.index("Return of the policy and of the references"):]
         section = section[:section.index("</section>")]
         labels = ["RANDOM (all actions)", "q_learning", "planner", "clairvoyant"]
         places = [section.index(f"<span>{label}</span>") for label in labels]
@@ -447,7 +447,7 @@ class ReportTest(unittest.TestCase):
         other = self.folder / "other.yaml"
         other.write_text(SCENARIO.replace("width: 6", "width: 7"))
         code, words = run("aquafarm_sim", "episode_bag", other, route, "-o", bag)
-        self.assertEqual((2, f"episode_bag: {route}: belongs to another scenario than {other}\n"),
+        self.assertEqual((2, f"episode_bag: {route}: is a route in another scenario than {other}\n"),
                          (code, words))
         code, words = run("aquafarm_sim", "episode_bag", own, other, "-o", bag)
         self.assertEqual(2, code)
@@ -461,8 +461,8 @@ class ReportTest(unittest.TestCase):
         empty.mkdir()
         code, words = run("aquafarm_bringup", "make_report", empty)
         self.assertEqual(2, code)
-        self.assertEqual(f"make_report: {empty}: neither a run (run.json) nor a benchmark "
-                         "(results.json)\n", words)
+        self.assertEqual(f"make_report: {empty}: contains neither run.json nor results.json, "
+                         "expected the folder of a run or a benchmark\n", words)
         broken = self.folder / "broken"
         shutil.copytree(self.trained, broken)
         for path in [broken / "policy.ckpt", *broken.glob("checkpoints/*")]:
@@ -492,7 +492,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(("before", files), (page.read_text(), sorted(self.folder.iterdir())))
 
     def test_a_folder_that_is_not_there_is_named(self):
-        with self.assertRaisesRegex(report.ReportError, "/none: neither a run"):
+        with self.assertRaisesRegex(report.ReportError, "/none: contains neither run.json nor"):
             report.make([self.folder / "none"], None)
 
 

@@ -164,7 +164,7 @@ class ScriptTest(unittest.TestCase):
                                      "exploration:=auto", "resume:=true", "report:=/r/1"]))
 
     def test_ranks_refuse_what_needs_ros(self):
-        for arguments, expected in ((["viz:=true"], "viz: got 'true' with ranks, expected one of:"),
+        for arguments, expected in ((["viz:=true"], "viz: got this argument with ranks, expected"),
                                     (["ranks:=1.5"], "ranks: got '1.5', expected a whole number")):
             done = run(SCRIPT, "train", "ranks:=2", "steps:=10", *arguments, cwd="/tmp")
             self.assertEqual(done.returncode, 2, done.stdout)
@@ -386,7 +386,7 @@ class ScriptTest(unittest.TestCase):
             (ws / "build").mkdir()
             (ws / "build" / "theirs").touch()
             (ws / "src").mkdir()
-            for place, words in ((ws / "src", "got a build that this script has not made"),
+            for place, words in ((ws / "src", "got a build that ./aquafarm has not made"),
                                  (ws / "src" / "aquafarm", "got a folder, expected this checkout")):
                 place.mkdir(exist_ok=True)
                 done = run(SCRIPT, "build", env=dict(os.environ, AQUAFARM_WS=str(ws)))
@@ -417,11 +417,12 @@ class ScriptTest(unittest.TestCase):
             copy.write_text(text.replace("export PATH=/usr/bin:/bin:$PATH\n", ""))
             done = run(tools / "bash", copy, "setup", env={"PATH": str(tools)})
             self.assertEqual(3, done.returncode, done.stdout)
-            self.assertIn("no apt-get here; please install: no-such-thing\n", done.stdout)
+            self.assertIn("there is no apt-get; install these packages by hand: no-such-thing\n",
+                          done.stdout)
             os.remove(tools / "dpkg-query")
             done = run(tools / "bash", copy, "setup", env={"PATH": str(tools)})
             self.assertEqual(3, done.returncode, done.stdout)
-            self.assertIn("no dpkg here (made for Debian 12); install the equivalents of: no-such-",
+            self.assertIn("there is no dpkg (setup is made for Debian 12); install the equivalents of: ",
                           done.stdout)
 
 

@@ -112,7 +112,7 @@ class StartedLaunchTest(unittest.TestCase):
         after = self.wait(ranch, lambda now: now.ships[1].action != HOLD)
         self.assertNotIn(pid_of("/aquafarm/agent_1"), (0, killed))
         self.assertEqual(before.episode, after.episode)
-        ranch.wait_for(lambda: "returned: ship 1" in ranch.words(), LIMIT_S)
+        ranch.wait_for(lambda: "late ship 1 sends commands again" in ranch.words(), LIMIT_S)
         self.assertIn("no command from ship 1 within", ranch.words())
 
     def test_ships_for_which_no_node_was_started_are_named(self):

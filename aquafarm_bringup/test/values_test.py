@@ -96,7 +96,7 @@ class ValuesTest(unittest.TestCase):
         self.assertIn("salt: rank correlation (Spearman) −1.00", lines[1])
         report = json.loads(pathlib.Path(output + ".json").read_text(encoding="utf-8"))
         self.assertEqual(167, report["seas"][0]["cells"])
-        self.assertIn("not that one causes the other", report["note"])
+        self.assertIn("not whether one causes the other", report["note"])
         self.assertEqual(b"\x89PNG", pathlib.Path(output + ".png").read_bytes()[:4])
         self.assertEqual(3, len(os.listdir(self.folder.name)), "no temporary file is left")
 

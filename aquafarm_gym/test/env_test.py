@@ -308,7 +308,7 @@ view: {mode: partial, monitoring_radius: 4, kinds: true}
                 (lambda: FarmVectorEnv(2).reset(seed=[1, 2, 3]), "reset: seed: got 3 seeds, "
                  "expected 2; pass one per farm"),
                 (lambda: masked.reset(options={"reset_mask": mask}), "reset: got a reset_mask "
-                 "before the first reset"),
+                 "of some farms before the first reset"),
                 (lambda: masked.reset(options={"reset_mask": np.array([1, 0])}),
                  r"reset: options\['reset_mask'\]: got array\(\[1, 0\]\), expected a bool array")):
             with self.assertRaisesRegex(ValueError, f"^{words}"):

@@ -168,11 +168,11 @@ class GymTest(unittest.TestCase):
                 (lambda: FarmEnv("two_squads"), "scenario two_squads: got 2 agents, expected 1"),
                 (lambda: FarmEnv(observation="pixels"), "observation: got 'pixels', expected one"),
                 (lambda: FarmEnv(observation="planes", farms=LocalFarms()), "observation: got "
-                 "'planes', but the farms given write features"),
+                 "'planes', expected one that these farms write: features"),
                 (lambda: FarmEnv().step(10), "action: got 10, expected a whole number in"),
                 (lambda: FarmVectorEnv(2).step(np.array([0, 10])), "actions: got 0 to 10, "),
                 (lambda: FarmVectorEnv(2).step(np.array([0])), r"actions: got int64 \[1\], "),
-                (lambda: FarmParallelEnv().step({"ship_7": 0}), r"actions: got those of \['ship_7"),
+                (lambda: FarmParallelEnv().step({"ship_7": 0}), r"actions: got the agents \['ship_7"),
                 (lambda: RosFarms("/ranch", 5000).reset(1), "sim node: reset refused: ")):
             with self.assertRaisesRegex(ValueError, f"^{words}"):
                 call()

@@ -21,7 +21,8 @@ void Write(const std::string& scenario_path, const std::string& route_path,
   const auto scenario =
       std::make_shared<const aquafarm::Scenario>(aquafarm::LoadScenario(scenario_path));
   std::ifstream file(route_path);
-  if (!file) throw InputError(route_path + ": cannot be read");
+  if (!file)
+    throw InputError(route_path + ": cannot be read, expected a file of aquafarm_evaluate --route");
   aquafarm_sim::EpisodeLog log;
   std::uint64_t hash = 0;
   try {
@@ -34,7 +35,7 @@ void Write(const std::string& scenario_path, const std::string& route_path,
     throw InputError(route_path + ": is not a route: " + error.what());
   }
   if (hash != scenario->hash) {
-    throw InputError(route_path + ": belongs to another scenario than " + scenario_path);
+    throw InputError(route_path + ": is a route in another scenario than " + scenario_path);
   }
   aquafarm::Farm farm(scenario);
   farm.Reset(log.seed, log.episode);

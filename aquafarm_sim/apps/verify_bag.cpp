@@ -31,10 +31,12 @@ int main(int argc, char** argv) {
         std::printf("%s: %s\n", bag.c_str(), episode.c_str());
       }
       if (check.difference.empty()) {
+        const std::string unfinished = check.unfinished == 0 ? ""
+                                                             : ", episodes without their end: " +
+                                                                   std::to_string(check.unfinished);
         std::printf("%s: identical: %llu episode%s, %llu steps%s%s\n", bag.c_str(),
                     static_cast<unsigned long long>(check.episodes), check.episodes == 1 ? "" : "s",
-                    static_cast<unsigned long long>(check.steps),
-                    check.unfinished == 0 ? "" : ", the end of one is not in the bag",
+                    static_cast<unsigned long long>(check.steps), unfinished.c_str(),
                     aquafarm_sim::ChangesInWords(check).c_str());
       } else {
         std::printf("%s: differs: %s\n", bag.c_str(), check.difference.c_str());

@@ -78,7 +78,8 @@ double Seconds(Clock::time_point since) {
 void WaitForMaster() {
   const Clock::time_point start = Clock::now();
   while (!ros::master::check()) {
-    if (Seconds(start) > kStartLimit_s) throw std::runtime_error("no ROS master came up");
+    if (Seconds(start) > kStartLimit_s)
+      throw std::runtime_error("no ROS master started within the time limit; check rosmaster");
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
 }
@@ -91,7 +92,8 @@ class Client {
       : client_(node.serviceClient<Service>(name, true)) {
     const Clock::time_point start = Clock::now();
     while (!client_.isValid() || !client_.exists()) {
-      if (Seconds(start) > kStartLimit_s) throw std::runtime_error("no service " + name);
+      if (Seconds(start) > kStartLimit_s)
+        throw std::runtime_error("service " + name + " did not appear within the time limit");
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
       client_ = node.serviceClient<Service>(name, true);
     }

@@ -72,7 +72,7 @@ TEST_F(EpisodeBag, EverySummaryBelongsToItsEpisodeAndEveryEndHasOne) {
   EXPECT_EQ(missing, difference([](FarmSpec*, FarmState*, EpisodeSummary* summary) {
               return summary == nullptr;
             }));
-  EXPECT_EQ("episode 7 of seed 5: a summary that no states belong to",
+  EXPECT_EQ("episode 7 of seed 5: a summary without states",
             difference([](FarmSpec*, FarmState* state, EpisodeSummary* summary) {
               if (summary != nullptr) summary->episode = 7;
               return state == nullptr || state->step < 20;  // the episode does not end
@@ -305,7 +305,7 @@ TEST_F(EpisodeBag, ALengthThatAsksForAnyMemoryHasItsLine) {
     }
   }
   Put(path, ContentOf(path).find(ship) + 3, "\x02");
-  EXPECT_EQ(path + ": damaged: it asks for more memory than a bag of its size needs",
+  EXPECT_EQ(path + ": damaged: reading it needs more memory than a bag of its size may use",
             Refusal(path));
   EXPECT_EQ(before, DataLimit());
 }
@@ -373,7 +373,7 @@ TEST_F(EpisodeBag, AMessageWithoutATopicAndAChunkListedTwiceHaveTheirLine) {
        at = sound.find(connection, at + 1)) {
     Put(path, at + 5, "\x05");
   }
-  EXPECT_EQ(0U, Refusal(path).find(path + ": damaged: a message of no topic at byte "))
+  EXPECT_EQ(0U, Refusal(path).find(path + ": damaged: a message without a topic at byte "))
       << Refusal(path);
 }
 
@@ -395,10 +395,10 @@ TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
   const std::string content = ContentOf(encrypted);
   Put(encrypted, content.find("chunk_count="), "encryptor=a/b");
   EXPECT_EQ(encrypted + ": encrypted; run 'rosbag decrypt' first", Refusal(encrypted));
-  EXPECT_EQ(folder_ + ": damaged or not a bag: no regular file", Refusal(folder_));
+  EXPECT_EQ(folder_ + ": damaged or not a bag: not a regular file", Refusal(folder_));
   const std::string pipe = folder_ + "/pipe.bag";
   ASSERT_EQ(0, mkfifo(pipe.c_str(), 0600));
-  EXPECT_EQ(pipe + ": damaged or not a bag: no regular file", Refusal(pipe));
+  EXPECT_EQ(pipe + ": damaged or not a bag: not a regular file", Refusal(pipe));
   EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
                                  return spec == nullptr;
                                })).find("no topic spec, so it is unknown what was played"));
@@ -428,7 +428,7 @@ TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
   EXPECT_NE(std::string::npos, Refusal(bag, "/lake").find("no ranch /lake/, there is: /ranch/"));
   EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
                                  return spec != nullptr;
-                               })).find("got no state of an episode with a spec"));
+                               })).find("got no episode with a spec and states"));
 }
 
 TEST_F(EpisodeBag, AnEpisodeWithoutItsEndSaysSo) {

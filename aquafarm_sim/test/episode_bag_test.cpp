@@ -254,7 +254,8 @@ TEST(Keep, AFolderThatCannotBeMadeIsRefused) {
                     {});
     FAIL();
   } catch (const aquafarm::InputError& error) {
-    EXPECT_STREQ("~keep_dir: got '/proc/none', expected a folder to write to", error.what());
+    EXPECT_STREQ("~keep_dir: got '/proc/none', expected a folder that can be written",
+                 error.what());
   }
 }
 

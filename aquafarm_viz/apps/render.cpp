@@ -92,7 +92,7 @@ const std::string& Name(const Request& request) {
 
 std::string Missing(const Request& request, const Found& found, const std::vector<Gap>& gaps = {}) {
   if (found.states == 0) {
-    return Name(request) + ": got no state of an episode with a spec, expected at least one";
+    return Name(request) + ": got no episode with a spec and states, expected at least one";
   }
   for (const Gap& gap : gaps) {
     if (!gap.after) continue;

@@ -212,13 +212,13 @@ TEST(PlanText, TheHeadlineNamesWhatIsOutdated) {
   const auto plan = Plan();
   EXPECT_EQ(PlanHeadline(*plan, 0.0),
             "plan: 1 of 2 ships leave. No ship should leave after 13:30.");
-  plan->fault = "b.json: bad; this plan is of a.json";
+  plan->fault = "b.json: bad; this plan uses a.json";
   plan->warnings.resize(1);
   plan->warnings[0].severity = "stop";
   plan->warnings[0].text = "The bulletin is 14 hours old.";
   EXPECT_EQ(PlanHeadline(*plan, 0.0),
             "plan: 1 of 2 ships leave. No ship should leave after 13:30. The bulletin is 14 hours "
-            "old. OUTDATED: b.json: bad; this plan is of a.json");
+            "old. OUTDATED: b.json: bad; this plan uses a.json");
 }
 
 TEST(PlanText, DeparturesMayFollowTheEndOfTheKnownTime) {

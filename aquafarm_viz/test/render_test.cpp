@@ -106,13 +106,13 @@ TEST_F(RenderTest, RefusesInvalidBagsAndUnwritablePaths) {
   EXPECT_EQ(WEXITSTATUS(none.code), 2);
   EXPECT_EQ(none.output, "render: " + Path("none.bag") + ": no such file\n");
   EXPECT_EQ(Render("--bag " + Path("")).output,
-            "render: " + Path("") + ": damaged or not a bag: no regular file\n");
+            "render: " + Path("") + ": damaged or not a bag: not a regular file\n");
   const std::string bag = MakeBag({"/aquafarm/"});
   test::DamageIndex(bag);
   const Result damaged = Render("--bag " + bag + " -o " + Path("x.png"));
   EXPECT_EQ(WEXITSTATUS(damaged.code), 2);
   EXPECT_EQ(damaged.output.find("render: " + bag +
-                                ": damaged: an index that is not of its chunk at byte"),
+                                ": damaged: an index that does not match its chunk at byte"),
             0U)
       << damaged.output;
   MakeBag({"/aquafarm/"});

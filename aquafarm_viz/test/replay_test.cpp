@@ -202,8 +202,9 @@ TEST_F(Replay, AtIsTheStepThatIsShownAtAPosition) {
 TEST_F(Replay, ABagThatCannotBeShownHasItsLine) {
   EXPECT_EQ(FaultOf("/nowhere/x.bag"), "/nowhere/x.bag: no such file");
   test::DamageIndex(MakeBag());
-  EXPECT_EQ(FaultOf(path_).find(path_ + ": damaged: an index that is not of its chunk at byte "),
-            0U);
+  EXPECT_EQ(
+      FaultOf(path_).find(path_ + ": damaged: an index that does not match its chunk at byte "),
+      0U);
   {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     bag.write("/aquafarm/state", ros::Time(1.0), test::MakeState());
@@ -217,7 +218,7 @@ TEST_F(Replay, ABagThatCannotBeShownHasItsLine) {
     bag.write("/aquafarm/spec", ros::Time(1.0), test::MakeSpec());
   }
   EXPECT_EQ(FaultOf(path_),
-            path_ + ": got no state of an episode with a spec, expected at least one");
+            path_ + ": got no episode with a spec and states, expected at least one");
   {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     // A connection with the type of a state and an invalid definition.

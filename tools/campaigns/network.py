@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trains while the network misbehaves. Each command must be applied exactly once: the trained policy
-and the episodes must equal those of an undisturbed training, bit for bit.
+"""Disturbs trainings through ROS. Each command must be applied exactly once: the trained policy and
+the episodes must equal those of an undisturbed training bit for bit.
 
-proxy         a proxy delays, cuts and repeats service calls, at once or after later ones; a master in
-              front of the real one hands out its address
+proxy         a proxy delays and cuts service calls, and repeats them at once or after later ones; a
+              second master passes calls on to the real one and returns the address of the proxy
 stop_sim      the sim node is stopped (SIGSTOP) for --stop-seconds, longer than a call may take
-stop_trainer  the trainer is stopped for as long
-master        the master is killed and started again at its port. It does not know the services any
-              more, so that connections must stay open; calls may take as long as usual
+stop_trainer  the trainer is stopped for the same time
+master        the master is killed and started again at its port. It no longer knows the services,
+              so connections must stay open
 """
 import contextlib
 import pathlib
@@ -25,14 +25,14 @@ from campaigns import ros
 
 STEPS = 96_000       # of a training; each call steps 16 farms
 LIMIT_S = 1200
-DEADLOCK = "roscpp is in a deadlock"  # in what train_node prints then
+DEADLOCK = "roscpp is in a deadlock"  # part of the message of train_node
 DELAY_S = 0.2
-# How often a call is treated so, one in:
+# One in this many calls is disturbed in this way:
 DELAY, REPEAT, REPEAT_LATE, CUT_BEFORE, CUT_AFTER = 60, 20, 40, 60, 60
 
 
 class Proxy(socketserver.ThreadingTCPServer):
-    """Passes TCPROS service calls on, and treats some of them badly."""
+    """Passes TCPROS service calls on, and delays, cuts or repeats some of them."""
 
     allow_reuse_address = True
     daemon_threads = True
@@ -45,14 +45,15 @@ class Proxy(socketserver.ThreadingTCPServer):
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
     def one_in(self, number, what):
-        """Whether to treat this call so; counts it."""
+        """Draws whether to disturb this call, which it is with probability 1 / `number`, and counts
+        it as `what`."""
         with self.lock:
             chosen = self.campaign.rng.randrange(number) == 0
             self.campaign.attempt(what, int(chosen))
         return chosen
 
     def call_again(self, greeting, request, delay_s):
-        """Sends a call once more over a connection of its own, and drops the answer."""
+        """Sends a call again over its own connection and ignores the answer."""
         time.sleep(delay_s)
         with contextlib.suppress(OSError), socket.create_connection(self.target, timeout=30) as line:
             line.sendall(greeting)
@@ -62,7 +63,7 @@ class Proxy(socketserver.ThreadingTCPServer):
 
 
 class Handler(socketserver.BaseRequestHandler):
-    """One connection of a client: the header, then requests, each with its answer."""
+    """Passes on one connection of a client: the header, then requests and their answers."""
 
     def handle(self):
         proxy = self.server
@@ -90,12 +91,12 @@ class Handler(socketserver.BaseRequestHandler):
 
 
 def receive_answer(connection):
-    """Reads the answer of a service: a byte of success and a frame."""
+    """Returns the answer of a service: a byte that states success, then a frame."""
     return ros.receive(connection, 1) + ros.receive_frame(connection)
 
 
 class Master(xmlrpc.server.SimpleXMLRPCServer):
-    """Passes calls on to the real master, and hands out proxies in place of services."""
+    """Passes calls on to the real master, but returns addresses of proxies instead of services."""
 
     daemon_threads = True
 
@@ -130,7 +131,7 @@ def wait_until_training(ranch):
 
 
 def stop(ranch, process, what):
-    """Stops a process; returns whether the training was still running."""
+    """Stops a process. Returns whether the training was still running; records a failure if not."""
     process.send_signal(signal.SIGSTOP)
     return ranch.campaign.check(ranch.processes[-1].poll() is None,
                                 f"{what}: the training ended before; raise STEPS")
@@ -149,7 +150,7 @@ def stop_a_process(name):
 
 
 def restart_master(ranch):
-    """Restarts the master while the trainer is stopped, so that the training is not over before."""
+    """Restarts the master. Stops the trainer meanwhile, so that it cannot end before."""
     wait_until_training(ranch)
     trainer = ranch.processes[-1]
     if stop(ranch, trainer, "master"):
@@ -166,7 +167,7 @@ DISTURBANCES = {"proxy": undisturbed, "stop_sim": stop_a_process("stop_sim"),
 
 
 def train(campaign, folder, kind):
-    """One training with a new sim node; returns its results, or None after a failure."""
+    """Runs one training with a new sim node; returns its results, or None after a failure."""
     folder.mkdir()
     stop_s = campaign.stop_s if kind in ("stop_sim", "stop_trainer") else 0
     with ros.Ros(campaign, folder) as ranch:
@@ -183,7 +184,7 @@ def train(campaign, folder, kind):
         DISTURBANCES.get(kind, undisturbed)(ranch)
         code = process.wait(timeout=LIMIT_S)
         deadlocks = 0
-        # Each adds a line to the log. The training must only resume.
+        # Each deadlock adds a line to the log. The training must then resume.
         while code == ros.SIM_LOST and ranch.log("run").count(DEADLOCK) > deadlocks:
             deadlocks += 1
             campaign.attempt("deadlocks of roscpp")
@@ -193,7 +194,7 @@ def train(campaign, folder, kind):
 
 
 def run(campaign):
-    """Count is the number of disturbed trainings; the kinds take turns."""
+    """Runs the kinds in turn; campaign.count is the number of disturbed trainings."""
     kinds = campaign.kinds(DISTURBANCES)
     with tempfile.TemporaryDirectory(prefix="aquafarm_network_") as place:
         place = pathlib.Path(place)

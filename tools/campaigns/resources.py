@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Takes disk, permissions, descriptors and memory from the programs. Each must succeed, or end with
-an exit code, a readable line, and nothing half-written."""
+"""Runs programs with too little disk space, permissions, descriptors or memory. Each must succeed,
+or end with an exit code and a readable line, and leave no partial file."""
 import contextlib
 import os
 import pathlib
@@ -14,15 +14,16 @@ from campaigns import common
 
 LIMIT_S = 300
 UNPRIVILEGED_ID = 65534
-# What no user should see: a raw exception, a sanitizer's report, a Python traceback.
+# Output that no user should see: a raw exception, a report of a sanitizer, a Python traceback.
 RAW = re.compile(r"terminate called|what\(\):|Traceback|ERROR: AddressSanitizer|internal error")
-# Steps of a training that takes a second and writes some checkpoints.
+# Arguments of a training that takes a second and writes some checkpoints.
 TRAINING = ("-a", "q_learning", "-n", "300000", "--checkpoint-period", "0.05", "--evaluate", "20",
             "--random", "0", "--scenarios", str(common.SCENARIOS))
 
 
 def limits(**values):
-    """Returns a preexec_fn that sets limits; a file that grows too large gives an error, no signal."""
+    """Returns options of Popen that set limits. A file that grows too large gives an error, no
+    signal."""
     def apply():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         for name, value in values.items():
@@ -31,7 +32,8 @@ def limits(**values):
 
 
 def as_nobody():
-    """Returns options that take the rights of root away; writing to a read-only folder then fails."""
+    """Returns options of Popen for a user without privileges, who cannot write to read-only
+    folders."""
     if os.geteuid() != 0:
         return {}
     return {"user": UNPRIVILEGED_ID, "group": UNPRIVILEGED_ID, "extra_groups": []}
@@ -51,8 +53,8 @@ def small_disk(folder, kilobytes):
 
 
 def of_memory_group():
-    """Folder of this process's memory control group, in version 1 or 2; None if it has none that
-    this process may divide."""
+    """Returns the folder of the memory control group of this process, in version 1 or 2; None if
+    there is none."""
     for line in pathlib.Path("/proc/self/cgroup").read_text().splitlines():
         _, controllers, path = line.split(":", 2)
         if controllers == "memory":
@@ -65,7 +67,8 @@ def of_memory_group():
 
 @contextlib.contextmanager
 def memory_group(megabytes):
-    """Makes a control group with so much memory; yields options of a process in it, or None."""
+    """Makes a control group of this size. Yields the options of Popen for a process in it; None if
+    this process may not make one."""
     parent = of_memory_group()
     group = parent / f"aquafarm_{os.getpid()}" if parent else None
     try:
@@ -86,7 +89,8 @@ def memory_group(megabytes):
 
 
 def judge(campaign, what, folder, code, words):
-    """Records a failure unless a program under a limit behaved."""
+    """Records failures of a program under a limit: it hung, crashed, printed raw text or no text,
+    or left temporary files."""
     campaign.attempt("programs under a limit")
     campaign.attempt("refusals" if code else "successes")
     lines = [line for line in words.splitlines() if line.strip()]
@@ -101,7 +105,8 @@ def judge(campaign, what, folder, code, words):
 
 
 def train(campaign, what, folder, **options):
-    """Trains under a limit and judges it; then resumes without it if there is something to resume."""
+    """Trains under a limit and judges the training. If it failed and has a checkpoint, this must be
+    playable."""
     trainer = campaign.program("aquafarm_train")
     code, words = common.execute(trainer, "paper", *TRAINING, "-d", folder, seconds=LIMIT_S, **options)
     judge(campaign, what, folder, code, words)
@@ -113,7 +118,7 @@ def train(campaign, what, folder, **options):
 
 
 def build_ranch(campaign, what, folder, output, **options):
-    """Runs the program that writes a scenario, which needs no libtorch."""
+    """Runs the program that writes a scenario and judges this; returns its exit code."""
     program = campaign.program("aquafarm_scenario")
     code, words = common.execute(program, "--center", "30,122", "-o", output, seconds=LIMIT_S,
                                  **options)
@@ -128,7 +133,7 @@ def disk_full(campaign, place):
             campaign.attempt("full disks left out: no right to mount")
         else:
             train(campaign, f"training on a disk of {kilobytes} kB", disk / "run")
-            # Leaves less room than a scenario takes.
+            # The free space is now less than a scenario takes.
             free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
             (disk / "filler").write_bytes(bytes(max(0, free - 4096)))
             output = disk / "ranch.yaml"
@@ -167,8 +172,8 @@ def memory(campaign, place):
 
 
 def control_group(campaign, place):
-    """The kernel kills a program that needs more memory than its group has. What it has written must
-    then be readable, and the next start must remove what it left."""
+    """The kernel kills a program that needs more memory than its group has. The next start must
+    then read the files of the killed program and remove temporary ones."""
     megabytes = campaign.rng.choice([20, 40, 60, 80, 100, 130, 160])
     folder, what = place / "run", f"training in a control group of {megabytes} MB"
     trainer = campaign.program("aquafarm_train")
@@ -188,7 +193,7 @@ def control_group(campaign, place):
 
 
 def run(campaign):
-    """Count is the number of limits tried, each of one kind."""
+    """Tries the kinds of limits in turn; campaign.count is the number of tries."""
     kinds = [disk_full, read_only, descriptors, file_size, memory, control_group]
     number = 0
     while campaign.more(number):

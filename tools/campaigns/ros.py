@@ -20,13 +20,13 @@ SIM_LOST = 4         # exit code of a trainer whose sim node is gone
 START_LIMIT_S = 120
 FARMS = 16  # of a sim node; a call of a trainer steps all of them
 
-# How sanitizers begin a report, if the programs were built with one.
+# The first line of a report of a sanitizer, with which the programs may be built.
 SANITIZER = re.compile(r"(?:WARNING|ERROR): \w+Sanitizer.*|.*: runtime error: .*")
 
 
 class Ros:
-    """A master in a folder; leaving the context ends all its processes, and records reports of
-    sanitizers in their logs as failures."""
+    """A master with its files in a folder. Leaving the context ends all processes and records
+    reports of sanitizers in their logs as failures."""
 
     def __init__(self, campaign, folder):
         self.campaign = campaign
@@ -76,7 +76,8 @@ class Ros:
         return (self.folder / f"{name}.log").read_text(errors="replace")
 
     def wait_for(self, what, name, limit_s=START_LIMIT_S):
-        """Waits for a value that is true. @raises TimeoutError with the ends of the logs"""
+        """Calls `what` until it returns a true value; returns this value. @raises TimeoutError with
+        the ends of the logs"""
         end = time.monotonic() + limit_s
         while True:
             try:
@@ -92,7 +93,7 @@ class Ros:
             time.sleep(0.05)
 
     def service(self, name):
-        """URI of a service, or an empty text."""
+        """Returns the URI of a service, or an empty text."""
         code, _, uri = self.master().lookupService("/campaign", name)
         return uri if code == 1 else ""
 
@@ -106,7 +107,8 @@ class Ros:
         return process
 
     def answers(self, name):
-        """Whether a process listens at the address of a service; that of a killed one stays known."""
+        """Returns whether the master knows a service. Raises OSError if no process listens at its
+        address: the master keeps the address of a killed process."""
         place = urllib.parse.urlparse(self.service(name))
         if not place.port:
             return False
@@ -114,7 +116,7 @@ class Ros:
         return True
 
     def train(self, namespace, run, steps, *arguments, uri=None):
-        """Starts a training of a table with the farms of a namespace."""
+        """Starts a Q-learning training with the farms of a namespace; returns the process."""
         return self.start(run, self.campaign.program("train_node"), f"__ns:=/{namespace}",
                           "__name:=train", "_algorithm:=q_learning", f"_steps:={steps}",
                           f"_run_dir:={self.folder / run}", "_evaluation_episodes:=0",
@@ -123,20 +125,20 @@ class Ros:
                             else (*arguments, "_sim_timeout_s:=60")), uri=uri)
 
     def results(self, run):
-        """The files that must not depend on what happened to the connections."""
+        """Returns {name: bytes} of the files that a disturbance must not change."""
         return {name: (self.folder / run / name).read_bytes()
                 for name in ("policy.ckpt", "metrics.csv")}
 
 
 def memory(process):
-    """Resident memory of a process [bytes]; 0 if it has ended."""
+    """Returns the resident memory of a process [bytes]; 0 if it has ended."""
     words = pathlib.Path(f"/proc/{process.pid}/status").read_text()
     found = re.search(r"VmRSS:\s+(\d+) kB", words)
     return int(found.group(1)) << 10 if found else 0
 
 
 def receive(connection, size):
-    """Reads so many bytes. @raises ConnectionError at the end of the stream"""
+    """Reads `size` bytes. @raises ConnectionError at the end of the stream"""
     data = b""
     while len(data) < size:
         part = connection.recv(size - len(data))
@@ -147,13 +149,13 @@ def receive(connection, size):
 
 
 def receive_frame(connection):
-    """Reads a TCPROS frame: its length in four bytes, and its content."""
+    """Returns a TCPROS frame: its length in four bytes, then its content."""
     head = receive(connection, 4)
     return head + receive(connection, struct.unpack("<I", head)[0])
 
 
 def header(**fields):
-    """A TCPROS connection header."""
+    """Returns a TCPROS connection header."""
     lines = [f"{key}={value}".encode() for key, value in fields.items()]
     body = b"".join(struct.pack("<I", len(line)) + line for line in lines)
     return struct.pack("<I", len(body)) + body

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Steps farms for long and checks what must always hold.
+"""Steps farms for a long time and checks conditions that must always hold.
 
 random    random, legal random and homing actions in every shipped scenario (farm_soak)
-planner   actions of the planners there, with a random one now and then (planner_soak)
-ros       a training through ROS in lockstep; the memory of the sim node and of the trainer must stay
-          flat to 1 % after the first fifth
+planner   actions of the planners in these scenarios, with some random ones (planner_soak)
+ros       a training through ROS in lockstep; the memory of the sim node and of the trainer must
+          grow by at most 1 % after the first fifth
 """
 import pathlib
 import re
@@ -14,7 +14,8 @@ import tempfile
 
 from campaigns import common, ros
 
-# Program and steps of each scenario between looks at the clock. Planners are a thousand times slower.
+# Program and steps in each scenario before the time is checked. Planners are a thousand times
+# slower.
 KINDS = {"random": ("farm_soak", 200_000), "planner": ("planner_soak", 300)}
 MILLION = 1_000_000
 LIMIT_S = 6 * 3600
@@ -40,7 +41,8 @@ def soak(campaign, kind, seed):
 
 
 def check_flat(campaign, name, samples):
-    """The memory in the last fifth of the samples must be that in the second fifth."""
+    """Checks that the memory in the last fifth of the samples is at most 1 % above that in the
+    second."""
     fifth = len(samples) // 5
     early = statistics.median(samples[fifth:2 * fifth])
     late = statistics.median(samples[-fifth:])
@@ -51,7 +53,7 @@ def check_flat(campaign, name, samples):
 
 
 def lockstep(campaign, steps):
-    """A training of so many commands through ROS; returns them, or None after a failure."""
+    """Runs a training of `steps` commands through ROS; returns `steps`, or None after a failure."""
     samples = {"sim node": [], "trainer": []}
     with tempfile.TemporaryDirectory(prefix="aquafarm_soak_") as place, \
             ros.Ros(campaign, pathlib.Path(place)) as ranch:
@@ -78,8 +80,8 @@ def lockstep(campaign, steps):
 
 
 def run(campaign):
-    """Runs the kinds with one seed after another; count is in millions of steps, of the random ones
-    if there are several kinds."""
+    """Runs the kinds with one seed after another. campaign.count is the number of million steps;
+    only those of kind random count if it takes part."""
     kinds = campaign.kinds([*KINDS, "ros"]) if campaign.only else list(KINDS)
     steps, seed = 0, campaign.seed
     while campaign.more(steps // MILLION):

@@ -2,8 +2,8 @@
 # shellcheck shell=bash disable=SC2154,SC2034
 # Builds the workspace and the ROS-free cores; sourced by ./aquafarm.
 
-# is_made_from FOLDER SOURCES [LINE]: whether cmake has configured a folder for these sources, and with
-# that line in its cache. It is not so after a checkout was copied or moved.
+# is_made_from FOLDER SOURCES [LINE]: true if cmake has configured a folder for these sources and
+# its cache has this line. It is false after a checkout was copied or moved.
 is_made_from() {
   grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$2" "$1/CMakeCache.txt" &&
     { [[ $# == 2 ]] || grep -qsxF "$3" "$1/CMakeCache.txt"; }
@@ -13,15 +13,16 @@ is_of_this_tree() {
   [[ $(realpath -m "$ws/src/aquafarm") == "$root" ]] && is_made_from "$ws/build" "$ws/src" "$@"
 }
 
-# True when no source is newer than the last successful build. A folder's time changes when a file
-# in it comes or goes, so removed files count as well.
+# True if no source is newer than the last successful build. The time of a folder changes if a file
+# in it is added or removed, so removed files count as well.
 is_built() {
   is_of_this_tree "CMAKE_BUILD_TYPE:STRING=$build_type" &&
     [[ -f $ws/built && -z $(find "$root"/aquafarm_* -newer "$ws/built" ! -name '*.pyc' \
       ! -name __pycache__ -print -quit) ]]
 }
 
-# locked COMMAND …: runs it while no other process builds in this workspace; cannot be nested.
+# locked COMMAND …: runs the command while no other process builds in this workspace. Calls cannot
+# be nested.
 locked() {
   local lock result
   mkdir -p "$ws"
@@ -37,20 +38,20 @@ locked() {
   return $result
 }
 
-# The suite needs no messages in Lisp, which take long to write.
+# The suite needs no messages in Lisp, whose generation takes long.
 export ROS_LANG_DISABLE=${ROS_LANG_DISABLE-genlisp}
 
 build_lines='^\[ *[0-9]+%\] (Building|Linking|Generating)|[Ee]rror|[Ww]arning|\*\*\*'
 
 # The same sources are compiled in several kinds of workspace; ccache reuses the results of the first.
-# CCACHE_BASEDIR is the folder of a build: paths in it count relative to the folder of a target.
+# CCACHE_BASEDIR is the folder of a build: ccache treats paths in it as relative.
 use_ccache() {
   command -v ccache >/dev/null || return 0
   export CCACHE_DIR=${CCACHE_DIR:-$ws/ccache} CCACHE_MAXSIZE=${CCACHE_MAXSIZE:-2G}
   export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-ccache}
 }
 
-# Refuses a workspace in which something else has the place of this checkout.
+# Refuses a workspace that has another folder in the place of this checkout.
 check_place() {
   local place=$ws/src/aquafarm
   if [[ -e $place && ! -L $place && $(realpath "$place") != "$root" ]]; then
@@ -59,7 +60,7 @@ another folder"
   fi
 }
 
-# Puts this checkout into the workspace.
+# Links this checkout into the workspace.
 link_sources() {
   local place=$ws/src/aquafarm
   check_place
@@ -67,7 +68,7 @@ link_sources() {
   [[ -e $place && ! -L $place ]] || ln -sfn "$root" "$place"
 }
 
-# The cores' own tests and benches are built by core(), not a second time here.
+# core() builds the tests and benches of the cores.
 # shellcheck disable=SC2120
 build_all() {
   setup
@@ -75,13 +76,13 @@ build_all() {
   check_place
   if [[ -d $ws/build ]] && ! is_of_this_tree; then
     [[ -f $ws/built || -f $ws/building ]] ||
-      code=2 die "$ws: got a build that this script has not made, expected one of its own or none; \
+      code=2 die "$ws: got a build that ./aquafarm has not made, expected its own build or none; \
 set AQUAFARM_WS to another folder, or build with catkin_make there"
     say "the workspace $ws was built from another checkout; rebuilding"
     rm -rf "$ws/build" "$ws/devel" "$ws/built"
   fi
-  # catkin's first configuration remembers only those folders of the environment that exist then,
-  # and run_tests lives on what it remembers.
+  # catkin's first configuration stores the environment with only those folders that exist then.
+  # run_tests uses this environment.
   mkdir -p "$ws/devel/lib/pkgconfig" "$ws/devel/lib/python3/dist-packages"
   link_sources
   local start log=$ws/build.log
@@ -113,7 +114,7 @@ ensure_built() {
 # core NAME: builds a ROS-free core alone with plain cmake.
 core() { locked build_core "$@"; }
 
-# Its sources have the path that catkin uses, so that ccache knows them again.
+# The sources have the path that catkin uses, so that ccache finds its results.
 build_core() {
   local dir=$ws/core/$1 source=$ws/src/aquafarm/$1/core
   mkdir -p "$ws/core"

@@ -2,7 +2,7 @@
 # shellcheck shell=bash disable=SC2154,SC2034
 # Installs what the suite needs; sourced by ./aquafarm.
 
-# Everything the suite needs from apt, in this one place.
+# All packages that the suite needs from apt.
 packages=(
   build-essential ccache cmake git ca-certificates
   catkin python3-catkin-pkg ros-core ros-core-dev ros-core-python-dev ros-message-generation
@@ -28,7 +28,7 @@ missing_packages() {
 setup() {
   local missing as_root=()
   command -v dpkg-query >/dev/null ||
-    code=3 die "no dpkg here (made for Debian 12); install the equivalents of: ${packages[*]}"
+    code=3 die "there is no dpkg (setup is made for Debian 12); install the equivalents of: ${packages[*]}"
   mapfile -t missing < <(missing_packages)
   [[ ${#missing[@]} -gt 0 ]] || return 0
   if [[ $(id -u) != 0 ]]; then
@@ -39,13 +39,13 @@ setup() {
   apt-get install --no-install-recommends ${missing[*]}"
     fi
   fi
-  command -v apt-get >/dev/null || code=3 die "no apt-get here; please install: ${missing[*]}"
+  command -v apt-get >/dev/null || code=3 die "there is no apt-get; install these packages by hand: ${missing[*]}"
   say "installing ${#missing[@]} packages with apt: ${missing[*]}"
   "${as_root[@]}" apt-get -q -o DPkg::Lock::Timeout=600 update ||
-    say "apt-get update failed; trying with the package lists at hand"
+    say "apt-get update failed; continuing with the package lists of this machine"
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y \
     -o DPkg::Lock::Timeout=600 install --no-install-recommends "${missing[@]}" ||
-    code=3 die "apt could not install them; please install: ${missing[*]}"
+    code=3 die "apt-get install failed; install these packages by hand: ${missing[*]}"
   mapfile -t missing < <(missing_packages)
-  [[ ${#missing[@]} == 0 ]] || code=3 die "still missing after apt: ${missing[*]}"
+  [[ ${#missing[@]} == 0 ]] || code=3 die "still missing after apt-get install: ${missing[*]}"
 }

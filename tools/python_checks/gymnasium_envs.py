@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests every id with what Gymnasium's own tests/envs/test_envs.py demands of its environments: a
-check_env without a warning, equal rollouts, pictures of every render mode, pickles; then specs and
-wrappers."""
+"""Tests every id as Gymnasium's own tests/envs/test_envs.py tests its environments: check_env gives
+no warning, rollouts are equal, every render mode gives pictures, pickles continue. Then tests specs
+and wrappers."""
 import pickle
 import warnings
 

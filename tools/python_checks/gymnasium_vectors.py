@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests what Gymnasium's own tests of vectors and autoreset modes demand: Sync and Async vectors of
-single environments give the same results in each mode, masked resets start the selected farms alone
-and refuse wrong masks; then vector wrappers, and unseeded vectors past the end of episodes."""
+"""Tests vectors as Gymnasium's own tests of vectors and autoreset modes do: Sync and Async vectors
+of single environments give the same results in each mode; masked resets start only the selected
+farms and refuse wrong masks. Then tests vector wrappers, and vectors without a seed after episodes
+end."""
 import aquafarm_gym
 import gymnasium
 import numpy as np

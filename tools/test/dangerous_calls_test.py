@@ -17,7 +17,7 @@ ALLOWED = {"aquafarm_agents/core/src/training/register_learner.cpp": "dlopen(",
 
 
 def sources():
-    """Tracked programs and libraries, without tests and the checks of other packages."""
+    """Returns the tracked programs and libraries, without tests and checks with other packages."""
     names = subprocess.run(["git", "-C", ROOT, "ls-files", "-z"], capture_output=True, check=True,
                            text=True).stdout.split("\0")
     for name in names:

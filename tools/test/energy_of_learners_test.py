@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/energy_of_learners.py with programs that stand for the training and the evaluation."""
+"""tools/energy_of_learners.py with programs that replace the training and the evaluation."""
 import os
 import pathlib
 import subprocess

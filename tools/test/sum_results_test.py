@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The end of the test command: which cases failed, why, and how many ran."""
+"""tools/sum_results.py lists failed cases with the reason and counts all cases."""
 import pathlib
 import subprocess
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Arguments of launch files: names and values as a user gives them, and what is left to defaults."""
+"""Checks the arguments that a user gives for a launch file, and adds the defaults of others."""
 import datetime
 import json
 import os
@@ -9,8 +9,8 @@ import sys
 
 from .workspace import Refused, say
 
-# Arguments that hold a path, from which a node cannot find it: nodes run in ROS_HOME. The others
-# are paths only if they look like one: they may also be the name of what is shipped.
+# Arguments whose value is a path. It is made absolute, as nodes run in ROS_HOME. Values of
+# PATHS_OR_NAMES are paths only if they look like one; otherwise they are names of shipped files.
 PATHS = ("run_dir", "record_dir", "report", "bag", "output", "human")
 PATHS_OR_NAMES = ("policy", "init", "scenario")
 FLAG = re.compile(r"[Tt]rue|[Ff]alse|0|1")
@@ -44,7 +44,7 @@ def with_full_path(word):
 
 
 def check_value(launch, name, value):
-    """Refuses a value that roslaunch would answer with a page of XML, or not at all."""
+    """Refuses a value for which roslaunch would print a page of XML or no message."""
     def expect(is_right, expected):
         if not is_right:
             raise Refused(f"{name}: got '{value}', expected {expected}")
@@ -69,8 +69,8 @@ def check_value(launch, name, value):
 def check_values(launch, words):
     given = dict(map(split, words))
     if launch == "replay" and "bag" not in given:
-        raise Refused("replay: got no bag, expected bag:=FILE, such as one that ./aquafarm record "
-                      "wrote")
+        raise Refused("replay: got no bag, expected bag:=FILE, for example a bag that "
+                      "./aquafarm record wrote")
     for word in words:
         check_value(launch, *split(word))
 
@@ -90,8 +90,9 @@ def policy_of(ranch):
 
 
 def name_the_ranch(launch, words):
-    """Returns the arguments with RANCH.yaml of evaluate and sim as scenario:=RANCH.yaml, and with
-    the policy of policy_of unless one is given; a run folder of evaluate as policy:=FOLDER."""
+    """Returns the arguments with RANCH.yaml of evaluate and sim as scenario:=RANCH.yaml, and a run
+    folder of evaluate as policy:=FOLDER. If RANCH.yaml is given without a policy, adds that of
+    policy_of."""
     named, ranch = [], None
     for word in words:
         if launch == "evaluate" and os.path.isfile(os.path.join(word, "run.json")):
@@ -116,25 +117,25 @@ def arguments_of_run(run):
         return values
     try:
         made = json.loads(record.read_text(encoding="utf-8"))
-        # Exploration is an argument of its own, and an option of the learner in what is recorded.
+        # train.launch has an argument `exploration`; run.json records it among the options.
         options, start = made["options"].split(), "exploration="
         recorded = {name: str(made[name]) for name in ("algorithm", "seed", "farms", "credit")}
         recorded["options"] = " ".join(word for word in options if not word.startswith(start))
         recorded["exploration"] = "".join(
             word[len(start):] for word in options if word.startswith(start))
-        # A value with a line break, or with what roslaunch expands, could set any other argument.
+        # A value with a line break or a substitution of roslaunch could set any other argument.
         for name, value in recorded.items():
             if not value.isprintable() or "$(" in value or "'" in value:
                 raise ValueError(f"{name}: got {value!r}, expected one line without $( and quotes")
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        # The run is refused by its checkpoint.
+        # The program that reads the checkpoint refuses the run later.
         print(f"aquafarm: {record}: damaged: {error!r}", file=sys.stderr, flush=True)
         return values
     return {**values, **{name: value for name, value in recorded.items() if value}}
 
 
 def newest_run():
-    """Returns the newest run in ./runs that has learnt something, or None."""
+    """Returns the newest run in ./runs that has a checkpoint, or None."""
     found = [(path.stat().st_mtime, str(path.parents[1]))
              for path in pathlib.Path.cwd().glob("runs/*/checkpoints/step_*.ckpt")]
     return max(found)[1] if found else None
@@ -149,7 +150,8 @@ def defaults_of_training(launch, given, newest, now):
         taken["run_dir"] = run
     if launch == "train" and resumes:
         of_run = arguments_of_run(run)
-        # Another algorithm is refused as such, not by the options of the run's own.
+        # Another algorithm is refused later. If the options of the run were added, the message
+        # would name these instead.
         is_other = given.get("algorithm") not in (None, "", of_run.get("algorithm"))
         for name, value in of_run.items():
             if given.get(name) or (is_other and name in ("options", "exploration")):
@@ -163,8 +165,8 @@ def defaults_of_training(launch, given, newest, now):
 
 
 def default_arguments(launch, words):
-    """Returns what a launch writes or reads when its arguments give no path: the user's folder,
-    not ROS_HOME."""
+    """Returns arguments that the user has not given, such as output folders. Their paths are in
+    the present folder, not in ROS_HOME."""
     given = {name: value for name, _, value in (word.partition(":=") for word in words)}
     now = datetime.datetime.now().strftime("%Y%m%d-%H%M%S")
     here, newest, taken = os.getcwd(), newest_run(), {}
@@ -186,7 +188,7 @@ def default_arguments(launch, words):
     policy = given.get("policy", "")
     if launch == "evaluate" and not policy:
         policy = taken["policy"] = newest or "generalist"
-    # A policy plays on the ranch that it was trained on, which its run folder keeps.
+    # A policy plays on the ranch of its training, whose scenario is in its run folder.
     if launch != "replay" and "/" in policy and not given.get("scenario"):
         path = pathlib.Path(policy)
         for folder in (path, path.parent, path.parent.parent):
@@ -197,7 +199,7 @@ def default_arguments(launch, words):
 
 
 def with_defaults(launch, words, given_words):
-    """Returns `words` and the defaults that `given_words` leave, which are printed."""
+    """Returns `words` with the defaults of arguments that `given_words` lacks, and prints these."""
     taken = [f"{name}:={value}" for name, value in default_arguments(launch, given_words).items()]
     for word in taken:
         say(f"taking {word}")

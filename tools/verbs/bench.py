@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""./aquafarm bench: measures speed, and relates it to references measured in the same run."""
+"""./aquafarm bench: measures speed, and compares it with references measured in the same run."""
 import os
 import re
 import subprocess
@@ -8,15 +8,15 @@ import sys
 from .workspace import (PYTHON, ROOT, WS, bootstrap, build_core, ensure_built, enter_ros, program,
                         run_child, say)
 
-# The last Stable-Baselines3 that Debian 12's python3-torch satisfies, and the Gymnasium it takes.
+# The last Stable-Baselines3 that works with Debian 12's python3-torch, and a Gymnasium for it.
 WANTED = ("gymnasium==1.0.0", "stable-baselines3==2.4.1", "sb3-contrib==2.4.0",
           "farama-notifications", "cloudpickle")
 FIGURE = re.compile(r"[a-z][a-z0-9_]* -?[0-9][0-9.e+-]* ")
 
 
 def show(command, out=None, env=None):
-    """Runs a command, shows what it prints and, given a file, keeps it there. Ends the verb if the
-    command fails."""
+    """Runs a command, shows its output and, if `out` is given, writes it to this file. Ends the
+    verb if the command fails. Returns the lines of the output."""
     lines = []
     with subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE, text=True,
                           env=env) as child:
@@ -31,8 +31,8 @@ def show(command, out=None, env=None):
 
 
 def reference_python():
-    """Returns the Python of a virtual environment with what must come from PyPI, made once; None
-    if PyPI is out of reach."""
+    """Returns the Python of a virtual environment with the packages that come from PyPI, and makes
+    the environment if it does not exist. Returns None if PyPI is out of reach."""
     venv, log = WS / "bench_venv", WS / "bench_venv.log"
     ready = venv / "ready"
     if not ready.is_file() or ready.read_text(encoding="utf-8") != " ".join(WANTED):
@@ -40,14 +40,15 @@ def reference_python():
                     [venv / "bin/pip", "install", "-q", "--no-deps", "--timeout", "20", *WANTED])
         with open(log, "w", encoding="utf-8") as words:
             if any(run_child(command, stdout=words, stderr=words) != 0 for command in commands):
-                say(f"no ratio to a reference: PyPI is out of reach? ({log})")
+                say(f"no ratios to references: PyPI cannot provide their packages; see {log}")
                 return None
         ready.write_text(" ".join(WANTED), encoding="utf-8")
     return venv / "bin/python"
 
 
 def compare(script, *words, **variables):
-    """Relates figures to those of a program of tools/ that needs packages from PyPI."""
+    """Runs a program of tools/ that compares figures with references from PyPI. Returns its output;
+    an empty list if PyPI is out of reach."""
     python = reference_python()
     if python is None:
         return []
@@ -66,7 +67,7 @@ def of_core(core, name, *options, reference=None):
 
 
 def ppo():
-    """The references play the same farm through aquafarm_gym."""
+    """Runs the benchmark of PPO, then references that play the same farm through aquafarm_gym."""
     build_core("aquafarm_agents")
     build_core("aquafarm_gym")
     out = WS / "bench_ppo.txt"
@@ -76,7 +77,7 @@ def ppo():
 
 
 def ranks():
-    """Compares trainings of two and four ranks with one rank, and with a model of the cost."""
+    """Compares trainings of two and four ranks with one rank and with a model of the cost."""
     build_core("aquafarm_agents")
     return show([PYTHON, ROOT / "tools/bench_ranks.py", program("aquafarm_train")])
 
@@ -105,7 +106,7 @@ BENCHES = {
 
 
 def bench(name):
-    """Runs the benchmark of this name; None: all, and then every figure once more."""
+    """Runs the benchmark of this name. None: runs all, then prints every figure again."""
     bootstrap("setup")
     if name is not None:
         BENCHES[name]()

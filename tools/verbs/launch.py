@@ -31,7 +31,8 @@ def without_verbose(words):
 
 
 def refuse_unknown(launch, words):
-    """Ends with a line if the launch file has no argument of this name; roslaunch ignores it."""
+    """Ends this process if the launch file lacks one of the arguments, which roslaunch would
+    ignore. check_arguments prints the reason."""
     code = run_child([PYTHON, CHECK_ARGUMENTS, LAUNCH_FILES / f"{launch}.launch", *words],
                      stdout=subprocess.DEVNULL)
     if code != 0:
@@ -39,7 +40,8 @@ def refuse_unknown(launch, words):
 
 
 def refuse_a_second_ranch(words):
-    """On a master that was there before, a second ranch of the same name would end the first."""
+    """Raises Refused if a ranch of the same name runs on a shared master, as a second one would
+    end it."""
     ns = dict(map(arguments.split, words)).get("ns", "aquafarm")
     try:
         listed = subprocess.run(["rosnode", "list"], stdout=subprocess.PIPE, text=True,
@@ -62,13 +64,13 @@ def complete(launch, words):
 
 
 def read_end(exit_file, code, launch):
-    """Returns the exit code that the first node to end has left, and its reason. roslaunch returns
-    0 even when a required node failed."""
+    """Returns the exit code and the reason that the first node to end has written to `exit_file`:
+    roslaunch returns 0 even when a required node failed."""
     lines = exit_file.read_text(encoding="utf-8").splitlines() if exit_file.is_file() else []
     exit_file.unlink(missing_ok=True)
     if lines:
         return int(lines[0]), "".join(lines[1:2])
-    if code != 0:  # among them an interruption before any node was started
+    if code != 0:  # for example an interruption before any node was started
         return code, ""
     reason = "its node was killed before it ended"
     if launch == "train":
@@ -89,21 +91,21 @@ def report_end(what, code, reason=""):
 
 def launch(script, name, words):
     if importlib.util.find_spec("roslaunch") is None:
-        bootstrap("setup")  # its loader reads the launch file
+        bootstrap("setup")  # installs roslaunch, which reads the launch file
     words, verbose = without_verbose(arguments.name_the_ranch(name, words))
     options, given = complete(name, words)
     ensure_built()
     shares_master = enter_ros()
     if shares_master and name not in ("replay", "benchmark"):
         refuse_a_second_ranch(given)
-    os.environ["AQUAFARM_LAUNCHER"] = script  # for the next steps that nodes print
+    os.environ["AQUAFARM_LAUNCHER"] = script  # nodes name it in the next steps that they print
     if not verbose:
         os.environ.setdefault("ROSCONSOLE_FORMAT", "[${severity}] ${message}")
         say(f"starting {name}; Ctrl-C ends it, verbose:=true shows roslaunch's own messages")
     exit_file = WS / f"exit.{os.getpid()}"
     exit_file.unlink(missing_ok=True)
-    # A signal ends roslaunch too, which lets its nodes save. In the background of a shell SIGINT is
-    # ignored, which the nodes would inherit.
+    # A signal ends roslaunch too, and roslaunch lets its nodes save. A shell ignores SIGINT for its
+    # background jobs; without `env` the nodes would inherit this.
     code = run_child(["env", "--default-signal=INT,QUIT",
                       "roslaunch" if verbose else QUIET_ROSLAUNCH, *options,
                       f"--sigint-timeout={SIGINT_LIMIT_S}", "aquafarm_bringup", f"{name}.launch",
@@ -117,7 +119,7 @@ def describe(name, about):
     try:
         from roslaunch.arg_dump import dump_args  # Debian's; setup installs it
     except ImportError:
-        print("./aquafarm setup first; then this lists every argument with its meaning and default.")
+        print("Run ./aquafarm setup; then this help lists every argument with meaning and default.")
         return 0
     dump_args([str(LAUNCH_FILES / f"{name}.launch")])
     print('  verbose (default "false"): true shows the messages of roslaunch itself.')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The verbs by name: what each is for, and which function runs it."""
+"""Lists the verbs with their help texts and runs them."""
 import argparse
 import signal
 import sys
@@ -9,19 +9,20 @@ from .workspace import WS, Refused, ensure_built, enter_ros, replace_by
 
 LAUNCHES = {
     "train": """Trains an agent on the ranch: sim node, train node, viz. Ends by itself with a summary.
-Exit code 0: trained; other: the reason stands above the last line. Ctrl-C saves; resume:=true
+Exit code 0: trained; another code: the last lines name the reason. Ctrl-C saves; resume:=true
 continues the newest run, or that of run_dir:=…, with its scenario, algorithm and other arguments.
 ranks:=N trains ppo in N processes of this machine, without ROS; docs/scale.md describes several
 hosts.""",
     "evaluate": """Plays a policy greedily over many episodes and reports return and success. Without policy:=… it plays
 the newest run under ./runs, or the shipped policy generalist if there is no run.
-./aquafarm evaluate RANCH.yaml plays generalist on that ranch, without a training;
+./aquafarm evaluate RANCH.yaml plays generalist on that ranch, without a training (planner, if it
+has several ships);
 ./aquafarm evaluate RUN plays the policy of that run folder.""",
     "benchmark": """Trains every learner several times, measures them as the paper does (§4.2), and writes figures and a
 table with the paper's Table 1 next to the results. After Ctrl-C or a kill the same command resumes.""",
     "sim": """Runs the ranch at rate_hz steps per second and shows it in rviz (headless:=true: no rviz). The policy
-planner steers the ships; policy:=none: they wait for commands. ./aquafarm sim RANCH.yaml plays that
-ranch with the shipped policy generalist.""",
+planner steers the ships; policy:=none: they wait for commands. In ./aquafarm sim RANCH.yaml the shipped
+policy generalist steers a single ship, and planner steers several.""",
     "play": """Drives ship 0 from this terminal; the keys are shown at the start. Finished episodes are kept as
 bags in ./played, which ./aquafarm benchmark human:=played compares with the learners.""",
     "record": """Records the ranch's topics to a bag while it is run, trained on or played by a policy.""",
@@ -46,7 +47,7 @@ report, values, ask, verify, test, bench or --help"""
 
 
 class Parser(argparse.ArgumentParser):
-    """Refuses with one line, as all of aquafarm does."""
+    """A parser that refuses wrong arguments with one line, as all programs of aquafarm do."""
 
     def __init__(self, verb, expected, description):
         super().__init__(prog=f"./aquafarm {verb}", description=description, allow_abbrev=False)

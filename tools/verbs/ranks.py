@@ -4,7 +4,8 @@ from . import arguments
 from .launch import report_end
 from .workspace import WS, Refused, ensure_built, enter_ros, run_child
 
-# Arguments of train.launch that are options of aquafarm_train, and the values that leave them out.
+# Arguments of train.launch that are options of aquafarm_train. LEFT_OUT has the values for which
+# the option is left out.
 OPTIONS = {"ranks": "--ranks", "algorithm": "--algorithm", "episodes": "--episodes",
            "steps": "--steps", "farms": "--farms", "seed": "--seed", "credit": "--credit",
            "exploration": "--exploration", "init": "--init", "run_dir": "--run-dir",
@@ -31,8 +32,8 @@ def program_arguments(words):
             options += [OPTIONS[name], value] if value != LEFT_OUT.get(name) else []
         else:
             raise Refused(
-                f"{name}: got '{value}' with ranks, expected one of: scenario, algorithm, episodes, "
-                "steps, farms, seed, credit, exploration, options, init, run_dir, resume, report, "
+                f"{name}: got this argument with ranks, expected only: scenario, algorithm, "
+                "episodes, steps, farms, seed, credit, exploration, options, init, run_dir, resume, report, "
                 "checkpoint_period_s, evaluation_episodes, random_episodes; ranks train without ROS")
     return [scenario, *options], report
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""./aquafarm render: pictures and videos of bags, with a policy's choices if one is given."""
+"""./aquafarm render: draws pictures and videos of bags, with the choices of a policy if one is
+given."""
 import argparse
 import os
 import tempfile
@@ -10,7 +11,7 @@ VIDEOS = (".mp4", ".webm", ".gif")
 
 
 def maps_of_values(words):
-    """Returns the options of bag_policy for the maps that these arguments of render draw."""
+    """Returns the options of bag_policy for the maps that render draws with these arguments."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--step", nargs="*", action="extend", default=[])
     parser.add_argument("--every", default="1")
@@ -25,7 +26,7 @@ def maps_of_values(words):
 
 
 def without_policy(words):
-    """Returns the value of --policy, None if it is not given, and the other arguments."""
+    """Returns (value of --policy or None if it is not given, other arguments)."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--policy", nargs="?", const="")
     known, others = parser.parse_known_args(words)

@@ -17,7 +17,7 @@ from .workspace import (PYTHON, ROOT, WS, bootstrap, build_core, enter_ros, run_
 
 RESULTS = WS / "results"
 CORES = ("aquafarm_sim", "aquafarm_agents")
-# What some tests need and the suite does not: packages, and what is left out without them.
+# Packages that only some tests need. The key says what happens without them.
 EXTRAS = {"the tests of HTML pages are skipped": ("chromium", "chromium-driver", "python3-selenium"),
           "the check of locks is skipped, and the isolated workspace is built with g++":
           ("clang-14",),
@@ -28,11 +28,11 @@ BROKEN = """<testsuite tests="1" failures="1"><testcase classname="stage" name="
 """
 LAST_LINES = 20
 # CI ends the test command after 90 minutes. Checks of the wheel that begin later than this after the
-# start are skipped, and one that has begun may take a quarter of an hour more.
+# start are skipped. A check that has begun may take a quarter of an hour more.
 WHEEL_END_S = 55 * 60
-# A step next to others gets what processor time they leave.
+# Command prefix of a step that gets only the processor time that others leave.
 IDLE = ["chrt", "--idle", "0"]
-END_S = 20  # time for such a step to end after SIGTERM
+END_S = 20  # time for such a step to end after each of SIGTERM and SIGKILL
 
 
 @dataclasses.dataclass
@@ -41,13 +41,13 @@ class Step:
     name: str
     command: list
     log: pathlib.Path
-    xml: pathlib.Path | None = None  # the results that it writes; None: only its exit code counts
+    xml: pathlib.Path | None = None  # results that it writes; None: only its exit code counts
     is_shown: bool = False  # otherwise its output goes to the log
     variables: dict = dataclasses.field(default_factory=dict)  # of the environment
 
 
 class Stages:
-    """The stages of a test run: when each begins, and which broke off."""
+    """Prints when each stage of a test run begins, and records stages that fail."""
 
     def __init__(self):
         self._began = time.monotonic()
@@ -62,7 +62,8 @@ class Stages:
         say(f"{seconds // 60:2d}:{seconds % 60:02d} {what}")
 
     def run(self, *steps):
-        """Runs steps at the same time to their ends. Each exits with 0 if all its tests pass."""
+        """Runs steps at the same time and waits for them. Each exits with 0 if all its tests
+        pass."""
         with contextlib.ExitStack() as stack:
             commands = []
             for step in steps:
@@ -73,8 +74,8 @@ class Stages:
 
     @contextlib.contextmanager
     def next_to(self, *steps):
-        """Runs steps next to what the block does, which has precedence; waits for their ends when it
-        ends, and ends them if it raises or a signal ends this process."""
+        """Runs steps with low priority while the block runs. Then waits for the steps; ends them if
+        the block raises or a signal ends this process."""
         with contextlib.ExitStack() as stack:
             for number in (signal.SIGTERM, signal.SIGHUP):
                 stack.callback(signal.signal, number, signal.signal(number, exit_by_signal))
@@ -98,8 +99,8 @@ class Stages:
             self.break_off(step.name, step.log)
 
     def break_off(self, name, log):
-        """A stage that breaks off counts as a failed test; otherwise its missing cases would not be
-        reported."""
+        """Writes a failed test for a stage that broke off, as its missing cases would not be
+        reported, and prints the end of the log."""
         path = RESULTS / f"stage-{name.replace(' ', '_')}.xml"
         path.write_text(BROKEN.format(name), encoding="utf-8")
         lines = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
@@ -108,7 +109,7 @@ class Stages:
 
 
 def options_of(step, stack):
-    """Returns the options of Popen for a step; `stack` closes its log."""
+    """Returns the options of Popen for a step. `stack` closes the log of the step."""
     options = {"env": dict(os.environ, **step.variables)}
     if not step.is_shown:
         words = stack.enter_context(open(step.log, "w", encoding="utf-8"))
@@ -117,21 +118,22 @@ def options_of(step, stack):
 
 
 def lower_weight(session):
-    """Gives the processes of a session the lowest weight among sessions. Linux first shares the
-    processor time among sessions ("autogroup", sched(7)), and within each by class, so the idle class
-    alone leaves a step a quarter of a busy core. Without privileges, ten changes a second succeed."""
+    """Gives the processes of a session the lowest weight among sessions. Linux first divides the
+    processor time among sessions ("autogroup", sched(7)), then within each session by class. With
+    the idle class alone, a step would therefore get a quarter of a busy core. Without privileges,
+    ten changes a second succeed."""
     for _ in range(10):
         try:
             pathlib.Path(f"/proc/{session}/autogroup").write_text("19", encoding="ascii")
             return
         except BlockingIOError:
             time.sleep(0.1)
-        except OSError:  # without autogroups, or the step has ended
+        except OSError:  # there are no autogroups, or the step has ended
             return
 
 
 def end_session(child):
-    """Ends what is left of the session that a child leads."""
+    """Ends the remaining processes of the session that a child leads."""
     for number in (signal.SIGTERM, signal.SIGKILL):
         with contextlib.suppress(ProcessLookupError, subprocess.TimeoutExpired):
             os.killpg(child.pid, number)
@@ -148,7 +150,7 @@ def is_empty(path):
 
 
 def run_bootstraps(*steps):
-    """Runs ./aquafarm for some of its own steps at the same time; returns their exit codes."""
+    """Runs several steps of ./aquafarm at the same time; returns their exit codes."""
     return run_children([(["bash", ROOT / "aquafarm", *words], {}) for words in steps])
 
 
@@ -160,7 +162,7 @@ def build_workspace(stages):
     built, _ = run_bootstraps(["build"], ["--install", *itertools.chain(*extras.values())])
     if built != 0:
         sys.exit(built)
-    for left_out, packages in extras.items():  # nothing is left to do if all were installed
+    for left_out, packages in extras.items():  # does nothing if all are installed
         if run_bootstrap("--install", *packages) != 0:
             say(f"{', '.join(packages)} cannot be installed: {left_out}")
     use_ccache()
@@ -187,7 +189,8 @@ def pytest_step(name, files, variables):
 
 
 def tools_steps(fast):
-    """Two steps of about the same length; with `fast` one, without checks of the build."""
+    """Returns two steps of about the same length; with `fast` only one, without campaigns and
+    without checks of the build."""
     campaigns = ROOT / "tools/test/campaign_test.py"
     others = sorted({*ROOT.glob("tools/test/*_test.py")} - {campaigns})
     if fast:
@@ -196,7 +199,7 @@ def tools_steps(fast):
     return [pytest_step("campaigns", [campaigns], variables), pytest_step("tools", others, variables)]
 
 
-# A line for each test that ended; sed leaves out the rest of what ctest prints.
+# Prints a line for each test that ended; sed removes the other output of ctest.
 CTEST = """ctest "$@" | sed -unE \
 "s#^ *([0-9]+)/([0-9]+) Test +\\#[0-9]+: ([^ ]+) .*#aquafarm: $0/core test \\1 of \\2: \\3#p"
 """
@@ -214,7 +217,7 @@ def core_step(core, fast):
 
 
 def ros_step(log, fast):
-    # Two at a time is what has been tried on two cores; a rostest waits for most of its time.
+    # Two at a time were tried on two cores. A rostest waits for most of its time.
     jobs = min(2, len(os.sched_getaffinity(0)))
     return Step("tests through ROS",
                 [ROOT / "tools/run_ros_tests", WS / "build", log, "--jobs",
@@ -248,8 +251,8 @@ def test_all(stages, fast):
 
 
 def run(fast):
-    """Runs every test; `fast` leaves out slow ones and the builds in other kinds of workspace.
-    Returns 1 if a test failed."""
+    """Runs every test. `fast` leaves out slow tests, campaigns, checks with clang, the builds in
+    other kinds of workspace and the wheel. Returns 1 if a test failed."""
     stages = Stages()
     build_workspace(stages)
     if fast:

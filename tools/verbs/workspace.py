@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The workspace: its folders, its build by ./aquafarm, its ROS environment, child processes."""
+"""Folders, build and ROS environment of the workspace, and child processes."""
 import contextlib
 import os
 import pathlib
@@ -20,7 +20,7 @@ ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Refused(Exception):
-    """A verb cannot run: one line for the user, and the exit code."""
+    """A verb cannot run. Has a line for the user and the exit code."""
 
     def __init__(self, line, code=WRONG_ARGUMENT):
         super().__init__(line)
@@ -32,7 +32,7 @@ def say(line):
 
 
 def run_children(commands, goes_on=False):
-    """Runs commands at the same time to their ends and returns their exit codes, 128 + N for a
+    """Runs commands at the same time, waits for them and returns their exit codes; 128 + N for a
     command that signal N ended.
 
     commands: pairs of a command and the options of Popen. A signal to this process ends each command
@@ -69,12 +69,12 @@ def run_child(command, goes_on=False, **options):
 
 
 def run_bootstrap(*words):
-    """Runs ./aquafarm for one of its own steps; returns its exit code."""
+    """Runs a step of ./aquafarm; returns its exit code."""
     return run_child(["bash", ROOT / "aquafarm", *words])
 
 
 def bootstrap(*words):
-    """Runs ./aquafarm for one of its own steps; ends this process if that fails."""
+    """Runs a step of ./aquafarm; ends this process if it fails."""
     code = run_bootstrap(*words)
     if code != 0:
         sys.exit(code)
@@ -90,8 +90,8 @@ def build_core(name):
 
 
 def use_ccache():
-    """The same sources are compiled in several kinds of workspace; ccache reuses the results of the
-    first."""
+    """Makes CMake compile through ccache if it is installed: several kinds of workspace compile the
+    same sources, and ccache reuses the results of the first."""
     if shutil.which("ccache") is not None:
         os.environ.setdefault("CCACHE_DIR", str(WS / "ccache"))
         os.environ.setdefault("CCACHE_MAXSIZE", "2G")
@@ -99,12 +99,12 @@ def use_ccache():
 
 
 def program(name):
-    """Returns the path of a program that a build of a core made, else one of the workspace."""
+    """Returns the path of a program: of a core's build if it has one, else of the workspace."""
     for folder in (WS / "core", WS / "devel" / "lib"):
         for path in sorted(folder.rglob(name)):
             if path.is_file() and os.access(path, os.X_OK):
                 return path
-    raise Refused(f"the build made no {name}", code=1)
+    raise Refused(f"the build contains no program {name}; run ./aquafarm build", code=1)
 
 
 def is_port_open(port):
@@ -113,8 +113,8 @@ def is_port_open(port):
 
 
 def enter_ros():
-    """Takes the built workspace's ROS environment into this process. Returns whether the master may
-    be one that already runs (ROS_MASTER_URI is set)."""
+    """Adds the ROS environment of the built workspace to that of this process. Returns whether
+    ROS_MASTER_URI was set, so that the master may already run; otherwise chooses a free port."""
     sourced = subprocess.run(["bash", "-c", 'source "$0" && exec env -0', WS / "devel/setup.bash"],
                              stdout=subprocess.PIPE, check=False)
     if sourced.returncode != 0:

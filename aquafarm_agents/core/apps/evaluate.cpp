@@ -55,7 +55,10 @@ std::string ScenarioOf(const Arguments& arguments, const SavedPolicy& saved) {
     const std::string path = (folder / "scenario.yaml").string();
     if (fs::exists(path, ignored)) return path;
   }
-  throw InputError("scenario: got none, and there is no scenario.yaml next to " + saved.path);
+  throw InputError(
+      "scenario: got none, expected a scenario file or name: there is no scenario.yaml "
+      "with the policy " +
+      saved.path);
 }
 
 // Returns the mean of TeamBound over the played episodes.
@@ -235,9 +238,10 @@ void AddEpisodeOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("-e,--episodes", arguments.episodes, "number of episodes")
       ->check(CLI::Range(1, 10000000));
   app.add_option("-s,--seed", arguments.seed, "seed of the episodes");
-  app.add_option("--policy-seed", arguments.policy_seed,
-                 "seed of a policy that draws its actions, such as RANDOM; default: that of the "
-                 "episodes");
+  app.add_option(
+      "--policy-seed", arguments.policy_seed,
+      "seed of a policy that draws its actions, such as random; default: the seed of the "
+      "episodes");
   app.add_option("-f,--farms", arguments.environment.farms, "number of parallel farms")
       ->check(CLI::Range(1, kMaxFarms));
 }
@@ -250,7 +254,7 @@ void AddOutputOptions(CLI::App& app, Arguments& arguments) {
       "write an episode's route and actions, and the best move in each cell, to this JSON file; "
       "empty: nothing");
   app.add_option("--route-episode", arguments.route_episode,
-                 "episode of --route, --values and --ranch");
+                 "number of the episode for --route, --values and --ranch");
   app.add_option("--ranch", arguments.ranch,
                  "write the ranch that a family draws for one episode to this YAML file, as a "
                  "scenario; empty: nothing");

@@ -265,9 +265,11 @@ Json RunBackTest(Arguments& arguments) {
 void AddOptions(CLI::App& app, Arguments& arguments) {
   app.option_defaults()->always_capture_default();
   app.add_option("--ranch", arguments.ranch, "scenario file or name of a shipped scenario");
-  app.add_option("--archive", arguments.archive, "tracks; default: that of the Zhoushan scenarios");
+  app.add_option("--archive", arguments.archive,
+                 "file of tracks; default: the archive of the Zhoushan scenarios");
   app.add_option("--scenarios", arguments.scenarios, "folder of the shipped scenarios");
-  app.add_option("--devices", arguments.request.devices, "CSV, as for aquafarm_plan");
+  app.add_option("--devices", arguments.request.devices,
+                 "CSV file of the devices, as for aquafarm_plan");
   app.add_option("--ships", arguments.request.ships, "number of ships")->check(CLI::Range(1, 16));
   app.add_option("--speed", arguments.request.speed_kn, "speed of the ships in knots")
       ->check(CLI::Range(0.1, 60.0));

@@ -43,7 +43,7 @@ GeoPoint Place(const std::string& option, const std::string& text) {
                        ParseNumber(text.substr(comma + 1), option)};
   if (std::abs(place.latitude) <= 90.0 && std::abs(place.longitude) <= 360.0) return place;
   throw InputError(option + ": got '" + text +
-                   "', expected a latitude in [-90, 90] and a longitude");
+                   "', expected a latitude in [-90, 90] and a longitude in [-360, 360]");
 }
 
 // Parses "+6h", "6h" or "90min".
@@ -75,8 +75,8 @@ std::shared_ptr<const Scenario> LoadRanch(Arguments& arguments) {
   for (const std::string& port : arguments.ports) ranch.port_places.push_back(Place("port", port));
   const BuiltRanch built = BuildRanch(ranch);
   for (const std::string& warning : built.warnings) {
-    arguments.warnings.push_back(
-        {"ranch_changed", "warning", warning, "Check the places of the ranch."});
+    arguments.warnings.push_back({"ranch_changed", "warning", warning,
+                                  "Check the positions given for the ranch and its ports."});
   }
   return std::make_shared<const Scenario>(built.scenario);
 }
@@ -151,7 +151,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--bulletin", request.bulletin, "bulletins of the storm with its forecast");
   app.add_option("--storm", request.storm,
                  "file of a recorded track; the plan starts at --at (a hindcast)");
-  app.add_option("--storm-name", request.storm_name, "storm in that file, if it has several");
+  app.add_option("--storm-name", request.storm_name,
+                 "id or name of the storm in the file of --storm, if it has several");
   app.add_option("--at", arguments.at,
                  "start of the plan, UTC such as 2021-07-24T12:00Z; default: now, or the newest "
                  "report of an old bulletin");

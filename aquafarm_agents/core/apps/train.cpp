@@ -82,7 +82,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "icm+boltzmann:1; empty: the algorithm's default");
   app.add_option("-o,--set", arguments.settings, "option of the learner, key=value");
   app.add_option("--init", options.init,
-                 "run folder, checkpoint or generalist whose weights the learner begins with "
+                 "run folder, checkpoint or generalist whose weights the learner starts with "
                  "(ppo, mappo); empty: random weights");
   app.add_option("--credit", options.credit,
                  "reward that each agent learns from if the scenario shares the reward of several "
@@ -94,9 +94,9 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "RANDOM episodes for comparison; 0 disables them");
   app.add_option(
          "--ranks", arguments.ranks,
-         "number of processes on this host that train together, a power of two; up to 8 give the "
-         "result of --ranks 1, and more do if all runs have the same option shards. 0: one "
-         "process, or the processes that mpirun, srun or torchrun started")
+         "number of processes on this host that train together, a power of two. Results are equal "
+         "for 1 to 8, and for more if all runs have the same option shards. 0: one process, or the "
+         "processes that mpirun, srun or torchrun started")
       ->check(CLI::Range(0, 4096));
   app.add_option("--rank-start", arguments.times.start_s,
                  "max seconds that a rank waits for the others at the start")

@@ -50,30 +50,31 @@ def _parser():
                         help="folder of runs, tables and figures (default: ./benchmark)")
     parser.add_argument("--profile", default="full",
                         help="full: the whole protocol; quick: minutes; paper: learners as "
-                        "printed, tuned ones and an ablation, many hours (default: full)")
+                        "printed, tuned ones and an ablation, days (default: full)")
     parser.add_argument("--algorithms", default="all",
-                        help="rows that take part, separated by commas (default: all those of "
-                        f"the profile; full has {','.join(_default_names(PROFILES['full']))})")
+                        help="rows of the table, separated by commas (default: all rows of the "
+                        f"profile; full has {','.join(_default_names(PROFILES['full']))})")
     parser.add_argument("--runs", type=int, default=0,
                         help="trainings of each learner, with seeds 1, 2, … (default: the "
                         "profile's)")
     parser.add_argument("--episodes", type=int, default=0,
                         help="episodes of a training (default: the profile's)")
     parser.add_argument("--evaluation-episodes", type=int, default=0,
-                        help="greedy episodes, none of which is used in training (default: the "
-                        "profile's)")
+                        help="greedy episodes after each training, which never uses them (default: "
+                        "the profile's)")
     parser.add_argument("--max-steps", type=int, default=0,
-                        help="step limit of an episode (default: the profile's; 0: the "
-                        "scenario's)")
+                        help="step limit of an episode (default: 5000 in profile paper, the "
+                        "scenario's in others)")
     parser.add_argument("--evaluation-seed", type=int, default=1000,
-                        help="seed of these episodes, the same for all learners (default: 1000)")
+                        help="seed of the evaluation episodes, the same for all learners (default: "
+                        "1000)")
     parser.add_argument("--jobs", type=int, default=0,
-                        help="runs in parallel, of --scheduler local and slurm (default: one per "
-                        "core)")
+                        help="number of runs in parallel, with --scheduler local or slurm (default: "
+                        "one per core)")
     parser.add_argument("--scheduler", default=cluster.LOCAL, help=cluster.HELP)
     parser.add_argument("--human", default="none",
-                        help="folder with bags of ./aquafarm play, which become a row; a folder "
-                        "in it is one person (default: none)")
+                        help="folder with bags of ./aquafarm play, which become a row; each folder "
+                        "in it contains the bags of one person (default: none)")
     parser.add_argument("--learner", action="append", default=[], metavar="NAME=COMMAND",
                         help="a learner of another package as a row: a program that trains and "
                         "evaluates as aquafarm_gym.external describes, or a shared library (.so) "
@@ -85,8 +86,7 @@ def _parser():
 
 
 def parse(arguments):
-    """Parses the arguments. Numbers that are 0 or not given are those of the profile. Raises
-    BadInput."""
+    """Parses the arguments. Numbers that are 0 or absent come from the profile. Raises BadInput."""
     options = _parser().parse_args(arguments)
     if options.profile not in PROFILES:
         raise BadInput(f"profile: got '{options.profile}', expected one of: "
@@ -258,8 +258,8 @@ def _settings_of_one(one):
 
 
 def claim(folder, settings):
-    """Creates or locks the folder of a benchmark, and writes its settings. Raises BadInput if the
-    folder contains another benchmark or other files, or is in use.
+    """Creates the folder of a benchmark if needed, locks it and writes its settings. Raises
+    BadInput if the folder contains another benchmark or other files, or is in use.
 
     Returns the descriptor of the lock, which this process holds until it ends."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -362,9 +362,9 @@ def run(options):
     start = time.monotonic()
     declined = _run_jobs(jobs, options, folder)
     for name, reason in declined.items():
-        _say(f"{name} does not take part: {reason}")
+        _say(f"{name} is left out: {reason}")
     if all(one.name in declined for one in contestants):
-        raise BadInput("no contestant is left")
+        raise BadInput("no row of the table is left, see above; select other --algorithms")
     found = {}
     for job in jobs:
         if job.contestant not in declined:

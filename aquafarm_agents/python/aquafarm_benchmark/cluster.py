@@ -140,7 +140,7 @@ class Cluster:
                 report(f"the scheduler {self._scheduler} answers again")
                 return
             except (OSError, ValueError):
-                self._close_client()  # connected, if the scheduler was lost again just now
+                self._close_client()  # it is connected if the scheduler was lost again
                 if time.monotonic() > end:
                     raise Lost(f"the scheduler {self._scheduler} did not come back within "
                                f"{_RETURN_S:.0f} s; the same command resumes") from None

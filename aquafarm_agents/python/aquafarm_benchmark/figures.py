@@ -41,8 +41,9 @@ def _range_of(axes):
 
 
 def _scale_returns(axes):
-    """Sets a scale that is linear above 0 and logarithmic below. Returns of the first episodes are
-    very low; on a linear scale they would hide the differences between learners."""
+    """Sets a scale that is linear above 0 and logarithmic below, or only linear if all values have
+    the same sign. Returns of the first episodes are very low; on a linear scale they would hide the
+    differences between learners."""
     low, top = _range_of(axes)
     if top <= 0.0 or low >= 0.0:
         margin = 0.05 * (top - low)
@@ -301,8 +302,8 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
 
 
 def draw_evaluation(path, contestants, rows):
-    """Draws the return of greedy episodes that are not used for training, with 95 % intervals:
-    above, only the part above 0; below, the whole range."""
+    """Draws the return of greedy episodes that are not used for training, with 95 % intervals.
+    The upper chart shows only the part above 0, the lower chart the whole range."""
     figure, (zoom, whole) = plt.subplots(2, 1, figsize=(8, 6), sharex=True, layout="constrained",
                                          height_ratios=[3, 2])
     label_axes(zoom, "Return on episodes never trained on", "return of an episode\nenlarged: above 0",

@@ -49,7 +49,7 @@ def arguments(words):
                         "generalist)")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="folder for results")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)),
-                        help="number of ranches in parallel, of --scheduler local and slurm")
+                        help="number of ranches in parallel, with --scheduler local or slurm")
     parser.add_argument("--scheduler", default=cluster.LOCAL, help=cluster.HELP)
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of the programs (default: the workspace's, or those on PATH)")

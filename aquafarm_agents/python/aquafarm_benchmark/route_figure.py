@@ -97,8 +97,8 @@ def draw_unfinished(path, routes, title):
 
 
 def plot_unfinished(axes, name, route, size):
-    """Draws one of these routes. size: columns and rows of the largest ranch, which fills the
-    axes"""
+    """Draws the route of an episode that did not succeed. size: columns and rows of the largest
+    ranch, which fills the axes"""
     chart, last = route["chart"], route["steps"][-1]
     left = devices_left(route)
     sea = _chart(axes, chart, size, left)

@@ -48,7 +48,7 @@ def parse_seeds(text):
     except ValueError:
         seeds = []
     if not seeds or len(set(seeds)) != len(seeds):
-        raise ValueError(f"--seeds: got '{text}', expected different numbers as 1-5 or 1,3,8")
+        raise ValueError(f"--seeds: got '{text}', expected different numbers, such as 1-5 or 1,3,8")
     return seeds
 
 
@@ -139,7 +139,7 @@ def arguments(words):
     parser.add_argument("--output", type=pathlib.Path, required=True,
                         help="folder for runs and tables")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1,
-                        help="number of trainings in parallel, of --scheduler local and slurm")
+                        help="number of trainings in parallel, with --scheduler local or slurm")
     parser.add_argument("--scheduler", default=cluster.LOCAL, help=cluster.HELP)
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of aquafarm_train (default: the workspace's, or that on PATH)")

@@ -68,8 +68,9 @@ def _end(process):
 
 
 def _lock(log, is_wanted):
-    """Locks a log, which its programs keep locked until they end. Waits for other programs; raises
-    RuntimeError after _LOCK_LIMIT_S. Returns False if the run is no longer wanted."""
+    """Locks the log of a run. The programs of the run keep it locked until they end. Waits for
+    other programs; raises RuntimeError after _LOCK_LIMIT_S. Returns False if the run is no longer
+    wanted."""
     end = time.monotonic() + _LOCK_LIMIT_S
     while is_wanted():
         try:

@@ -175,7 +175,9 @@ class PolicyProbe {
 
   /// Simulates one step with the actions that its resulting state contains.
   std::string Take(const FarmState& state) {
-    if (over()) return "the episode is over since step " + Number(Step());
+    if (over()) {
+      return "the episode ended with step " + Number(Step()) + ", expected no later one";
+    }
     const auto& ships = farms_.farm(0).ships();
     if (state.ships.size() != ships.size()) {
       return "state.ships: got " + Number(state.ships.size()) + " entries, simulated " +
@@ -340,7 +342,7 @@ class Walk {
   BagChoices End() {
     EndEpisode();
     if (result_.episodes.empty() && result_.difference.empty()) {
-      throw InputError(path_ + ": got no state of an episode with a spec, expected at least one");
+      throw InputError(path_ + ": got no episode with a spec and states, expected at least one");
     }
     if (output_ && result_.difference.empty()) output_->Close();
     return std::move(result_);

@@ -64,7 +64,8 @@ class AgentDriver::Impl {
     encoder_ = std::make_unique<aquafarm::Encoder>(*scenario_);
     spec_ = MakeSpec(*scenario_, *encoder_, 1);
     if ((observation_types_ & kIndexBit) != 0 && spec_.state_count == 0) {
-      throw InputError("policy: scenario " + spec_.scenario_name + " has too many states for it");
+      throw InputError("policy: scenario " + spec_.scenario_name +
+                       " has too many states for its table, expected a policy with a network");
     }
     SizeResults();
     const double limit_s = CommandLimit_s(get.response.barrier_timeout_s);

@@ -140,7 +140,7 @@ std::string PlanKeeper::TryAll(const PlanInputs& inputs) {
     try {
       Use(MakePlan(inputs, inputs.bulletins[i].path), inputs);
       good_ = inputs.bulletins[i].path;
-      return why + "; this plan is of " + good_;
+      return why + "; this plan uses " + good_;
     } catch (const std::exception&) {  // tries the next one
     }
   }
@@ -148,7 +148,7 @@ std::string PlanKeeper::TryAll(const PlanInputs& inputs) {
   if (has_other) {
     try {
       Use(MakePlan(inputs, good_), inputs);
-      return why + "; this plan is of " + good_;
+      return why + "; this plan uses " + good_;
     } catch (const std::exception&) {  // no plan can be made: keeps the earlier one
     }
   }

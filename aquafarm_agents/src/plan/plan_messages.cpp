@@ -342,7 +342,7 @@ nav_msgs::OccupancyGrid ChartOf(const Json& ranch, const RescuePlan& plan) {
 PlanMessages ReadPlan(const std::string& json, const std::string& where) {
   try {
     const Json document = Json::parse(json);
-    if (document.at("version") != 1) throw std::out_of_range("version: got another one");
+    if (document.at("version") != 1) throw std::out_of_range("version: got another version than 1");
     PlanMessages messages;
     RescuePlan& plan = messages.plan;
     SetProvenance(document.at("provenance"), plan);

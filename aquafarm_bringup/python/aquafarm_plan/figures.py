@@ -195,6 +195,7 @@ def timeline(plan):
     ]
     height = HAZARD_HEIGHT + 22 + max(len(rows), 1) * ROW + AXIS
     last = plan["deadlines"]["no_departure_after"]
+    _name_ends(plan, rows, clock, x_of(clock.seconds(last)) if last else width - 26)
     return {
         "width": width, "height": height, "left": left, "right": width - 26, "top": 8,
         "base": HAZARD_HEIGHT + 8, "axis": height - AXIS, "curves": curves, "rows": rows,
@@ -213,6 +214,19 @@ def _nearest(plan, clock, end, x_of):
     return {"x": x, "is_right": x > 0.8 * LINE[0],
             "text": f"centre {nearest['distance_km']:.0f} km {compass(nearest['bearing_deg'])}, "
                     f"{clock.time(nearest['time'])}"}
+
+
+def _name_ends(plan, rows, clock, right):
+    """Adds to each row the text "end" after its last bar: when the ship is in port for good, and in
+    the first row also what the two shades mean. The text is empty without space left of `right`
+    [px]."""
+    for i, (row, route) in enumerate(zip(rows, plan["plan"]["routes"])):
+        at = f"in port {clock.time(route['orders'][-1]['time'])}" if row["bars"] else ""
+        key = "dark: to a device, light: to a port"
+        row["end"] = next(
+            (text for text in ([f"{at}; {key}"] if i == 0 and at else []) + [at]
+             if row["bars"] and row["bars"][-1]["x"] + row["bars"][-1]["w"] + 6.6 * len(text) < right),
+            "")
 
 
 def _row(plan, route, clock, x_of, y):

@@ -101,7 +101,7 @@ def share_text(player, optimum):
     if not pairs or total <= 0.0:
         return "–"
     share = sum(one for one, _ in pairs) / total
-    return "below 0% of the optimum" if share < 0.0 else f"{share:.1%} of the optimum"
+    return "a return below 0 has no share" if share < 0.0 else f"{share:.1%} of the optimum"
 
 
 def difference(one, other):

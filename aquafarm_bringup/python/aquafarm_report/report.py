@@ -31,7 +31,7 @@ def count_text(summary, episodes):
 
 def video_episodes(run, folder, rows):
     """Returns the sections of the best, median and worst episode: videos, outcomes of the devices,
-    and a map. For a family of ranches, a section with their results only."""
+    and a map. For a family of ranches, the section contains only their results."""
     if videos.is_family(run):
         return [blocks.section("Best, median and worst episode", blocks.table(
             ["episode", "result"], [(f"{name}: episode {row['episode']} of seed {videos.SEED}",
@@ -88,7 +88,7 @@ def report_run(run, folder, episodes):
     training = curves.show([settings["algorithm"]], [columns], notes, players)
     return blocks.page(
         f"{settings['algorithm']} on {settings['scenario']}",
-        blocks.section("Next to the references", references.show_tiles(players), facts), training,
+        blocks.section("Return of the policy and of the references", references.show_tiles(players), facts), training,
         *sections,
         blocks.section("Configuration",
                        blocks.details("run.json", json.dumps(settings, indent=2)),
@@ -117,8 +117,8 @@ def caption_of(stem):
 
 
 def best_run(benchmark):
-    """Returns the folder of seed 1 of the learner with the best return that has one; None if there
-    is none."""
+    """Returns the folder of seed 1 of the best learner that has such a folder, by return; None if
+    there is none."""
     results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
     for row in sorted(results["table"], key=lambda row: -row["return_per_episode"]):
         run = benchmark / "runs" / row["name"] / "seed_1"
@@ -170,7 +170,8 @@ def kind_of(source):
     for name, report in (("run.json", report_run), ("results.json", report_benchmark)):
         if (source / name).is_file():
             return report
-    raise ReportError(f"{source}: neither a run (run.json) nor a benchmark (results.json)")
+    raise ReportError(f"{source}: contains neither run.json nor results.json, expected "
+                      "the folder of a run or a benchmark")
 
 
 def make_text(sources, episodes):
@@ -183,7 +184,8 @@ def make_text(sources, episodes):
             return compare.report(sources, work, episodes, read_metrics)
     except (OSError, ValueError, KeyError) as error:
         named = ", ".join(map(str, sources))
-        raise ReportError(f"{named}: cannot be reported on: {error!r}") from error
+        raise ReportError(f"{named}: cannot be read as a run or benchmark: "
+                          f"{type(error).__name__}: {error}") from error
 
 
 def make(sources, output, episodes=EPISODES):

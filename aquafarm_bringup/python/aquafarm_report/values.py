@@ -27,11 +27,12 @@ _VALUE_COLOURS = colors.ListedColormap(pyplot.get_cmap("viridis")(np.linspace(0.
 _SEA_COLOURS = {"depth": "Blues", "warmth": "YlOrRd"}
 _LOWEST = 0.05  # fraction of the cells, those with the lowest returns, that have one colour
 
-NOTE = ("Spearman's rho is of the ranks over the cells where both are known; neighbouring cells "
-        "are alike, so no significance is given. SSIM is the mean structural similarity (Wang et "
-        "al. 2004) of both maps scaled to [0, 1], over those cells, the others filled with the "
-        "nearest known value; the second one is of the inverted map, for a sea that falls "
-        "where V_π rises. Both say how alike two maps are, not that one causes the other.")
+NOTE = ("Spearman's rho compares the ranks of the cells in which both maps are known. Neighbouring "
+        "cells are alike, so no significance is given. SSIM is the mean structural similarity "
+        "(Wang et al. 2004) of both maps, scaled to [0, 1], over the same cells; other cells get "
+        "the nearest known value. The second SSIM is that of the inverted sea map, for a sea that "
+        "falls where V_π rises. Both numbers measure how alike two maps are, not whether one "
+        "causes the other.")
 
 
 class ValuesError(Exception):
@@ -205,8 +206,8 @@ def draw_relation(axis, values, layer, result, letter):
 
 
 def draw(text, values, layers, results, path):
-    """Draws the maps side by side, and below each sea the return against its value; below the map
-    of returns, against the distance to the nearest device."""
+    """Draws the maps side by side. The chart below each sea shows the return against its value, and
+    the chart below the map of returns shows it against the distance to the nearest device."""
     km = text["cell_size_m"] / 1000.0
     height, width = values.shape
     tall = min(1.6, max(0.5, height / width))

@@ -27,7 +27,8 @@ def program(package, name):
 
 
 def call(package, name, *arguments, limit_s=LIMIT_S):
-    """Runs a program. If it fails, raises ReportError with the last line of its stderr."""
+    """Runs a program. Raises ReportError if it takes longer than `limit_s`, or if it fails, with
+    the last line of its stderr or stdout."""
     try:
         subprocess.run([program(package, name), *map(str, arguments)], check=True, timeout=limit_s,
                        capture_output=True, text=True)

@@ -148,7 +148,7 @@ void Batch::Step(const py::array& actions) {
     throw InputError("actions: got " + Describe(actions) + ", expected row-major " +
                      Describe("uint8", shape));
   }
-  if (!is_reset_) throw InputError("step: got no reset before, expected one");
+  if (!is_reset_) throw InputError("step: got no reset before, expected one; call reset first");
   const auto* first = static_cast<const std::uint8_t*>(actions.data());
   const py::gil_scoped_release release;
   const std::uint8_t worst = *std::max_element(first, first + actions.size());

@@ -38,10 +38,12 @@ class Batch {
 
   /// As FarmBatch::Reset. @throws InputError if a number is out of range
   void Reset(pybind11::handle seed, pybind11::handle first_episode);
-  /// Starts the next episode in the farms selected by `mask` (bool [N]).
+  /// Starts the next episode in the farms that `mask` (bool [N]) selects.
+  /// @throws InputError if the type or shape of `mask` is wrong, or before the first reset
   void StartNext(const pybind11::array& mask);
   /// Starts episode episodes[i] of the sequence seeds[i] in each farm i that `mask` selects. Both
   /// lists have N entries. Later episodes of these farms are `stride` apart.
+  /// @throws InputError if an argument is wrong, or before the first reset
   void Start(const pybind11::array& mask, const pybind11::sequence& seeds,
              const pybind11::sequence& episodes, pybind11::handle stride);
   /// Takes one step in every farm. @param actions uint8 [N, S], each in [0, kActionCount]
@@ -79,7 +81,8 @@ class Batch {
 
   /// Returns everything that another process needs to continue this batch; see FromState.
   pybind11::tuple State() const;
-  /// Makes a batch from the result of State. @throws InputError if another version made it
+  /// Makes a batch from the result of State. @throws InputError if the number of its parts or its
+  /// content is wrong
   static std::unique_ptr<Batch> FromState(const pybind11::tuple& state);
   /// Returns whether both have the same scenario, names of buffers and state.
   bool Equals(const Batch& other) const;

@@ -87,7 +87,7 @@ void DefineConstants(py::module_& module) {
 
 void DefineScenario(py::module_& module) {
   py::class_<Scenario, std::shared_ptr<Scenario>>(module, "Scenario",
-                                                  "A complete farm, as described by its file.")
+                                                  "A complete farm, as its file describes it.")
       .def_static(
           "load",
           [](const std::string& path) { return std::make_shared<Scenario>(LoadScenario(path)); },
@@ -98,7 +98,7 @@ void DefineScenario(py::module_& module) {
           [](const std::string& text, const std::string& name) {
             return std::make_shared<Scenario>(ParseScenario(text, name));
           },
-          py::arg("text"), py::arg("name") = "scenario", "Reads a scenario's text.")
+          py::arg("text"), py::arg("name") = "scenario", "Reads the text of a scenario.")
       .def_property_readonly("yaml", [](const Scenario& s) { return ToYaml(s); })
       .def_readonly("name", &Scenario::name)
       .def_readonly("hash", &Scenario::hash)
@@ -110,7 +110,7 @@ void DefineScenario(py::module_& module) {
       .def_property_readonly(
           "has_team_rewards",
           [](const Scenario& s) { return s.rewards.sharing == RewardSharing::kTeam; },
-          "True if each agent receives the sum of all agents' rewards.")
+          "True if each agent receives the sum of the rewards of all agents.")
       .def(
           "__eq__", [](const Scenario& a, const Scenario& b) { return ToYaml(a) == ToYaml(b); },
           py::is_operator())
@@ -142,8 +142,10 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
            py::arg("threads") = 1)
       .def("bind", &Batch::Bind, py::arg("name"), py::arg("array"),
            "Makes `array`, such as a part of a replay buffer, the buffer `name` from now on.")
-      .def("reset", &Batch::Reset, py::arg("seed"), py::arg("first_episode") = 0,
-           "Starts the sequence `seed`: farm i of N at episode first_episode + i, then every N-th.")
+      .def(
+          "reset", &Batch::Reset, py::arg("seed"), py::arg("first_episode") = 0,
+          "Starts the sequence `seed`. Farm i of N starts at episode first_episode + i, then plays "
+          "every N-th.")
       .def("start", &Batch::Start, py::arg("mask"), py::arg("seeds"), py::arg("episodes"),
            py::arg("stride") = 1,
            "Starts episodes[i] of the sequence seeds[i] in the farms that `mask` (bool [N]) "
@@ -151,13 +153,14 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
       .def("start_next", &Batch::StartNext, py::arg("mask"),
            "Starts the next episode in the farms that `mask` (bool [N]) selects.")
       .def("step", &Batch::Step, py::arg("actions"),
-           "Takes one step in every farm; actions uint8 [N, S], each in [0, 10], 10 holds.")
+           "Takes one step in every farm. actions: uint8 [N, S], each in [0, 10]; 10 holds.")
       .def("finished", &Batch::Finished,
-           "Summaries of the episodes that ended in the last step, by farm.")
-      .def("text", &Batch::Text, py::arg("farm") = 0, "The present state of one farm as text.")
+           "Returns summaries of the episodes that ended in the last step, by farm.")
+      .def("text", &Batch::Text, py::arg("farm") = 0,
+           "Returns the present state of one farm as text.")
       .def("start_hash", &Batch::StartHash, py::arg("farm") = 0,
-           "A hash of layout, ships, devices and disasters of one farm, without seed and episode "
-           "number. Directly after reset it identifies the start of an episode.")
+           "Returns a hash of layout, ships, devices and disasters of one farm, without seed and "
+           "episode number. Directly after reset it identifies the start of an episode.")
       .def("save", &Batch::Save, "Returns the state of all farms as bytes, also in mid-episode.")
       .def("load", &Batch::Load, py::arg("data"),
            "Restores saved farms, which continue bit-identically.")

@@ -91,5 +91,5 @@ at the first picture of an episode.)")
            py::arg("width") = 800, py::arg("height") = 640, py::arg("layers") = "trail,risk",
            py::arg("style") = "dark")
       .def("draw", &Painter::Draw, py::arg("batch"), py::arg("farm") = 0,
-           "The present state of one farm, uint8 [height, width, 3], RGB.");
+           "Returns a picture of the present state of one farm, uint8 [height, width, 3], RGB.");
 }

@@ -320,9 +320,9 @@ void DefineRescue(py::module_& module) {
 void DefinePolicies(py::module_& module) {
   py::class_<BatchPolicy>(module, "Policy", R"(Chooses the actions of all agents of a batch.
 
-name: planner, clairvoyant, fetch_by_value, do_nothing, random, generalist (docs/generalist.md), or a
-run folder or checkpoint of aquafarm_train (ppo, mappo, q_learning, sarsa). The first three see the complete
-farms.)")
+name: planner, clairvoyant, fetch_by_value, do_nothing, random, generalist (docs/generalist.md), or
+a run folder or checkpoint of aquafarm_train (ppo, mappo, q_learning, sarsa). The
+first three see the complete farms.)")
       .def(py::init([](const std::string& name, std::shared_ptr<Scenario> scenario,
                        const py::object& farms, const py::object& seed) {
              return std::make_unique<BatchPolicy>(name, std::move(scenario), farms, seed);
@@ -331,21 +331,22 @@ farms.)")
       .def("begin", &BatchPolicy::Begin, py::arg("seed") = 0,
            "Resets the recurrent state and the random numbers. Call it after FarmBatch.reset.")
       .def("act", &BatchPolicy::Act, py::arg("batch"),
-           "The actions of the next step, uint8 [N, S], for FarmBatch.step.")
+           "Returns the actions of the next step, uint8 [N, S], for FarmBatch.step.")
       .def_property_readonly("values", &BatchPolicy::Values,
-                             "V of the last act, float32 [N, S]; None without value estimates.");
+                             "The value estimates V of the last act, float32 [N, S], or None.");
   py::class_<ShipPlanner>(module, "Planner", R"(Plans exactly for a farm with one ship.
 
 clairvoyant=True plans with the true future of the disasters: its return is the max of the episode.
-clairvoyant=False plans with the issued forecast, or else the present headings.)")
+clairvoyant=False plans with the issued forecast, or with the present headings if there is none.)")
       .def(py::init([](std::shared_ptr<Scenario> scenario, bool clairvoyant) {
              return std::make_unique<ShipPlanner>(std::move(scenario), clairvoyant);
            }),
            py::arg("scenario"), py::arg("clairvoyant") = true)
       .def("solve", &ShipPlanner::Solve, py::arg("batch"), py::arg("farm") = 0,
-           "(actions uint8 [T], return from now on) of a farm's best plan; empty if it is over.");
+           "Returns the best plan of a farm: (actions uint8 [T], return from now on). There are no "
+           "actions if the episode is over.");
   module.def("team_bound", BoundOf, py::arg("batch"), py::arg("farm") = 0,
-             "An upper bound of the return of a farm at step 0, for several ships.");
+             "Returns an upper bound of the return of a farm at step 0, for several ships.");
   module.def(
       "_set_policy_folder", [](const std::string& folder) { PolicyFolder() = folder; },
       py::arg("folder"), "Sets the folder of the shipped policies.");

@@ -161,9 +161,10 @@ def make_dataset(dataset_id: str, paths: list[str | pathlib.Path], observation: 
     """Makes a Minari dataset of the episodes of bags of one scenario, and returns it.
 
     about: further arguments of minari.create_dataset_from_buffers, such as algorithm_name. From a
-    dataset of one ship, Minari can recover the environment. Action 10 (a ship held its cell) occurs
-    only in paced bags; the action space then has 11 actions. Raises ValueError as read_episodes and
-    replay, if the bags have different scenarios, or if they contain no episode from step 0.
+    dataset of one ship, Minari can recover the environment. Action 10 (a ship
+    held its cell) occurs only if a ship had no command, as in paced bags; the action space then has
+    11 actions. Raises ValueError as read_episodes and replay do, and if the bags have different
+    scenarios or contain no episode from step 0.
     """
     import minari
     from minari.data_collector import EpisodeBuffer
@@ -213,7 +214,7 @@ def main() -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("dataset_id", help="such as aquafarm/paper/ppo-v0")
+    parser.add_argument("dataset_id", help="id of the new Minari dataset, such as aquafarm/paper/ppo-v0")
     parser.add_argument("bags", nargs="+", type=pathlib.Path)
     parser.add_argument("--observation", default="features", help="features, planes or index")
     parser.add_argument("--algorithm", default="unknown", help="policy that played, for the description")

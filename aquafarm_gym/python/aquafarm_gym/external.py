@@ -123,7 +123,7 @@ def evaluate(learner: Learner, scenario: core.Scenario, observation: str, episod
 
 
 def summary_of(records: list[dict[str, Any]]) -> dict[str, Any]:
-    """Returns the figures of evaluation.json."""
+    """Returns the statistics that evaluation.json contains."""
     count = len(records)
     total = {name: sum(one[name] for one in records)
              for name in ("episode_return", "steps", "success", "crashes", "steps_in_disaster",

@@ -78,7 +78,8 @@ def observation_of(farms: Any, observation: str) -> npt.NDArray[Any]:
     """Returns the array of an observation. Raises ValueError if the farms do not write it."""
     if observation not in farms.buffers:
         has = ", ".join(name for name in OBSERVATIONS if name in farms.buffers)
-        raise ValueError(f"observation: got '{observation}', but the farms given write {has}")
+        raise ValueError(f"observation: got '{observation}', expected one that these farms write: "
+                         f"{has}")
     array: npt.NDArray[Any] = farms.buffers[observation]
     return array
 

@@ -274,7 +274,8 @@ def main() -> int:
     parser.add_argument("--window", type=int, default=50, help="number of episodes per point")
     parser.add_argument("--follow", action="store_true", help="continue while runs train")
     parser.add_argument("--endless", action="store_true",
-                        help="with --follow: continue until Ctrl-C, as a run may be resumed")
+                        help="with --follow: continue until Ctrl-C, also after a run ends, because "
+                        "it may be resumed")
     given = parser.parse_args()
     if given.window < 1:
         parser.error(f"--window: got {given.window}, expected at least 1")

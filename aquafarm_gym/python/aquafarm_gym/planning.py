@@ -31,8 +31,8 @@ def seconds_of(name: str, moment: str | datetime.datetime) -> int:
 
 
 def number(name: str, value: Any, low: float, high: float) -> Any:
-    """Returns `value`. Raises ValueError if it is not a number in [low, high], or not a whole
-    number although the limits are."""
+    """Returns `value`. Raises ValueError if it is not a number in [low, high]. If `low` is an
+    int, the number must be whole."""
     whole = isinstance(low, int)
     fits = isinstance(value, int if whole else (int, float)) and not isinstance(value, bool)
     if not (fits and low <= value <= high):
@@ -57,9 +57,9 @@ def plan_rescue(ranch: core.Scenario | Path, *, bulletin: Path | None = None,
     bulletin). devices, ships_file: CSV files (docs/plan.md). ships: number of ships. capacity:
     devices aboard a ship. depart_h: earliest departure after the start [h]. speed_kn: speed of the
     ships [kn]. abort_wind_kt: wind at which ships stop [kn]. risk_averse: share of the worst storms
-    whose mean loss is minimised; 0 minimises the mean loss. currency: of the devices' values.
-    utc_offset_h: local time (default: by longitude). members: number of possible storms, which are
-    drawn from `seed`.
+    whose mean loss is minimised; 0 maximises the mean value saved. currency: that of the
+    values. utc_offset_h: local time (default: by longitude). members: number of possible storms,
+    which are drawn from `seed`.
 
     Raises ValueError, with one line, if an option, a file or a position is wrong.
     """

@@ -78,8 +78,8 @@ class RosFarms(Farms):
     """Farms behind the sim node of a namespace.
 
     A call without a response is repeated with the same sequence number, so that no farm steps
-    twice. Methods raise ConnectionError if the sim node restarted without its farms, if another
-    client changed them, or if the node does not respond for wait_limit_s. They raise ValueError if
+    twice. Methods raise ConnectionError if the sim node was restarted, if another client changed
+    the farms, or if the node does not respond for wait_limit_s. They raise ValueError if
     the node refuses a call.
     """
 
@@ -124,7 +124,7 @@ class RosFarms(Farms):
     def step(self, actions: npt.NDArray[np.uint8]) -> None:
         """As FarmBatch.step."""
         if self._state_id is None:
-            raise ValueError("step: got no reset before, expected one")
+            raise ValueError("step: got no reset before, expected one; call reset first")
         answer = self._call("step", sequence=next(self._sequence), actions=actions.tobytes(),
                             observation_types=self._observation_types, state_id=self._state_id)
         self._take(answer.result)

@@ -55,8 +55,8 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
                          spaces.observation_space(self.farms, observation), spaces.action_space())
 
     def reset(self) -> npt.NDArray[Any]:
-        """Starts the sequence of the seed that seed() set. Without a seed, starts the next episode
-        of every farm."""
+        """Starts the sequence of the seed that seed() set. Without a seed, the first reset draws
+        one, and later ones start the next episode of every farm."""
         seed = self._seeds[0]
         if seed is None and self._episodes.seed is not None:
             self.farms.start_next(np.ones(self.farms.farms, bool))
@@ -72,8 +72,9 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         actions = np.asarray(actions)
         if actions.shape != (self.num_envs,) or actions.min() < 0 or (
                 actions.max() >= spaces.N_ACTIONS):
-            raise ValueError(f"actions: got {list(actions.shape)} from {actions.min()} to "
-                             f"{actions.max()}, expected [{self.num_envs}] in [0, 9]")
+            raise ValueError(f"actions: got shape {list(actions.shape)}, values "
+                             f"{actions.min()} to {actions.max()}, expected shape [{self.num_envs}], "
+                             "values 0 to 9")
         self._actions.reshape(-1)[:] = actions
 
     def step_wait(self) -> Any:

@@ -106,8 +106,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         """Starts episodes. seed: a number starts its sequence, with farm i of N at episode i; a
         list starts one sequence per farm, at episode 0. Without a seed (or with None in the list),
         a farm continues its sequence. options: `episode` is added to the number of the first
-        episode; `reset_mask` (bool [N]) selects the farms that start, and the others do not
-        change."""
+        episode of each farm; `reset_mask` (bool [N]) selects the farms that start, and the others
+        do not change."""
         options = check_options(options, ("episode", "reset_mask"))
         mask = self._mask_of(options)
         seeds = self._seeds_of(seed)
@@ -130,11 +130,11 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         fits = isinstance(mask, np.ndarray) and mask.shape == (self.num_envs,)
         if not fits or mask.dtype != np.bool_ or not mask.any():
             raise ValueError(f"reset: options['reset_mask']: got {mask!r}, expected a bool array "
-                             f"[{self.num_envs}] with an entry that is True")
+                             f"[{self.num_envs}] with at least one True")
         self._need_local("reset_mask")
         if self._episodes.seed is None and not self._own_sequences and not mask.all():
-            raise ValueError("reset: got a reset_mask before the first reset, expected one of all "
-                             "farms; call reset() without reset_mask first")
+            raise ValueError("reset: got a reset_mask of some farms before the first reset, "
+                             "expected all farms; call reset() without reset_mask first")
         return mask
 
     def _seeds_of(self, seed: Any) -> list[int | None] | None:

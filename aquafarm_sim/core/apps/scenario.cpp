@@ -140,7 +140,7 @@ void WriteFile(const std::string& path, const std::string& text) {
   file.close();
   std::error_code error;
   if (file) std::filesystem::rename(temporary, path, error);
-  if (!file || error) throw InputError(path + ": cannot write");
+  if (!file || error) throw InputError(path + ": cannot be written");
 }
 
 // A chart in metres has its own size and cells.
@@ -205,7 +205,7 @@ void AddStormOptions(CLI::App& app, Arguments& arguments) {
   RanchRequest& ranch = arguments.ranch;
   CLI::Option* track =
       app.add_option("--track", ranch.track, "file with the storm's track; empty: calm");
-  app.add_option("--storm", ranch.storm, "name or number of the storm in that file")->needs(track);
+  app.add_option("--storm", ranch.storm, "name or number of the storm in --track")->needs(track);
   CLI::Option* years = app.add_option("--years", arguments.years,
                                       "FIRST:LAST, years of the storms that training draws");
   CLI::Option* archive =
@@ -230,7 +230,8 @@ void AddStormOptions(CLI::App& app, Arguments& arguments) {
                  "storm itself follows --track")
       ->needs(track);
   app.add_option("--rings", arguments.rings,
-                 "shape of the wind rings: circles (equal_area or largest radius), or quadrants")
+                 "shape of the wind rings: equal_area (circles of the same area), largest (circles "
+                 "with the largest radius) or quadrants")
       ->needs(track);
 }
 
@@ -266,15 +267,17 @@ void AddSeaOptions(CLI::App& app, Arguments& arguments) {
   CLI::Option* sea = app.add_option("--sea", arguments.sea,
                                     "NAME=FILE:VARIABLE of a netCDF field; may be repeated");
   app.add_option("--sea-depth", ranch.sea_depth_m,
-                 "depth of these fields in metres below the surface");
+                 "depth of the fields of --sea, in metres below the surface");
   app.add_option("--value", ranch.value,
-                 "expression of the fields for each device's value, such as '100 - 2 * warmth'");
-  app.add_option(
-         "--sea-risk", ranch.sea_risk,
-         "expression of the fields for each cell's own risk, such as 'warmth > 28 ? -8 : 0'")
+                 "value of each device, as an expression of the fields of --sea, such as "
+                 "'100 - 2 * warmth'");
+  app.add_option("--sea-risk", ranch.sea_risk,
+                 "risk of each cell, as an expression of the fields of --sea, such as "
+                 "'warmth > 28 ? -8 : 0'")
       ->needs(sea);
   app.add_option("--notices", ranch.notices,
-                 "warnings or anchorage forecasts (JSON); those in force are listed");
+                 "file of warnings or anchorage forecasts (JSON); lists those in force during the "
+                 "episode");
   app.add_option("--write-map", arguments.map, "write the chart for map_server to this .yaml");
   app.add_option("-o,--output", arguments.output,
                  "scenario file to write; empty: the ranch is only shown");

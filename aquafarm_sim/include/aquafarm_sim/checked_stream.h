@@ -11,9 +11,9 @@
 
 namespace aquafarm_sim {
 
-/// Reads messages of other nodes. roscpp allocates an array with the length that a message states
-/// before it reads the entries, so that a message of a few bytes could exhaust the memory. This
-/// stream first checks that the message is long enough for the entries.
+/// Reads messages of other nodes. A message states the length of each array, and roscpp allocates
+/// this length before it reads the entries. A message of a few bytes could thus exhaust the memory.
+/// This stream first checks that the message is long enough for the entries.
 struct CheckedStream : ros::serialization::IStream {
   using IStream::IStream;
 

@@ -7,12 +7,12 @@
 
 namespace aquafarm_sim {
 
-/// The text of `--help` of a node.
+/// Content of the help text of a node.
 struct NodeHelp {
   const char* package{};
   const char* node{};     ///< name of the program
   const char* summary{};  ///< what the node does, in a sentence
-  const char* launch{};   ///< launch file of aquafarm_bringup that starts it; null: there is none
+  const char* launch{};   ///< file of aquafarm_bringup that starts the node; null: there is none
 };
 
 /// Prints the help of a node if `-h` or `--help` is among its arguments. Call it before ros::init,
@@ -32,7 +32,8 @@ inline bool PrintHelpIfRequested(int argc, char** argv, const NodeHelp& help) {
         help.launch, help.launch);
   }
   std::printf(
-      "docs/ros_api.md lists its parameters; an unknown one is refused with the names of all.\n");
+      "docs/ros_api.md lists its parameters; so does the error message for an unknown "
+      "parameter.\n");
   return true;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Texts for the fields of a rescue plan, which the panel and rviz share. The code is only in this
-/// header, so that a package that uses it depends only on the messages.
+/// Texts for the fields of a rescue plan. The panel and the rviz markers share them. All code is in
+/// this header, so that including it requires no library but that of the messages.
 
 #include <aquafarm_msgs/RescuePlan.h>
 
@@ -24,7 +24,7 @@ inline std::string PercentText(double probability) {
 }
 
 /// Returns a time as local time of the ranch, with the day unless it is the day on which the plan
-/// starts: "14:05", "25 Jul 02:10".
+/// starts: "14:05" or "25 Jul 02:10".
 /// @param time UTC
 inline std::string LocalText(const aquafarm_msgs::RescuePlan& plan, ros::Time time) {
   const auto local = [&plan](ros::Time utc) {

@@ -172,7 +172,10 @@ class Simulation {
 
  private:
   std::string Step(const FarmState& state) {
-    if (farm_.over()) return "the episode is over since step " + std::to_string(farm_.step());
+    if (farm_.over()) {
+      return "the episode ended with step " + std::to_string(farm_.step()) +
+             ", expected no later one";
+    }
     const std::size_t agents = farm_.ships().size();
     if (state.ships.size() != agents) {
       return "state.ships: got " + Number(state.ships.size()) + " entries, simulated " +
@@ -277,7 +280,7 @@ class Checker {
       const bool of_other_farm = summary.farm != 0 && specs_.count(key) == 0 && check_.episodes > 0;
       if (of_other_farm && specs_.begin()->second.farms > 1) continue;
       check_.difference = "episode " + Number(key.second) + " of seed " + Number(key.first) +
-                          ": a summary that no states belong to";
+                          ": a summary without states";
       return false;
     }
     return true;
@@ -299,7 +302,7 @@ class Checker {
     if (!EndEpisode()) return false;
     key_ = key;
     const auto spec = specs_.find(key);
-    if (spec == specs_.end()) return Compared(step, "the bag holds no spec of this episode");
+    if (spec == specs_.end()) return Compared(step, "the bag contains no spec of this episode");
     NamingBag(path_, [&] { simulation_.emplace(spec->second, definitions_); });
     return Compared(0, simulation_->Check(spec->second));
   }
@@ -392,7 +395,7 @@ BagCheck CheckBag(const std::string& path, const std::string& ns) {
     }
     if (!checker.EndEpisode()) return checker.check();
     if (checker.check().episodes == 0) {
-      throw InputError(path + ": got no state of an episode with a spec, expected at least one");
+      throw InputError(path + ": got no episode with a spec and states, expected at least one");
     }
     checker.End();
     return checker.check();

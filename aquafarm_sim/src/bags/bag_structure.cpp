@@ -236,7 +236,8 @@ void CheckChunkInfo(const BagRecords& info, const Connections& connections,
     throw Damage("wrong chunk info" + info.Where());
   }
   for (const auto& [connection, messages] : counts) {
-    if (connections.count(connection) == 0) throw Damage("a message of no topic" + info.Where());
+    if (connections.count(connection) == 0)
+      throw Damage("a message without a topic" + info.Where());
   }
   chunks.erase(chunk);
 }
@@ -264,7 +265,7 @@ void CheckIndex(BagRecords& records, std::size_t bytes) {
     records.Expect(BagOp::kChunk);
     const std::string where = records.Where();
     all_bytes += records.Get<std::uint32_t>("size");
-    if (all_bytes > max_bytes) throw Damage("chunks of more than its size can hold" + where);
+    if (all_bytes > max_bytes) throw Damage("chunks that are too large for the bag's size" + where);
     ChunkMessages& messages = chunks[records.begin()] = ReadChunk(records, connections);
     ChunkMessages indexed;
     for (std::size_t left = messages.Counts().size(); left > 0; --left) {
@@ -273,7 +274,7 @@ void CheckIndex(BagRecords& records, std::size_t bytes) {
       ReadIndex(records, indexed);
     }
     indexed.Sort();
-    if (!(indexed == messages)) throw Damage("an index that is not of its chunk" + where);
+    if (!(indexed == messages)) throw Damage("an index that does not match its chunk" + where);
   }
   if (records.position() != index || chunks.size() != chunk_count)
     throw Damage("its header disagrees with its chunks");
@@ -302,7 +303,7 @@ void CheckStructure(const std::string& path) {
     throw aquafarm::InputError(path + ": no such file");
   }
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw rosbag::BagIOException("no regular file");  // opening a pipe may wait forever
+    throw rosbag::BagIOException("not a regular file");  // opening a pipe may wait forever
   }
   std::ifstream readable(path, std::ios::binary | std::ios::ate);
   if (!readable || readable.tellg() <= static_cast<std::streamoff>(kBegin.size())) return;
@@ -311,7 +312,7 @@ void CheckStructure(const std::string& path) {
   const interprocess::mapped_region region(file, interprocess::read_only);
   const std::string_view bytes(static_cast<const char*>(region.get_address()), region.get_size());
   if (bytes.substr(0, kBegin.size()) != kBegin)
-    throw rosbag::BagFormatException("no bag of version 2.0");
+    throw rosbag::BagFormatException("not a bag of version 2.0");
   BagRecords records(bytes, kBegin.size());
   records.Next();
   records.Expect(BagOp::kBag);

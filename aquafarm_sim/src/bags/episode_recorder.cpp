@@ -43,7 +43,8 @@ std::string MakeFolder(std::string folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error || access(folder.c_str(), W_OK) != 0) {
-    throw aquafarm::InputError("~keep_dir: got '" + folder + "', expected a folder to write to");
+    throw aquafarm::InputError("~keep_dir: got '" + folder +
+                               "', expected a folder that can be written");
   }
   return folder;
 }

@@ -84,7 +84,7 @@ void FarmDiagnostics::Fill(diagnostic_updater::DiagnosticStatusWrapper& status) 
   }
   if (now.dropped_notifications > seen_.dropped_notifications) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
-                        "something was not published: " + now.dropped_reason);
+                        "messages were not published: " + now.dropped_reason);
   }
   if (!now.fault.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::ERROR,

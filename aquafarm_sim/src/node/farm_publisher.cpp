@@ -154,7 +154,7 @@ void FarmPublisher::OnPresence(const std::vector<std::int32_t>& ships, bool is_p
   std::string names;
   for (const std::int32_t ship : ships) names += (names.empty() ? "" : ", ") + std::to_string(ship);
   if (is_present) {
-    ROS_WARN("returned: ship %s", names.c_str());
+    ROS_WARN("late ship %s sends commands again", names.c_str());
     return;
   }
   ROS_WARN(

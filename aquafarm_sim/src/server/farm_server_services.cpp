@@ -127,8 +127,9 @@ std::optional<FarmServer::Refusal> FarmServer::CheckAnswerSize(
   }
   const aquafarm::Encoder& encoder = batch_->encoder();
   if ((observation_types & StepResult::INDEX) != 0 && encoder.state_count() == 0) {
-    return Refusal{Outcome::BAD_VALUE,
-                   "observation_types: this farm has too many states for INDEX"};
+    return Refusal{
+        Outcome::BAD_VALUE,
+        "observation_types: this farm has too many states for INDEX; request FEATURES or PLANES"};
   }
   const std::size_t entries = static_cast<std::size_t>(farms) * static_cast<std::size_t>(agents_);
   std::size_t bytes = 0;

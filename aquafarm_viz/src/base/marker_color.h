@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Converts colours to those of markers. This is not in palette.h, because that is also used
+/// Converts colours to those of markers. This is not in palette.h, because palette.h is also used
 /// without ROS.
 
 #include <ros/duration.h>  // ColorRGBA.h needs it but does not include it

@@ -25,7 +25,7 @@ using ToPixel = std::function<cv::Point2d(double x, double y)>;
 struct CourseMark {
   cv::Point2d at;      ///< [pixels]
   std::string text;    ///< such as "+6 h"
-  std::string longer;  ///< such as "+6 h 38 m/s", used if there is space for it; may be empty
+  std::string longer;  ///< such as "+6 h 38 m/s", used if it fits at every mark; may be empty
 };
 
 /// Draws a course: the past as a solid line, the future as a dashed line with marks at round lead
@@ -35,11 +35,11 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
                                    const Course& course, const ToPixel& to_pixel,
                                    const Layout& layout);
 
-/// Marks the positions of marks as used, so that no label covers them.
+/// Blocks the positions of the marks, so that no label covers them.
 void BlockMarks(const std::vector<CourseMark>& marks, FreeSpace& space, const Layout& layout);
 
-/// Writes the texts of marks next to them where space is free, and marks that space as used. Writes
-/// `longer` only if it fits for every mark.
+/// Writes the text of each mark next to it if there is free space, and blocks that space. Writes
+/// `longer` only if it fits at every mark.
 void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace& space,
                 const Layout& layout, const Fonts& fonts);
 

@@ -225,8 +225,9 @@ void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, cons
 
 void DrawFetched(cv::Mat& image, std::uint8_t kind, cv::Point2d at, double radius_px,
                  const Layout& layout) {
+  const Rgb color = Mix(DeviceColor(kind), layout.style->label, 0.5);  // legible in both styles
   StrokeShape(image, DeviceOutline(kind), {at, radius_px, 0.0},
-              Bgr(Mix(DeviceColor(kind), layout.style->sea_south, 0.3)), layout.Px(1.2));
+              Bgr(Mix(color, layout.style->sea_south, 0.25)), layout.Px(1.2));
 }
 
 namespace {

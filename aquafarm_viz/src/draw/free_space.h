@@ -10,7 +10,7 @@
 
 namespace aquafarm_viz {
 
-/// Returns the square with half a side of `radius` around a point.
+/// Returns the square around a point whose sides are 2 * radius long.
 inline cv::Rect Around(cv::Point2d at, double radius) {
   return {cvFloor(at.x - radius), cvFloor(at.y - radius), cvCeil(2.0 * radius),
           cvCeil(2.0 * radius)};
@@ -25,7 +25,7 @@ inline cv::Point2d NearestIn(cv::Rect box, cv::Point2d to) {
 /// The part of a map that is still free of symbols and labels.
 class FreeSpace {
  public:
-  /// Everything is free at first. @param size  of the map [pixels]
+  /// Everything is free at first. @param size  size of the map [pixels]
   explicit FreeSpace(cv::Size size);
 
   // Clones the map of used pixels, because copies of a cv::Mat share their pixels.
@@ -39,7 +39,7 @@ class FreeSpace {
   /// Marks a rectangle as used. Its part outside the map is ignored.
   void Block(cv::Rect part);
 
-  /// Marks a line as used. @param width  of the line [pixels]
+  /// Marks a line as used. @param width  width of the line [pixels]
   void BlockLine(cv::Point2d from, cv::Point2d to, int width);
 
   /// Returns whether a rectangle is on the map and no part of it is used.

@@ -25,7 +25,7 @@ enum class Cover : std::uint8_t { kNothing, kPaths, kPathsAndLand };
 /// The free space of a map for each Cover.
 class LabelSpace {
  public:
-  /// @param symbols  the map without its symbols, see BlockSymbols
+  /// @param symbols  the space that symbols leave free, see BlockSymbols
   LabelSpace(const FreeSpace& symbols, const aquafarm_msgs::FarmSpec& spec, const Layout& layout);
 
   /// Blocks the paths of the ships for labels with Cover::kNothing.

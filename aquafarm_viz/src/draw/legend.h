@@ -22,7 +22,7 @@ struct Fonts;
 struct Layout;
 struct Overlays;
 
-/// A ring of a storm whose winds are given.
+/// A ring whose wind is given.
 struct NamedRing {
   std::int32_t wind_kt{};  ///< min wind within the ring [kn]
   double risk{};           ///< rounded risk within the ring
@@ -32,9 +32,10 @@ struct NamedRing {
 /// The rings that the key of risks names. If it is empty, the key is the colour scale of all risks.
 using RiskKey = std::vector<NamedRing>;
 
-/// Returns the rings of the drawn disasters that have a radius now or later, each once, and those
-/// of one disaster from the weakest to the strongest. Returns an empty key if a disaster has no
-/// given winds, or if there are more than four rings.
+/// Returns the rings of the drawn disasters that have a radius now or later. The rings of one
+/// disaster are in order, the weakest first; equal rings of several disasters are listed once.
+/// Returns an empty key if a drawn disaster has no given winds, or if there are more than four
+/// rings.
 RiskKey MakeRiskKey(const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses);
 
 /// Returns the name of a ring and its wind, "hurricane force (64 kt)". If that is wider than

@@ -21,8 +21,8 @@ namespace aquafarm_viz {
 struct Fonts;
 struct Layout;
 
-/// Returns the map with the parts marked as used that ports, devices, former cells of fetched
-/// devices, ships, and the signs of disasters cover.
+/// Returns the space that symbols leave free on the map. The symbols are ports, devices, former
+/// cells of fetched devices, ships, and signs of disasters.
 FreeSpace BlockSymbols(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                        const Outlook& outlook, const Layout& layout);
 
@@ -49,7 +49,7 @@ void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmState& state,
                 const Fonts& fonts);
 
 /// Labels the pointers to disasters outside the map with CentreText. If the picture has no panel,
-/// which lists the motion, the labels also contain MotionNow.
+/// the labels also contain MotionNow.
 void LabelPointers(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                    const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
                    LabelSpace& space, const Layout& layout, const Fonts& fonts);

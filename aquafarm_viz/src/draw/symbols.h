@@ -81,7 +81,7 @@ inline bool IsDrawn(const aquafarm_msgs::DisasterState& disaster) {
 cv::Mat1b IslandCoverage(const aquafarm_msgs::FarmSpec& spec, const Layout& layout);
 
 /// Draws the rings of all disasters on the map: their outlines, a tint, and the pattern of each
-/// kind of disaster. Where rings overlap, the one with the worst risk is drawn.
+/// kind of disaster. Where rings overlap, tint and pattern are those of the worst risk.
 /// @param land  IslandCoverage; rings are fainter over land
 /// @param is_tinted  false: draws no tint between the lines of the pattern
 void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const cv::Mat1b& land,
@@ -106,7 +106,7 @@ struct SignPlace {
 /// its centre is on the map.
 SignPlace PlaceSign(const aquafarm_msgs::DisasterState& disaster, const Layout& layout);
 /// Returns the position of the sign of each disaster of the state. Pointers that would overlap are
-/// moved apart along the border.
+/// moved apart along the border if there is space.
 std::vector<SignPlace> PlaceSigns(const aquafarm_msgs::FarmState& state, const Layout& layout);
 
 /// Draws the centre and the heading of each disaster, or a pointer at the border if the centre is
@@ -204,7 +204,8 @@ void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                 const aquafarm_msgs::FarmState& state, const aquafarm_msgs::PolicyChoice& choice,
                 const Layout& layout);
 
-/// Writes these actions near the lower right corner of the map.
+/// Writes the actions of DrawChoice near the lower right corner of the map, if the choice was made
+/// in this state.
 /// @param space  free part of the map; the part under the text is then marked as used
 void DrawChoiceWords(cv::Mat& map, const aquafarm_msgs::FarmState& state,
                      const aquafarm_msgs::PolicyChoice& choice, FreeSpace& space,
@@ -239,7 +240,7 @@ void DrawRock(cv::Mat& image, cv::Point2d at, double radius_px);
 /// Draws the symbol of a device with a dark rim. @param faded  0: in its colour, 1: grey
 void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, double faded);
 
-/// Draws the texts above and below the map. After the end of the episode, also draws its reason.
+/// Draws the texts above and below the map, and after the end of the episode the reason for it.
 void DrawWords(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Overlays& overlays,
                const Outlook& outlook, const Layout& layout, const Fonts& fonts);

@@ -167,7 +167,7 @@ bool ReplayNode::OnSetPace(aquafarm_msgs::SetPace::Request& request,
   response.pace = "paced";
   response.rate_hz = speed_ / period_s;
   if (!request.pace.empty() && request.pace != "paced") {
-    Refuse("pace: got " + request.pace + ", a replay is paced", response);
+    Refuse("pace: got " + request.pace + ", expected paced: a replay has no other pace", response);
   } else if (!(request.rate_hz >= 0.0) || !(speed <= kMaxSpeed)) {
     Refuse("rate_hz: got " + std::to_string(request.rate_hz) + ", expected [0, " +
                std::to_string(kMaxSpeed / period_s) + "]",

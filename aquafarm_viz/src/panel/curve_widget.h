@@ -24,17 +24,17 @@ struct CurveRange {
 /// The margin does not extend across 0.
 CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve);
 
-/// The scale of the axis of returns. It is linear, but if the range contains values on both sides
-/// of 0, it is logarithmic below 0. The reason is that the returns at the start of a training are
-/// far below all others.
+/// The scale of the axis of returns. It is linear if all values of the range have the same sign.
+/// Otherwise it is logarithmic below 0, because the returns at the start of a training are far
+/// below all others.
 class ReturnScale {
  public:
   explicit ReturnScale(const CurveRange& range);
 
   /// Returns the height of a return on the scale.
   double Height(double value) const;
-  /// Returns the values of the ticks. A linear scale has RoundTicks. The other one has about
-  /// half of `max` ticks from 0 on, and below 0 ticks at -1, -3, -10, -30, …
+  /// Returns the values of the ticks: RoundTicks for a linear scale. A scale that is logarithmic
+  /// below 0 has about max / 2 ticks from 0 on, and ticks at some of -1, -3, -10, -30, …
   std::vector<double> Ticks(int max) const;
   /// Returns true if the scale is logarithmic below 0.
   bool is_bent() const { return unit_ > 0.0; }
@@ -44,8 +44,8 @@ class ReturnScale {
   double unit_{};  // below -unit_ the scale is about logarithmic; 0: the whole scale is linear
 };
 
-/// Returns ticks within a range: the multiples of 1, 2 or 5 times a power of ten. The power and the
-/// factor are those that give as many ticks as possible up to `max`, or at least three.
+/// Returns ticks within a range: the multiples of 1, 2 or 5 times a power of ten. The spacing is
+/// the smallest that gives at most `max` ticks. If these are fewer than three, it is smaller.
 std::vector<double> RoundTicks(const CurveRange& range, int max);
 
 /// Plots the mean return (axis on the left) as a solid line and the success rate (0 … 100 %, axis

@@ -111,7 +111,7 @@ void ReplayTape::Read(const std::string& path) {
   }
   if (steps_.empty()) {
     throw std::runtime_error(path +
-                             ": got no state of an episode with a spec, expected at least one");
+                             ": got no episode with a spec and states, expected at least one");
   }
 }
 

@@ -33,12 +33,12 @@ double MetresFromFarm(const aquafarm_msgs::FarmSpec& spec, double x, double y);
 /// zones are 15 degrees wide, so legal time may differ.
 int NauticalZone(double longitude_deg);
 
-/// Returns a time as UTC. @param format of strftime
+/// Returns a time as UTC. @param format format of strftime
 std::string TimeText(std::time_t utc, const char* format);
 
 /// Returns a time in the nautical time zone of the farm, followed by the name of the zone, such as
 /// "19 Jul 13:58 UTC+8". The zone of a farm without a geographic position is UTC.
-/// @param format of strftime
+/// @param format format of strftime
 std::string LocalTimeText(const aquafarm_msgs::FarmSpec& spec, std::time_t utc, const char* format);
 
 /// Returns the compass point and the speed of a motion, such as "NW at 18 km/h". If the steps of
@@ -49,10 +49,10 @@ std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, dou
 /// Returns the max sustained wind of a disaster, such as "38 m/s"; empty if it is not given.
 std::string WindText(const TrackPoint& point);
 
-/// Returns the kind of a disaster and, if it has one, its name: "typhoon In-Fa". For a typhoon
-/// whose wind is given, its present class replaces the kind until it ends: "tropical depression",
-/// from 17.2 m/s on "tropical storm", from 24.5 m/s on "severe tropical storm", and from 32.7 m/s
-/// on "typhoon" (Typhoon Committee Operational Manual, WMO TD 196).
+/// Returns the kind of a disaster and, if it has one, its name: "typhoon In-Fa". If the wind of a
+/// typhoon is given, the class of this wind replaces the kind until the typhoon ends: "tropical
+/// depression", from 17.2 m/s on "tropical storm", from 24.5 m/s on "severe tropical storm", and
+/// from 32.7 m/s on "typhoon" (Typhoon Committee Operational Manual, WMO TD 196).
 std::string NameNow(const aquafarm_msgs::DisasterState& disaster, const Course& course);
 
 /// Returns the max sustained wind in two units, after a space: " 37 m/s (72 kt)"; empty if it is

@@ -32,7 +32,7 @@ struct DeviceOutlook {
   double risk_now{};                  ///< risk at its cell; 0 outside all rings
   std::size_t disaster_now{};         ///< index of the disaster with this risk; 0 outside all rings
   std::int32_t wind_now_kt{};         ///< min wind within that ring [kn]; 0: not given
-  std::vector<RingArrival> arrivals;  ///< by time; each has a worse risk than all before and now
+  std::vector<RingArrival> arrivals;  ///< by time; the risk is worse at each one, and than now
 };
 
 /// The danger to all deployed devices.

@@ -17,10 +17,11 @@ inline int DeliveredSide(const aquafarm_msgs::FarmSpec& spec, int y) {
   return 2 * y >= spec.height ? -1 : 1;
 }
 
-/// Returns the position at which ships in a cell are drawn [cells]. If the cell has no port, it is
-/// the cell itself. If it has one, it is the one of four diagonal positions next to the port that
-/// is farthest from other ports, other ships and deployed devices; distances above 2 cells count
-/// as 2. Positions on water are preferred to those on land, and these to those off the map.
+/// Returns the position at which ships in a cell are drawn [cells]. In a cell without a port this
+/// is the cell itself. At a port it is one of four diagonal positions next to the port. The chosen
+/// position is the farthest from other ports, other ships and deployed devices; distances above 2
+/// cells count as 2. Positions on water are preferred to positions on land, and positions on land
+/// to positions off the map.
 /// @param aside  distance from the port along each axis [cells]
 cv::Point2d ShipPlace(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                       int x, int y, double aside);

@@ -61,8 +61,8 @@ StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m
 std::vector<std::pair<double, std::string>> NamedRisks(const aquafarm_msgs::FarmSpec& spec);
 
 /// Returns the point of a track at a step. Between two points, position, rings and wind are
-/// interpolated, as in the farm. Before the first point and after the last one, returns that point
-/// with its own step.
+/// interpolated, as in the farm. Returns the first point if `step` is before it, and the last point
+/// if `step` is after it; the result then has the step of that point.
 /// @param track  at least one point
 TrackPoint TrackAt(const Track& track, double step);
 
@@ -91,8 +91,9 @@ struct Course {
 };
 
 /// Returns the course of a disaster. It is extrapolated if the state is an observation of a ship,
-/// if the disaster has no track, or if it is at least one cell away from its track.
-/// @param index  in FarmState.disasters
+/// if the disaster has no track, or if its centre is at least one cell away from the point of its
+/// track at this step.
+/// @param index  index in FarmState.disasters
 Course CourseOf(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                 std::size_t index, const StormTracks& tracks);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Functions that read one option of a learner. The default is the value that the last parameter,
-/// or `fallback`, has before the call.
+/// Functions that read one option of a learner. If the option is not given, `value` does not change
+/// and ReadWord returns `fallback`.
 
 #include <array>
 #include <string>
@@ -15,7 +15,7 @@
 namespace aquafarm::agents {
 
 /// Reads an option whose value is one of `words`.
-/// @param words one for each value of the enum Kind, in its order
+/// @param words names of the values of the enum Kind, in the order of the enum
 /// @throws InputError "loss: got 'l1', expected one of: huber, mse"
 template <typename Kind, std::size_t size>
 Kind ReadWord(OptionReader& reader, const std::string& key, Kind fallback,

@@ -56,7 +56,7 @@ class QLearner : public ReplayLearner<Scalar> {
         optimizer_(options, *online_, *target_, *average_, this->device_),
         repetitions_(spec, options.repetition_penalty * options.reward_scale) {}
 
-  /// Returns the action values by which the agents act, [slots, kActionCount].
+  /// Returns the action values from which the agents choose their actions, [slots, kActionCount].
   virtual const float* ActingValues(const StepResults& results) = 0;
 
   void CountSteps(std::uint64_t farm_steps) final { optimizer_.Count(farm_steps, this->progress_); }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Copies a farm for each cell that ship 0 can occupy and places ship 0 there. A group of
-// kCellsAtOnce copies forms one environment, so that a policy chooses the actions for many cells at
-// once.
+// Copies a farm for each cell that ship 0 can occupy and places ship 0 there. Up to kCellsAtOnce
+// copies form one environment, so that a policy chooses the actions for many cells at once.
 
 #include <vector>
 

@@ -89,7 +89,7 @@ std::size_t CountAdded(const std::string& path) {
   const bool has_first = columns.compare(0, first.size(), first) == 0;
   if (!has_first || all.compare(0, columns.size() + 1, columns + ',') != 0) {
     throw InputError(path + ":1: got the columns '" + columns + "', expected '" + first +
-                     "', alone or followed by the first of '" + AddedColumns() +
+                     "', alone or followed by leading columns of '" + AddedColumns() +
                      "'; resume with the version that began this run, or train in another folder");
   }
   return static_cast<std::size_t>(

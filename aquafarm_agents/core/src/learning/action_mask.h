@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Masks of the actions among which a learner or policy chooses.
+/// Masks of the actions that a learner or policy may choose.
 
 #include "aquafarm/agents/learning/exploration.h"
 #include "aquafarm/grid/action.h"
@@ -13,8 +13,8 @@ inline ActionMask LegalMask(ActionMask legal, bool mask_illegal) {
   return mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
 }
 
-/// Returns the allowed actions. With options.mask_blocked it also excludes moves onto a rock, an
-/// island or off the map, unless that would exclude every move.
+/// Returns the allowed actions. With options.mask_blocked, moves onto a rock, onto an island or off
+/// the map are excluded, too, unless this excludes every move.
 /// @param features of the ship, a row of StepResults::features
 /// @tparam Options a type with the members mask_illegal and mask_blocked, such as DeepOptions
 template <typename Options>

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Reads options that several learners have, with the same ranges.
+/// Functions that read options of several learners.
 
 #include "aquafarm/agents/learning/exploration.h"
 #include "base/option_words.h"
 
 namespace aquafarm::agents {
 
-/// Reads the option `exploration`; `exploration` is also the default. @throws InputError
+/// Reads the option `exploration`. The value of the parameter before the call is the default.
+/// @throws InputError as ParseExploration
 inline void ReadExploration(OptionReader& reader, ExplorationOptions& exploration,
                             ExplorationOf learners = ExplorationOf::kValues) {
   exploration = ParseExploration(reader.Text("exploration", ToString(exploration)), learners);
@@ -16,7 +17,7 @@ inline void ReadExploration(OptionReader& reader, ExplorationOptions& exploratio
 }
 
 /// Reads the options that all learners with networks have, except `exploration`.
-/// @throws InputError if a value is out of range
+/// @throws InputError if a value is invalid or out of range
 template <typename Options>
 void ReadNetworkOptions(OptionReader& reader, Options& options) {
   ReadWhole(reader, "hidden_size", 1, 4096, options.hidden_size);
@@ -30,7 +31,7 @@ void ReadNetworkOptions(OptionReader& reader, Options& options) {
 
 /// Reads the options that all learners with a replay buffer have.
 /// @param max_priority max of priority_exponent
-/// @throws InputError if a value is out of range
+/// @throws InputError if a value is invalid or out of range
 template <typename Options>
 void ReadReplayOptions(OptionReader& reader, double max_priority, Options& options) {
   ReadWhole(reader, "batch_size", 1, 65536, options.batch_size);

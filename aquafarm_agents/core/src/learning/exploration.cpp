@@ -29,12 +29,12 @@ const Schedule kEntropyDefault{ScheduleKind::kLinear, 0.02, 0.0, 1.0};
   if (learners == ExplorationOf::kPolicies) {
     throw InputError("exploration: got '" + text +
                      "', expected entropy for a learner that samples its own policy, alone or with "
-                     "a schedule such as entropy:linear:0.02:0:1, and icm before it to be curious: "
+                     "a schedule such as entropy:linear:0.02:0:1; the prefix icm+ adds curiosity: "
                      "icm+entropy:0.01");
   }
   throw InputError("exploration: got '" + text +
                    "', expected epsilon_greedy or boltzmann, alone or with a schedule such as "
-                   "epsilon_greedy:linear:1:0.05:0.5, and icm before them to be curious: "
+                   "epsilon_greedy:linear:1:0.05:0.5; the prefix icm+ adds curiosity: "
                    "icm+epsilon_greedy, icm:linear:1:0:0.5+boltzmann:1");
 }
 

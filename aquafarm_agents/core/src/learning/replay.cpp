@@ -158,7 +158,8 @@ void Replay<Scalar>::Load(const Checkpoint& checkpoint) {
   LoadNumbers<std::uint64_t>(checkpoint, "replay", "replay.place",
                              [&place](const auto& visit) { VisitPlace(place, visit); });
   if (place.oldest >= max_size_ || place.size > max_size_) {
-    throw InputError("checkpoint: section 'replay': out of range");
+    throw InputError(
+        "checkpoint: section 'replay': a number is out of range; use another checkpoint");
   }
   checkpoint.GetArray("replay.observations", observations_.size(), observations_);
   checkpoint.GetArray("replay.carry", recurrent_state_.size(), recurrent_state_);

@@ -89,7 +89,8 @@ void TableLearner::Load(const Checkpoint& checkpoint) {
   checkpoint.GetArray("loss", 1, loss);
   for (const std::uint64_t offset : pending) {
     if (offset != kNoAction && offset >= values.size())
-      throw InputError("checkpoint: section 'pending': out of range");
+      throw InputError(
+          "checkpoint: section 'pending': a number is out of range; use another checkpoint");
   }
   explorer_.Load(checkpoint);
   table_.values = std::move(values);

@@ -26,8 +26,8 @@ class ActorTeam final : public torch::nn::Module {
   /// Returns the logits at the last step of a window of T steps.
   /// @param observations [T, B, S, F]
   /// @param keeps [T, B, S] 0 resets the recurrent state before that step, 1 keeps it
-  /// @param recurrent_state [B, S, recurrent_size] recurrent state before the window; receives the
-  ///   one after it. Undefined if the actors are not recurrent
+  /// @param recurrent_state [B, S, recurrent_size] before the window; receives the state after it.
+  ///   An undefined tensor if the actors are not recurrent
   /// @returns [B, S, kActionCount]
   torch::Tensor Forward(const torch::Tensor& observations, const torch::Tensor& keeps,
                         torch::Tensor& recurrent_state);
@@ -41,8 +41,8 @@ class ActorTeam final : public torch::nn::Module {
   std::vector<std::shared_ptr<RecurrentNetwork>> recurrent_;
 };
 
-/// Computes Q for each action of each agent from all observations and the other agents' actions.
-/// The same network evaluates every agent.
+/// Computes Q for each action of each agent, from the observations of all agents and the actions of
+/// the other agents. The same network evaluates every agent.
 class JointCritic final : public torch::nn::Module {
  public:
   JointCritic(const EnvironmentSpec& spec, std::int64_t hidden);

@@ -8,7 +8,7 @@
 
 namespace aquafarm::agents {
 
-/// Hyperparameters of MADDPG. docs/several_agents.md lists their sources.
+/// Hyperparameters of MADDPG. docs/several_agents.md gives reasons for the defaults.
 struct MaddpgOptions {
   std::int32_t hidden_size{256};  ///< units of each hidden layer; if recurrent, units of the LSTM
   Schedule actor_rate{ScheduleKind::kLinear, 1e-3, 1e-5, 1.0};   ///< learning rate of the actors
@@ -22,19 +22,19 @@ struct MaddpgOptions {
   std::uint64_t buffer_size{200000};    ///< capacity in transitions
   double priority_exponent{0.6};        ///< exponent α of prioritised replay; 0: uniform
   double importance_exponent{0.4};      ///< initial exponent β; rises to 1
-  double tau{0.01};                     ///< rate of the soft target update in each update
+  double tau{0.01};                     ///< weight of the online network in soft target updates
   std::int32_t n_step{1};               ///< steps of a return (Sutton 1988)
   double temperature{1.0};              ///< temperature of the Gumbel-softmax
-  double logit_penalty{3e-4};           ///< prevents premature convergence of the actors
+  double logit_penalty{3e-4};           ///< weight of mean logits² in the loss of the actors
   double reward_scale{0.05};            ///< factor of the rewards; 1: unscaled
   double max_grad_norm{10.0};           ///< max norm of the gradient; 0: no limit
-  bool best_response{true};    ///< targets use an agent's best response to the others' target
-                               ///< actors; false: the action of its own target actor, as printed
+  bool best_response{true};    ///< true: targets use the agent's best response to the others'
+                               ///< target actors; false: its own target actor, as Lowe et al.
   bool mask_illegal{true};     ///< exclude illegal actions when acting and bootstrapping
   bool mask_blocked{true};     ///< also exclude moves onto a rock, an island or off the map
-  bool shared{true};           ///< one network for all actors, with the agent's index as input
+  bool shared{true};           ///< one network for all actors; false: one network per actor
   bool recurrent{false};       ///< actors with an LSTM
-  std::int32_t window{4};      ///< time steps through which a recurrent actor is differentiated
+  std::int32_t window{4};      ///< time steps of a training sequence; 1 without `recurrent`
   std::string device{"auto"};  ///< auto, cpu or cuda
   std::int32_t threads{1};
 

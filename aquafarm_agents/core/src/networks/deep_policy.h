@@ -20,8 +20,8 @@
 
 namespace aquafarm::agents {
 
-/// Returns the device on which a saved policy plays. A policy trained with device=cuda plays with
-/// device=auto, so that it also plays on a machine without CUDA.
+/// Returns the option `device` with which a saved policy plays. It is auto for a policy that was
+/// trained with cuda, so that the policy also plays on a machine without CUDA.
 inline std::string PlayingDevice(const std::string& trained_on) {
   return trained_on == "cuda" ? "auto" : trained_on;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Helpers of learners with networks that do not include the network library: masks for planes, the
-/// count of farm steps, and checks that a saved network fits the farms of a run.
+/// Helpers of learners with networks: masks for planes, the count of farm steps, and checks that a
+/// saved network fits the farms of a run. This header does not include libtorch.
 
 #include <algorithm>
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace aquafarm::agents {
 
-/// Returns the allowed actions of an agent that is observed by planes. They do not contain the
+/// Returns the allowed actions of an agent whose observation is planes. Planes do not contain the
 /// features that mask_blocked requires, so DeepOptions rejects mask_blocked with planes.
 inline ActionMask LegalMask(ActionMask legal, const std::uint8_t*, const DeepOptions& options) {
   return LegalMask(legal, options.mask_illegal);

@@ -17,9 +17,10 @@ class FlatAdam {
   /// Moves the module's parameters to the device.
   FlatAdam(torch::nn::Module& module, torch::Device device);
 
-  /// Computes the gradient of `loss` and takes one optimizer step with it, as the next function.
+  /// Computes the gradient of `loss` and takes one optimizer step with it. The parameters and the
+  /// result are as in the function below.
   [[nodiscard]] bool Step(const torch::Tensor& loss, double learning_rate, double max_grad_norm);
-  /// Takes one optimizer step with the present gradient of the parameters.
+  /// Takes one optimizer step with the current gradient of the parameters.
   /// @param max_grad_norm a gradient with a larger norm is scaled down to it; 0: no limit
   /// @returns false if the gradient is not finite; the parameters are then unchanged
   [[nodiscard]] bool Step(double learning_rate, double max_grad_norm);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Functions of libtorch that compute several layers at once, with the products of gemm.h and
-/// gradients in closed form. For small batches, the overhead of single operations of libtorch is as
-/// large as their arithmetic (docs/decisions/fused_layers.md). All tensors are floats in the memory
-/// of the CPU.
+/// Differentiable functions of libtorch tensors that each compute several layers, with the products
+/// of gemm.h. For small batches, the overhead of libtorch's single operations is as large as their
+/// arithmetic (docs/decisions/fused_layers.md). All tensors are floats in the memory of the CPU.
 
 #include <torch/torch.h>
 
@@ -15,8 +14,8 @@ namespace aquafarm::agents {
 /// Returns the values of a contiguous tensor of floats.
 inline const float* Data(const torch::Tensor& tensor) { return tensor.data_ptr<float>(); }
 
-/// Returns whether `input` and `weight` are floats in the memory of the CPU, as the functions below
-/// require. These functions throw LogicError if the sizes of an input or state do not fit the
+/// Returns whether `input` and `weight` are floats in the memory of the CPU. The functions below
+/// require such tensors. They throw LogicError if the size of an input or state does not fit the
 /// weights.
 bool CanFuse(const torch::Tensor& input, const torch::Tensor& weight);
 

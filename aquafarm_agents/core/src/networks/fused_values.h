@@ -3,7 +3,7 @@
 
 /// The value networks for features on the CPU, which compute their gradients without libtorch. The
 /// parameters are in the order of the modules of networks.h; each weight is [outputs, inputs]. The
-/// buffers grow with the largest number of rows so far, so that later calls allocate nothing.
+/// buffers are kept, so a call allocates memory only if it has more rows than all earlier calls.
 
 #include <cstddef>
 #include <vector>

@@ -156,7 +156,7 @@ std::vector<float> FlatParameters::ToVector() const {
 void FlatParameters::FromVector(const std::vector<float>& values) {
   if (static_cast<std::int64_t>(values.size()) != size()) {
     throw InputError("weights: got " + std::to_string(values.size()) + " numbers, expected " +
-                     std::to_string(size()) + ": they are of another network");
+                     std::to_string(size()) + ": they belong to another network");
   }
   const torch::NoGradGuard no_grad;
   values_.copy_(torch::from_blob(const_cast<float*>(values.data()), {size()}));

@@ -21,8 +21,8 @@ namespace aquafarm::agents {
 /// @throws InputError if the value is cuda and there is no CUDA device
 torch::Device FindDevice(const std::string& name);
 
-/// Last layer of a network: Q = A, a linear layer, or Q = V + A − mean A if dueling (Wang et al.
-/// 2016).
+/// Last layer of a network. Q is the output A of a linear layer. If dueling, Q = V + A − mean A
+/// (Wang et al. 2016).
 class HeadImpl : public torch::nn::Module {
  public:
   HeadImpl(std::int64_t inputs, bool dueling);
@@ -80,8 +80,8 @@ class RecurrentNetwork : public torch::nn::Module {
   Head head_{nullptr};
 };
 
-/// All parameters of a module, and their gradients, as one tensor. Optimizer steps, copies and file
-/// access are then one operation each.
+/// All parameters of a module as one tensor, with their gradients. An optimizer step, a copy or a
+/// file access is then a single operation.
 class FlatParameters {
  public:
   /// Moves the module's parameters to the device and into one tensor. The module continues to use

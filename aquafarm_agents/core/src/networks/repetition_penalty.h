@@ -14,9 +14,9 @@ namespace aquafarm::agents {
 
 /// Discourages oscillation. The value (or logit) of an action is reduced by a penalty for each time
 /// that the agent took it in the same situation (cell, load, remaining devices) of this episode. If
-/// errors of the network make a ship move back and forth next to a device, it soon tries the
-/// pickup. The penalty counts the last 1024 steps of the episode. (Badia et al. 2020 use such
-/// counts within an episode for a reward.)
+/// errors of the network make a ship move back and forth next to a device, the ship soon tries the
+/// pickup. Only the last 1024 steps of the episode count. (Badia et al. 2020 use such counts within
+/// an episode for a reward.)
 class RepetitionPenalty {
  public:
   /// @param penalty for each repetition, on the scale of the values; 0 disables the penalty

@@ -19,7 +19,7 @@ namespace aquafarm::agents {
 /// Settings of the base class.
 struct ReplayLearnerOptions {
   ExplorationOptions exploration;
-  double value_scale{1.0};  ///< scale of the values passed to the explorer, per unit of reward
+  double value_scale{1.0};  ///< see the constructor of Explorer
   ReplayOptions replay;
   DeepOptions sampling;  ///< only batch_size, priority_exponent and importance_exponent
   std::size_t steps{1};  ///< number of later time steps that a sample needs
@@ -69,10 +69,10 @@ class ReplayLearner : public Learner {
         replay_(options.replay),
         sampler_(replay_, options.sampling, options.steps, options.group) {}
 
-  /// Returns the recurrent states of all agents before this step, zero where an episode starts;
-  /// null if the network is not recurrent.
+  /// Returns the recurrent states of all agents before this step, [slots, recurrent_size]. They are
+  /// zero where an episode starts. Returns null if the network is not recurrent.
   virtual const float* RecurrentStates(const StepResults&) { return nullptr; }
-  /// Adds farm steps, from which the number of due updates follows.
+  /// Counts farm steps. They determine the number of due updates.
   virtual void CountSteps(std::uint64_t farm_steps) = 0;
   /// Consumes one due update. @returns false if no update is due
   virtual bool TakeDue() = 0;

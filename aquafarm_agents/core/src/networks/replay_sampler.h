@@ -28,15 +28,15 @@ class ReplaySampler {
   /// @param replay must outlive the sampler
   /// @param steps number of later time steps that must be stored for a drawn time step
   /// @param group 1 to draw transitions of single agents; the number of agents per farm to draw
-  ///        transitions of whole farms, of which at least one agent is not done
+  ///        transitions of whole farms in which at least one agent is not done
   ReplaySampler(const Replay<Scalar>& replay, const DeepOptions& options, std::size_t steps,
                 std::size_t group = 1);
 
   /// Updates the sampler after a time step was added to the replay.
   void Add();
-  /// Returns whether a transition can be drawn. Precondition of Draw.
+  /// Returns whether a transition can be drawn.
   bool IsReady() const;
-  /// Draws transition i of [0, batch_size) of a batch.
+  /// Draws transition i of a batch. IsReady() must be true. @param i [0, batch_size)
   TransitionIndex Draw(RandomStream& rng, std::size_t i);
   /// Returns the importance weights of the drawn batch, [batch_size], scaled to a max of 1. Must be
   /// called once after the draws of a batch.

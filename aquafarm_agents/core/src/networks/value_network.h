@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Interface through which DQN and LSTM-DQN use a network: it computes the values of observations,
-/// and the gradient of a loss that depends on these values. For features on the CPU, it is
-/// implemented without libtorch, with buffers that are allocated once (fused_values.h,
-/// docs/decisions/fused_updates.md). For planes or CUDA, it uses the modules of networks.h and the
-/// differentiation of libtorch.
+/// Interface through which DQN and LSTM-DQN use a network. It computes the values of observations,
+/// and the gradient of a loss that depends on these values. The implementation for features on the
+/// CPU does without libtorch and reuses its buffers (fused_values.h,
+/// docs/decisions/fused_updates.md). The implementation for planes or CUDA uses the modules of
+/// networks.h and the differentiation of libtorch.
 
 #include <cstddef>
 #include <memory>
@@ -24,7 +24,7 @@ class ValueNetwork {
   /// @returns Q [rows, kActionCount], valid until the next call
   virtual const float* Forward(std::size_t rows, const Scalar* observations) = 0;
   /// Replaces the gradient of the parameters.
-  /// @param rows number of rows of the last Forward, from the first on, on which the loss depends
+  /// @param rows the loss depends on the first `rows` rows of the last Forward
   /// @param slopes [rows, kActionCount] d loss / d Q of these rows
   virtual void Backward(std::size_t rows, const float* slopes) = 0;
 };
@@ -41,13 +41,13 @@ class RecurrentValueNetwork {
   /// As Forward, but computes only the state.
   virtual void WarmUp(std::size_t steps, std::size_t rows, const float* features, float* state) = 0;
   /// Replaces the gradient of the parameters.
-  /// @param count number of (step, row) pairs of the last Forward, from the first on, on which the
-  ///   loss depends. A multiple of `rows`, unless Forward had a single step
+  /// @param count the loss depends on the first `count` (step, row) pairs of the last Forward. A
+  ///   multiple of `rows`, unless Forward had a single step
   /// @param slopes [count, kActionCount] d loss / d Q
   virtual void Backward(std::size_t count, const float* slopes) = 0;
 };
 
-/// Whether Backward will be called. If not, libtorch keeps no intermediate results.
+/// Whether Backward may be called. If not, libtorch keeps no intermediate results.
 enum class Learns : bool { kNo, kYes };
 
 /// Makes the value network of `module`, which MakeNetwork made for the same spec and options.

@@ -19,12 +19,12 @@
 
 namespace aquafarm::agents {
 
-/// Returns the parameters of the network by which agents act, from the checkpoint of a learner or
-/// of a policy. @throws InputError if the section is missing
+/// Returns the parameters with which agents act, from the checkpoint of a learner or of a policy.
+/// @throws InputError if the section is missing
 std::vector<float> ActingWeights(const Checkpoint& checkpoint);
 
-/// Where in the random stream a minibatch was drawn. A minibatch with a non-finite loss can thus be
-/// reproduced.
+/// Position in the random stream from which a minibatch was drawn. With it, a minibatch that caused
+/// a non-finite loss can be reproduced.
 struct BatchOrigin {
   std::uint64_t seed{};      ///< seed of the learner's random stream
   std::uint64_t position{};  ///< position in the stream before the first draw
@@ -40,7 +40,7 @@ class ValueOptimizer {
   ValueOptimizer(const DeepOptions& options, torch::nn::Module& online, torch::nn::Module& target,
                  torch::nn::Module& acting, torch::Device device);
 
-  /// Counts farm steps, from which the number of due updates follows, and sets the learning rate.
+  /// Counts farm steps, which determine the number of due updates. Sets the learning rate.
   /// @param progress of the run, [0, 1]
   void Count(std::uint64_t farm_steps, double progress);
   /// Consumes one due update. @returns false if no update is due
@@ -52,15 +52,15 @@ class ValueOptimizer {
   /// @throws LearnerFailed if the loss is not finite
   void Differentiate(std::size_t count, const float* predicted, const float* targets,
                      const float* weights, float* slopes, const BatchOrigin& origin);
-  /// Takes one step of Adam against the gradient of online(). Updates the target network and the
-  /// moving average of the weights.
+  /// Takes one step of Adam against the gradient of online(). Then updates the moving average of
+  /// the weights and, if it is due, the target network.
   /// @throws LearnerFailed if the gradient is not finite; the parameters are then unchanged
   void Learn(const BatchOrigin& origin);
 
-  /// Returns the statistics of the learner. The loss is a moving average of the weighted mean
-  /// squared TD error, in units of the unscaled reward, for every loss function (Fig. 12).
+  /// Returns the statistics of the learner. For every loss function, the reported loss is a moving
+  /// average of the weighted mean squared TD error of unscaled rewards (Fig. 12).
   LearnerStatus status(double exploration) const;
-  /// Returns the parameters by which agents act: the online parameters, or their moving average.
+  /// Returns the parameters with which agents act: the online parameters, or their moving average.
   const FlatParameters& acting() const { return average_ ? *average_ : online_.parameters(); }
   FlatParameters& online() { return online_.parameters(); }
   FlatParameters& target() { return target_; }

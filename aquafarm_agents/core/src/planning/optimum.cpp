@@ -112,9 +112,10 @@ OptimumShare CompareWithOptimum(
   share.mean_return /= static_cast<double>(pairs.size());
   share.mean_optimum /= static_cast<double>(pairs.size());
   if (!(share.mean_optimum > 0.0)) {
-    throw InputError("optimum: got a mean return of " + FormatNumber(share.mean_optimum) +
-                     " of the best plans, expected more than 0 for a share of it; "
-                     "evaluate without --optimum");
+    throw InputError("optimum: the best plans have the mean return " +
+                     FormatNumber(share.mean_optimum) +
+                     ", expected more than 0, because a share of it is printed; evaluate without "
+                     "--optimum");
   }
   share.share = share.mean_return / share.mean_optimum;
   Bootstrap(pairs, seed, share);

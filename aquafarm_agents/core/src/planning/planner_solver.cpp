@@ -23,8 +23,8 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t max_devices)
        {std::pair{"step", scenario.rewards.step}, std::pair{"illegal", scenario.rewards.illegal}}) {
     if (value <= 0.0F) continue;
     throw InputError("planner: rewards." + std::string(name) +
-                     ": got more than 0, expected at most 0, since a ship earns without end by "
-                     "waiting; evaluate a learner instead");
+                     ": got more than 0, expected at most 0, because a ship could earn it "
+                     "again and again; evaluate a learner instead");
   }
   if (devices_ > std::size_t{kMaxPlanDevices}) {
     throw InputError(

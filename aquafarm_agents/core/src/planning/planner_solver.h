@@ -2,8 +2,8 @@
 #pragma once
 
 /// Implementation of Planner. planner_solver.cpp prepares the farm and the task as a graph of
-/// states, planner_search.cpp searches it. A state is a cell of the ship and a set: a status
-/// (PickupPlan) of each device of the task. Its index is set · cells + cell.
+/// states. planner_search.cpp searches the graph. A state consists of a cell of the ship and a set,
+/// which is a status (PickupPlan) of each device of the task. Its index is set · cells + cell.
 
 #include <cstdint>
 #include <limits>
@@ -132,8 +132,8 @@ class PlannerSolver {
   std::vector<float> health_;           // present health of the waiting devices
   std::vector<Gains> gains_;            // by set, with the present health
   std::int32_t first_step_{};           // the farm's present step
-  // Cumulative sums by step from first_step_ on: of the best rewards, and of the amounts (at most
-  // 0) by which they differ from move_reward_.
+  // Cumulative sums by step from first_step_ on: of the best reward of each step, and of an upper
+  // bound (at most 0) of the difference that risks make to the reward of a move in this step.
   std::vector<double> step_rewards_;
   std::vector<double> surcharges_;
   bool crash_hurts_{};  // whether a crash in this step damages devices
@@ -141,7 +141,7 @@ class PlannerSolver {
   // Costs of energy in the reward (farm/energy.h); 0 without energy.
   double idle_cost_{};        // cost of a step without distance
   double km_cost_{};          // cost of a kilometre without load in calm water
-  double rough_sea_{};        // times the risk (both negative), added to a factor of 1
+  double rough_sea_{};        // 1 + rough_sea_ · risk is the factor of km_cost_ in a rough sea
   std::vector<double> load_;  // by set: factor of km_cost_ for the devices aboard
 
   // Data that the next plan reuses if the chart, the devices and move_reward_ are the same.

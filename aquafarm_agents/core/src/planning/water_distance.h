@@ -10,7 +10,8 @@
 
 namespace aquafarm::agents {
 
-/// Mildest risk of any disaster or sea. Every risk that is not 0 is in [-20, -5] (paper §2.1).
+/// Mildest risk of any disaster or sea. Every risk that is not 0 is in [-20, -5] (paper §2.1, see
+/// docs/model.md).
 inline constexpr double kMildestRisk = -5.0;
 
 /// Returns the min moves from any of `sources` to each cell, [H, W] row-major; kUnreachable for a

@@ -19,7 +19,7 @@ class Actor {
  public:
   Actor(const EnvironmentSpec& spec, const PpoOptions& options, std::size_t state_size);
 
-  /// From now on averages the outputs of the network over all rotations and reflections of the
+  /// Makes Observe average the outputs of the network over all rotations and reflections of the
   /// observed tokens. A rotated or reflected ranch then has the same values, and its probabilities
   /// are rotated or reflected accordingly. Only for networks without a recurrent state.
   void AverageSymmetries(const TokenLayout& layout) { symmetries_ = AllSymmetries(layout); }
@@ -31,7 +31,7 @@ class Actor {
 
   /// Draws actions from the probabilities. Slot i draws from stream i.
   void Sample(AgentRng& rng, std::vector<std::uint8_t>& actions) const;
-  /// Takes the most probable actions; of equally probable ones that with the lowest index.
+  /// Takes the most probable action of each agent. Ties go to the lowest action number.
   void TakeBest(std::vector<std::uint8_t>& actions) const;
 
   std::size_t slots() const { return masks_.size(); }
@@ -41,8 +41,8 @@ class Actor {
   /// Recurrent states after the last Observe, [N, S, state_size].
   const std::vector<float>& state() const { return state_; }
   std::vector<float>& state() { return state_; }
-  /// Recurrent states before the last Observe. Where an episode started, they are still those of
-  /// the previous episode: the network clears its copy (SequenceRows::is_first).
+  /// Recurrent states before the last Observe. Where an episode starts, they are those of the
+  /// previous episode: only the network clears its copy (SequenceRows::is_first).
   const std::vector<float>& state_before() const { return state_before_; }
 
  private:

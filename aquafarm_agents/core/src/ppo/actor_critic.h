@@ -37,10 +37,11 @@ class ActorCritic {
 
   /// Size of an agent's recurrent state; 0 if feed-forward.
   virtual std::size_t state_size() const = 0;
-  /// Max number of rows for which Forward is efficient.
+  /// Largest number of rows for which Forward is efficient.
   virtual std::size_t chunk_rows() const = 0;
 
-  /// Number of agents whose observations determine the value; 0 if only the agent's own does.
+  /// Number of agents whose observations determine the value; 0 if only the agent's own observation
+  /// determines it.
   virtual std::size_t joint_agents() const { return 0; }
   /// Number of weights in a saved policy, which contains the first policy_size() weights.
   virtual std::size_t policy_size() const { return weights_.size(); }

@@ -14,8 +14,9 @@ class Adam {
  public:
   explicit Adam(std::size_t size) : mean_(size), square_(size) {}
 
-  /// Takes one step against `gradient`. A longer gradient is first scaled to the norm `max_norm`.
-  /// @param max_norm 0: not limited
+  /// Takes one step against `gradient`. If its norm exceeds `max_norm`, it is first scaled to this
+  /// norm.
+  /// @param max_norm 0: no limit
   /// @returns false if the norm of the gradient is not finite; nothing is then changed
   [[nodiscard]] bool Step(const std::vector<float>& gradient, double learning_rate, double max_norm,
                           std::vector<float>& weights);
@@ -23,7 +24,7 @@ class Adam {
 
   /// Adds sections `adam.mean`, `adam.square` and `adam`.
   void Save(Checkpoint& checkpoint) const;
-  /// @throws InputError if they are missing or have another size; the state is then unchanged
+  /// @throws InputError if sections are missing or have another size; the state is then unchanged
   void Load(const Checkpoint& checkpoint);
 
  private:

@@ -42,7 +42,7 @@ struct Linear {
     }
   }
 
-  /// Adds d loss / d (W, b). @param slopes [rows, outputs]: d loss / d out
+  /// Adds d loss / d (W, b) to `gradient`. @param slopes [rows, outputs]: d loss / d out
   void AddGradient(std::size_t rows, const float* in, const float* slopes,
                    std::vector<float>& gradient) const {
     MultiplyTransposed(inputs, outputs, rows, in, slopes, 1.0F, gradient.data() + begin);

@@ -23,8 +23,8 @@ std::unique_ptr<ActorCritic> MakeActorCritic(const EnvironmentSpec& spec, const 
     }
     if (options.augment || options.symmetric) {
       throw InputError(std::string(options.augment ? "augment" : "symmetric") +
-                       ": got true, expected false in a scenario without view.tokens: only tokens "
-                       "can be turned; set view.tokens, or false");
+                       ": got true, expected false in a scenario without view.tokens: only "
+                       "observations as tokens can be rotated; set view.tokens, or false");
     }
     if (options.max_visits > 0) {
       throw InputError("max_visits: got " + std::to_string(options.max_visits) +

@@ -16,7 +16,8 @@ namespace aquafarm::agents {
 /// CentralActorCritic for PpoOptions::central, else LstmActorCritic or FeedForward.
 /// @param seed of the initial weights (weight_drawer.h)
 /// @throws InputError if the features are entity tokens and the network is recurrent or central, or
-///   if they are not and an option needs them: the teacher's rule, augment, symmetric, max_visits
+///   if the features are not entity tokens and an option needs them: the teacher's rule, augment,
+///   symmetric or max_visits
 std::unique_ptr<ActorCritic> MakeActorCritic(const EnvironmentSpec& spec, const PpoOptions& options,
                                              std::uint64_t seed);
 /// Makes LstmActorCritic or FeedForward.

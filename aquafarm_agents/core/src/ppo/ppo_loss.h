@@ -14,9 +14,9 @@ namespace aquafarm::agents {
 inline constexpr std::size_t kActorCriticOutputs = kActionCount + 1;
 
 /// Max log ratio b that is exponentiated. PPO's clipping does not bound the ratio from above if the
-/// advantage is negative, so exp() could overflow and cause NaN gradients. Above b, the ratio of a
-/// log ratio x is therefore the tangent e^b (1 + x − b). Loss and gradient stay finite and
-/// consistent.
+/// advantage is negative, so exp() could overflow and cause NaN gradients. For a log ratio x above
+/// b, the ratio is therefore replaced by the tangent e^b (1 + x − b). Loss and gradient stay finite
+/// and consistent.
 inline constexpr float kMaxLogRatio = 3.0F;
 
 /// π(a | s) of many rows. Masked actions have probability 0.

@@ -43,8 +43,7 @@ class PpoPolicy final : public Policy {
 };
 
 /// Makes the policy of a checkpoint without initializing libtorch, which acting does not need.
-/// @throws InputError if the policy does not fit farms of `spec`, with the difference, or if the
-///   checkpoint is damaged
+/// @throws InputError if the policy does not fit farms of `spec`, or if the checkpoint is damaged
 std::unique_ptr<Policy> MakePpoPolicyWithoutTorch(const Checkpoint& checkpoint,
                                                   const EnvironmentSpec& spec);
 

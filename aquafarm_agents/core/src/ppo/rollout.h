@@ -42,8 +42,8 @@ class Rollout {
   std::size_t recorded_steps() const { return steps_; }
   bool IsFull() const { return steps_ == shape_.steps && !is_open_; }
 
-  /// Records the rewards and ends that followed the actions of the last Add. Does nothing if they
-  /// are already recorded.
+  /// Records the rewards and ends that followed the actions of the last Add. Does nothing if there
+  /// was no Add since the last Complete.
   void Complete(const StepResults& results, const Rewards& rewards);
   /// Records a step of all slots: observations and chosen actions. The rollout must not be full.
   /// @param masks, actions, log_probs, values [E]

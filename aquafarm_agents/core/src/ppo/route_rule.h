@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A simple rule that plays by entity tokens (token_layout.h). It follows the route to the target
+/// A simple policy that reads entity tokens (token_layout.h). It follows the route to the target
 /// with the least cost, and evades the risk of the next step. PPO may imitate it (teacher.h).
 ///
-///   targets   if there is free capacity: deployed devices that can be brought home in time;
-///             if there is a device aboard: ports
+///   targets   with free capacity: deployed devices that can be brought home in time;
+///             with a device aboard: ports
 ///   cost      steps of the route (at most 64) + sum of |risk| over its first 32 steps
 ///   move      the allowed move with the least |risk| + deviation from the route [octants]
 ///   action    at the target: pickup or drop-off
@@ -48,11 +48,11 @@ class RouteRule {
   std::uint8_t MoveTo(const float* tokens, const Target& target, ActionMask allowed) const;
 
   const TokenLayout layout_;
-  // Offsets of features within the token of the ship,
+  // Offsets of features within the token of the ship.
   const std::size_t risk_, near_blocked_, near_risk_;
-  // of a device or port,
+  // Offsets within the token of a device or port.
   const std::size_t here_, next_, distance_, route_risk_, has_space_, has_cargo_;
-  // and of a device alone.
+  // Offsets within the token of a device.
   const std::size_t deployed_, slack_;
 };
 

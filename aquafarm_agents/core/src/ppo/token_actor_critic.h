@@ -17,9 +17,9 @@ namespace aquafarm::agents {
 ///
 ///   ship      x = ReLU(Linear(ship))
 ///   token     e = ReLU(Linear(ReLU(Linear(token))))      one encoder for each kind
-///   maximum   m = max over the valid tokens of a kind; 0 without a valid token
+///   maximum   m = max over the valid tokens of a kind; m = 0 without a valid token
 ///   attention a = Σ softmax(q · e / √E) e over devices and ports, for each of kHeads queries
-///             q = Linear(x); 0 without a valid token
+///             q = Linear(x); a = 0 without a valid token
 ///   outputs   Linear(ReLU(Linear(ReLU(Linear([x, m…, a…])))))
 ///
 /// Slots without an entity are skipped and take no time.

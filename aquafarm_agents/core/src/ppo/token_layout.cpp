@@ -26,7 +26,8 @@ bool IsOf(std::string_view slot, std::size_t kind) {
 
 std::size_t TokenLayout::PlaceOf(TokenKind kind, const std::string& name) const {
   const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw InputError("tokens: got no feature '" + name + "', expected one");
+  if (found == names.end())
+    throw InputError("tokens: got no feature '" + name + "', expected the features of view.tokens");
   return static_cast<std::size_t>(found - names.begin()) - of(kind).begin;
 }
 

@@ -7,7 +7,7 @@
 
 namespace aquafarm::agents {
 
-/// Min age of an old bulletin [h].
+/// Age from which on a bulletin is old [h].
 inline constexpr double kOldBulletin_h = 12.0;
 
 /// Reads the storm file. Sets `start`, `storm`, `forecast` and `ensemble` of the case, and adds

@@ -124,7 +124,7 @@ void WarnOfStorm(RescueCase& rescue) {
   if (storm.is_hindcast) {
     warnings.push_back({"hindcast", "warning",
                         "The forecast is the storm as it was recorded later, with errors added.",
-                        "Use it to look back, not for a decision; for that give a bulletin."});
+                        "Use this plan to study a past storm; for a decision give a bulletin."});
   }
   if (storm.is_persistence) {
     warnings.push_back({"no_forecast", "warning",

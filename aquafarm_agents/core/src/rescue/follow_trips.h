@@ -17,7 +17,7 @@ struct ShipTrips {
   std::vector<TripStop> stops;
 };
 
-/// Follows the trips in every member. Does not set bound, averse_gap and is_exhaustive of the plan.
+/// Follows the trips in every member. Does not set bound, averse_gap or is_exhaustive of the plan.
 /// @param trips at most one element for each ship; other ships stay
 RescuePlan FollowTrips(const TripModel& model, const std::vector<ShipTrips>& trips);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Plays plans in simulated storms, to measure whether the chances that plans promise are correct,
-/// and what plans save.
+/// Plays plans in simulated storms. This measures whether the chances that plans promise are
+/// correct, and what plans save.
 
 #include <array>
 #include <cstdint>
@@ -50,8 +50,8 @@ struct TrialResult {
   std::array<double, kTrialPolicyCount> saved{};
 };
 
-/// Mean of the worst 5 % of the losses of two plans. The losses are those in an ensemble with other
-/// members than the one for which the plans were made.
+/// Mean of the worst 5 % of the losses of two plans. The losses are computed in an ensemble whose
+/// members differ from those for which the plans were made.
 struct AverseResult {
   std::size_t track{};  ///< TrialStorm::track
   double mean{};        ///< of the plan with the smallest mean loss
@@ -62,7 +62,7 @@ struct AverseResult {
 class PlanTrials {
  public:
   /// @param request must name a storm, which the trials replace
-  /// @param bulletin_s time between two bulletins of a trial
+  /// @param bulletin_s time between two bulletins of a trial [s]
   /// @throws InputError as MakeRescueCase
   PlanTrials(std::shared_ptr<const Scenario> scenario, RescueRequest request,
              std::int64_t bulletin_s = BulletinPeriod({}));

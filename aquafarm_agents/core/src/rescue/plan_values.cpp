@@ -63,7 +63,8 @@ std::string WhyUnknown(const RescueCase& rescue) {
   const bool has_ended = from == 0 && rescue.storm.age_h >= kOldBulletin_h;
   return (has_ended ? "The bulletin's forecast ended at " + FormatUtc(*rescue.storm.known_until)
                     : "The storm's winds are unknown from " + FormatUtc(from) + " on") +
-         ": no chance, arrival, loss, deadline or comparison is known, and none of them is 0.";
+         ": chances, arrivals, losses, deadlines and comparisons are unknown, which does not mean "
+         "0.";
 }
 
 std::string ObjectiveOf(const RescueProblem& problem) {

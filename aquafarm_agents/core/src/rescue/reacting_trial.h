@@ -21,19 +21,19 @@ namespace aquafarm::agents {
 /// State of the ship and the devices of a trial.
 struct TrialFleet {
   Cell cell{};                      ///< cell of the ship
-  double time_s{};                  ///< after the start of the trial; in Skipper::Plan after the
-                                    ///< bulletin
+  double time_s{};                  ///< time after the start of the trial [s]; in Skipper::Plan,
+                                    ///< time after the bulletin [s]
   std::vector<std::size_t> aboard;  ///< indices of the devices aboard
   std::vector<bool> is_delivered;   ///< by device
-  std::vector<double> lost;         ///< by device: share of its value since the start of the trial
+  std::vector<double> lost;         ///< by device: share of its value lost in the trial so far
 };
 
 /// One action of the ship.
 struct TrialAct {
   Cell cell{};                    ///< cell of the ship after the action
-  double seconds{};               ///< duration
+  double seconds{};               ///< duration [s]
   std::optional<OrderKind> kind;  ///< fetch, or deliver all devices aboard; nullopt: a move
-  std::size_t device{};           ///< fetch: index of the device
+  std::size_t device{};           ///< index of the device to fetch
 };
 
 /// Chooses the actions of the ship of a trial.
@@ -83,14 +83,14 @@ class PlannerSkipper final : public Skipper {
 
 /// A bulletin of a trial.
 struct TrialBulletin {
-  double time_s{};                    ///< after the start of the trial
+  double time_s{};                    ///< time after the start of the trial [s]
   std::function<RescueCase()> known;  ///< makes the case that starts with this bulletin
 };
 
 /// Plays the actions of a skipper in the true storm.
 /// @param model of the true storm, with one ship and an ensemble of one member
 /// @param bulletins in order of time
-/// @returns the value saved: loss if no ship leaves minus loss
+/// @returns the value saved: the loss if no ship leaves, minus the loss with these actions
 double PlayReacting(const TripModel& model, const std::vector<TrialBulletin>& bulletins,
                     Skipper& skipper);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Simulated storms with bulletins that forecast them, to compare a plan with a true outcome.
+/// Simulated storms with bulletins that forecast them. They allow plans to be compared with true
+/// outcomes.
 ///
 ///   recorded track ── moved, with radii ──> the true storm
 ///   true storm ── + published errors by lead time ──> the bulletin, with points 12 to 24 h apart

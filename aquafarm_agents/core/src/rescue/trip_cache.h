@@ -14,8 +14,8 @@
 namespace aquafarm::agents {
 
 /// Stores the trips of ships. Ships with equal cell, speed, ready time, capacity and devices aboard
-/// have the same trips. All problems of a cache must be equal, except that ships without devices
-/// aboard may be added or removed.
+/// have the same trips. All problems for which a cache is used must be equal, except that they may
+/// differ in ships without devices aboard.
 class TripCache {
  public:
   /// Returns the trips of a ship. The reference stays valid as long as the cache exists.

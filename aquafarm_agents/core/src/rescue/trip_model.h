@@ -84,10 +84,10 @@ class TripModel {
   /// Returns an upper bound of the value that the delivery of a device by any ship can save.
   double BoundOf(std::size_t device, const MemberWeights& weights = {}) const;
   /// Returns the cells of a trip that starts at the ship's cell and delivers a device at the
-  /// nearest open port. A ship with devices aboard delivers these first. TimedCell::time_s is here
-  /// the time at which the ship leaves the cell, relative to the departure. The last one is the end
-  /// of the delivery. Returns an empty vector if there is no route, or if another ship carries the
-  /// device.
+  /// nearest open port. A ship with devices aboard delivers these first. Here, TimedCell::time_s is
+  /// the time at which the ship leaves the cell, relative to the departure. In the last element it
+  /// is the end of the delivery. Returns an empty vector if there is no route, or if another ship
+  /// carries the device.
   std::vector<TimedCell> FirstTrip(std::size_t ship, std::size_t device) const;
 
  private:

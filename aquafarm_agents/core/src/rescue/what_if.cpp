@@ -52,7 +52,7 @@ class Changes {
       if (a.is_possible != b.is_possible) return a.is_possible;
       return a.loss.mean < b.loss.mean;
     });
-    rows_.insert(rows_.begin(), Compare("none", "the plan as it is", plan, plan));
+    rows_.insert(rows_.begin(), Compare("none", "the plan without a change", plan, plan));
   }
   std::vector<WhatIf> Take() { return std::move(rows_); }
 

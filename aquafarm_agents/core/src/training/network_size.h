@@ -7,8 +7,8 @@
 
 namespace aquafarm::agents {
 
-/// Returns `options` with the hidden_size of `initial`, unless `options` set hidden_size. A network
-/// that starts with the weights of another network needs the same size.
+/// Returns `options` with the hidden_size of `initial` added, unless they contain hidden_size. A
+/// network that starts with the weights of another network needs the same size.
 /// @param initial options of the learner that trained the weights
 inline std::string WithSizeOf(const std::string& initial, const std::string& options) {
   const std::string key = "hidden_size=";

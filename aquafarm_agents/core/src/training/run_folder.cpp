@@ -50,7 +50,7 @@ RunFolder::RunFolder(std::string path, bool resume) : path_(std::move(path)) {
   std::error_code error;
   if (resume && !fs::exists(path_, error)) throw InputError(path_ + ": contains no run to resume");
   fs::create_directories(path_ + "/checkpoints", error);
-  if (error) throw StorageError(path_ + ": cannot be made: " + error.message());
+  if (error) throw StorageError(path_ + ": cannot be created: " + error.message());
   Lock();
   try {
     const bool holds_run = fs::exists(path_ + "/run.json", error) || !CheckpointsIn(path_).empty();

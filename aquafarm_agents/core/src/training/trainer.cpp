@@ -199,7 +199,8 @@ void Trainer::CountRestarts() {
   next_episode_ += std::uint64_t{uncounted_restarts_} *
                    static_cast<std::uint64_t>(WholeSpec(environment_.spec(), options_.group).farms);
   uncounted_restarts_ = 0;
-  notice_ = "the farms were lost and came back; training continues with new episodes";
+  notice_ =
+      "the connection to the farms was lost and restored; training continues with new episodes";
 }
 
 void Trainer::CountEpisode(const EpisodeSummary& result) {

@@ -31,7 +31,7 @@ TEST(CompareWithOptimum, RefusesAnOptimumThatIsNotPositive) {
   const auto poor = [](std::uint64_t, std::uint64_t episode) { return FarmWorth(10.0F, episode); };
   const std::string message = test::MessageOf<InputError>(
       [&] { CompareWithOptimum({EpisodeSummary{}}, poor, 1000000, 1, nullptr); });
-  EXPECT_CONTAINS(message, "optimum: got a mean return of -");
+  EXPECT_CONTAINS(message, "optimum: the best plans have the mean return -");
 }
 
 TEST(CompareWithOptimum, CountsOnlyLargeEpisodesAsTooLarge) {

@@ -151,8 +151,8 @@ TEST(Planner, RefusesAScenarioThatPaysForWaiting) {
   Scenario generous = TinyScenario(9, 0.0F, 1);
   generous.rewards.illegal = 1.0F;
   EXPECT_EQ(test::MessageOf<InputError>([&] { Planner{generous}; }),
-            "planner: rewards.illegal: got more than 0, expected at most 0, since a ship earns "
-            "without end by waiting; evaluate a learner instead");
+            "planner: rewards.illegal: got more than 0, expected at most 0, because a ship "
+            "could earn it again and again; evaluate a learner instead");
 }
 
 TEST(Foresight, IsTheTrackOrTheForecastOrTheHeading) {

@@ -42,7 +42,7 @@ TEST_F(RunFolderTest, HoldingARunIsRefusedUnlessResumed) {
 TEST_F(RunFolderTest, WhereNothingCanBeWrittenIsRefusedAtOnce) {
   WriteFileAtomically(folder_ + "/file", "x");
   EXPECT_CONTAINS(MessageOf<StorageError>([&] { RunFolder(folder_ + "/file/run", false); }),
-                  "/file/run: cannot be made: Not a directory");
+                  "/file/run: cannot be created: Not a directory");
   EXPECT_THROW(RunFolder("/proc/aquafarm", false), StorageError);
   EXPECT_THROW(RunFolder("", false), InputError);
 }

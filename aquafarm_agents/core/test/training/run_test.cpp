@@ -257,7 +257,7 @@ TEST_F(RunTest, FarmsThatCameBackAreCountedWithAndWithoutShards) {
     EXPECT_EQ(report.status.progress.restarts, 1U) << shards;
     EXPECT_EQ(std::count_if(statuses_.begin(), statuses_.end(),
                             [](const RunStatus& status) {
-                              return status.message.find("came back") != std::string::npos;
+                              return status.message.find("lost and restored") != std::string::npos;
                             }),
               1)
         << shards;

@@ -15,14 +15,15 @@ namespace aquafarm_agents {
 
 struct AgentDriverOptions {
   std::int32_t ship{};
-  double wait_limit_s{20.0};  ///< max wait for the sim node
-  const std::atomic<bool>* stop{};
+  double wait_limit_s{20.0};        ///< max wait for the sim node
+  const std::atomic<bool>* stop{};  ///< ends Drive if true; null if it cannot be stopped
 };
 
 /// Agent of one ship, as in a deployment. It subscribes only to that ship's observation, claims the
 /// ship and calls its move, pickup and drop_off services. In lockstep its command waits for the
-/// commands of the other ships. In paced running the ship holds if its command is late. An agent
-/// that starts during an episode joins that episode.
+/// commands of the other ships, and it calls reset after the end of an episode. In paced running
+/// the ship holds if its command is late. An agent that starts during an episode joins that
+/// episode.
 class AgentDriver {
  public:
   /// Waits for the sim node.

@@ -17,9 +17,9 @@
 namespace aquafarm_agents {
 
 struct ShipDriverOptions {
-  std::int32_t ship{-1};      ///< -1: all ships of farm 0
-  double wait_limit_s{20.0};  ///< max wait for the sim node
-  const std::atomic<bool>* stop{};
+  std::int32_t ship{-1};            ///< -1: all ships of farm 0
+  double wait_limit_s{20.0};        ///< max wait for the sim node
+  const std::atomic<bool>* stop{};  ///< ends Drive if true; null if it cannot be stopped
 };
 
 /// Drives ships of a running ranch, paced or in lockstep, by ship commands. It loads the saved
@@ -37,7 +37,7 @@ class ShipDriver {
   const aquafarm::agents::EnvironmentSpec& spec() const;
 
   /// Drives the ships until `episodes` episodes have ended; 0: without limit. Returns early when
-  /// stopped. If it drives a single ship, it claims this ship meanwhile.
+  /// stopped. If it drives a single ship, it claims the ship while it drives.
   /// @param seed seed of the policy's random draws
   /// @returns the summaries of the ended episodes
   /// @throws InputError if another node has claimed the ship; EnvironmentLost if the sim node is

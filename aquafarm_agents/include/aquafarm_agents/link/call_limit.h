@@ -19,9 +19,9 @@ inline constexpr double kRetryPeriod_s = 0.1;  ///< between attempts to reach a 
 /// 0.2 s · `looks`, prints a line to standard error and ends the process with ExitCode::kLost.
 void EndUnlessDone(const std::function<void()>& task, int looks);
 
-/// Adds a timeout to service calls, which roscpp lacks. A call that exceeds the limit is aborted
-/// and returns false. If roscpp cannot abort it, the process ends (EndUnlessDone). Calls must not
-/// overlap.
+/// Calls services with a timeout, because the calls of roscpp have none. A call that exceeds the
+/// limit is aborted and returns false. If roscpp cannot abort it, the process ends (EndUnlessDone).
+/// Calls must not overlap.
 class CallLimit {
  public:
   explicit CallLimit(double limit_s);
@@ -29,7 +29,8 @@ class CallLimit {
   CallLimit(const CallLimit&) = delete;
   CallLimit& operator=(const CallLimit&) = delete;
 
-  /// @returns false if there was no response, because the service is gone or the limit is exceeded.
+  /// @returns false if there was no readable response, for example because the service is gone or
+  ///          the limit is exceeded.
   ///          The client is then shut down and must be created again. It is shut down because
   ///          roscpp sometimes reports a dropped connection as valid.
   template <typename Service>

@@ -30,7 +30,7 @@ class ServiceLink {
         call_limit_s_(call_limit_s),
         limit_(call_limit_s) {}
 
-  /// Calls the service, again and again until it responds.
+  /// Calls the service, and repeats the call until the service responds.
   /// @throws EnvironmentLost if there is no response within the limit, or the call was stopped
   template <typename Service>
   void Call(const std::string& name, Service& service) {
@@ -40,7 +40,7 @@ class ServiceLink {
       if (!client_.isValid()) client_ = node_.serviceClient<Service>(name, true);
       if (client_.isValid() && limit_.Call(client_, service)) return;
       const ros::WallTime now = ros::WallTime::now();
-      // The wait starts at the end of the first failed attempt, or at its begin if it timed out.
+      // The wait starts at the end of the first failed attempt, or at its start if it timed out.
       if (lost_since.isZero()) lost_since = (now - begun).toSec() < call_limit_s_ ? now : begun;
       const bool stopped = !ros::ok() || (stop_ != nullptr && *stop_);
       if (stopped || (now - lost_since).toSec() >= wait_limit_s_) {

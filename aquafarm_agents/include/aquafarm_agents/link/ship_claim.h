@@ -23,9 +23,9 @@ class ShipClaim {
   ShipClaim(const ShipClaim&) = delete;
   ShipClaim& operator=(const ShipClaim&) = delete;
 
-  /// Renews the claim if the last renewal is 3 s old, which also checks that the sim node is
-  /// running. Must be called repeatedly while the node sends no commands, which renew the claim
-  /// too.
+  /// Renews the claim if the last renewal is at least 3 s old. A renewal also checks that the sim
+  /// node is running. Must be called repeatedly while the node sends no commands. Commands also
+  /// renew the claim.
   /// @throws InputError, EnvironmentLost as the constructor
   void RenewWhenDue();
 

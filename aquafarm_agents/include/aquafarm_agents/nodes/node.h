@@ -12,9 +12,9 @@ int RunTrainNode();
 /// @returns an ExitCode
 int RunPolicyNode();
 
-/// Plans the rescue of a ranch's devices, and plans again after every bulletin and every step of
-/// the ranch. Publishes `plan`, a path for each ship, markers, a chart and a heartbeat. A separate
-/// thread makes the plans.
+/// Plans the rescue of a ranch's devices, and plans again when a bulletin, another input file or
+/// the state of the ranch changes. Publishes `plan`, a path for each ship, markers, a chart and a
+/// heartbeat. A separate thread makes the plans.
 /// @returns an ExitCode
 int RunPlanNode();
 

@@ -25,7 +25,7 @@ class NewestWork {
   using Clock = std::chrono::steady_clock;
 
   /// @param work processes a request; called in the thread; must not throw
-  /// @param min_period between the starts of two calls of `work`
+  /// @param min_period min time between the starts of two calls of `work`
   NewestWork(std::function<void(const Request&)> work, std::chrono::duration<double> min_period)
       : work_(std::move(work)), min_period_(min_period), thread_([this] { Run(); }) {}
   NewestWork(const NewestWork&) = delete;
@@ -40,7 +40,7 @@ class NewestWork {
     thread_.join();
   }
 
-  /// Hands over a request. Returns at once.
+  /// Adds a request. Returns immediately.
   void Ask(Request request) {
     {
       const aquafarm::MutexLock lock(mutex_);
@@ -55,7 +55,7 @@ class NewestWork {
     return waiting_.has_value() || working_;
   }
 
-  /// Returns for how long the present call of `work` has run [s]; 0 if there is none.
+  /// Returns the duration of the present call of `work` so far [s]; 0 if `work` is not running.
   double busy_s() const {
     const aquafarm::MutexLock lock(mutex_);
     return working_ ? std::chrono::duration<double>(Clock::now() - began_).count() : 0.0;

@@ -23,13 +23,13 @@ struct PlanInputs {
   std::vector<StampedFile> files;                      ///< lists of devices and of ships
   std::optional<aquafarm::agents::FleetState> fleet;   ///< set if the plan follows a ranch
   std::uint64_t step{};                                ///< step of that ranch
-  std::int64_t refresh{};  ///< a change of this number causes a new plan
-  std::string command;     ///< command line that the plan records
-  std::string fault;       ///< why the inputs are incomplete or outdated; empty: they are complete
+  std::int64_t refresh{};                              ///< number whose change causes a new plan
+  std::string command;                                 ///< command line that the plan records
+  std::string fault;  ///< why the inputs are incomplete or outdated; empty: they are complete
 };
 
-/// Returns whether two inputs lead to the same plan. Compares scenario, files, request.at, refresh,
-/// the fleet and its step. The rest of the request must be equal.
+/// Returns whether two inputs lead to the same plan. Compares scenario, bulletins, files,
+/// request.at, refresh, the fleet and its step. All other fields of `request` must be equal.
 bool SamePlan(const PlanInputs& a, const PlanInputs& b);
 
 /// Makes a plan with one bulletin.
@@ -51,9 +51,9 @@ class PlanKeeper {
   void Use(PlanMessages plan, const PlanInputs& inputs);
 
   PlanMessages plan_;
-  std::optional<PlanInputs> inputs_;  // of the last attempt
+  std::optional<PlanInputs> inputs_;  // of the last Update
   std::string refused_;               // why the newest inputs were refused; empty: they were not
-  std::string good_;                  // bulletin in use; empty before the first plan
+  std::string good_;                  // bulletin of plan_; empty before the first plan
 };
 
 }  // namespace aquafarm_agents

@@ -5,13 +5,13 @@
 ///
 ///     | namespace    | id           | content                                             |
 ///     | plan_route   | ship         | route of a ship, in its colour                      |
-///     | plan_ship    | ship         | name of the ship and its departure                  |
-///     | plan_device  | device       | name, probability to come home, time of the pickup  |
+///     | plan_ship    | ship         | name, departure; without a route: what to do        |
+///     | plan_device  | device       | name; probability to come home and pickup, if any   |
 ///     | plan_port    | port         | name                                                |
 ///     | plan_track   | 0, 1         | recorded and later positions of the storm           |
-///     | plan_cone    | point        | circle that contains the centres of 70 % of storms  |
-///     | plan_hour    | point        | lead time and local time of the circle              |
-///     | plan_outcome | 0            | RescuePlan.text, and its fault if it is outdated    |
+///     | plan_cone    | point        | circle that holds 70 % of the possible centres      |
+///     | plan_hour    | point        | lead time and local time of that circle             |
+///     | plan_outcome | 0            | RescuePlan.text, and RescuePlan.fault if it is set  |
 ///
 /// A point is an index in RescuePlan.forecast_error.
 

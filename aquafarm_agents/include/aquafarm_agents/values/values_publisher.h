@@ -17,10 +17,10 @@
 
 namespace aquafarm_agents {
 
-/// Publishes V_π and the greedy action of ship 0 in each cell of farm 0 in its current state
-/// (topics `values` and `values/points`, both latched) while there are subscribers. A low-priority
-/// thread computes them. It sleeps nine times as long as it works, so that it hardly slows down
-/// playing and training.
+/// Publishes V_π and the greedy action of ship 0 in each free cell of farm 0, for the farm's
+/// current state. The topics are `values` and `values/points`, both latched. A low-priority thread
+/// computes them while there are subscribers. It pauses at least nine times as long as it computes,
+/// so that it hardly slows down playing and training.
 class ValuesPublisher {
  public:
   /// @param period_s min time between two publications; 0 disables them

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Draws the charts of CURVES; a zoom applies to all of them.
 window.charts = [];
-// Runs differ by their dashes too, so that they can be told apart in a print without colours.
+// Runs also differ by their dashes, so that a print without colours shows which is which.
 const LINES = [[2, 3], [8, 4], [1, 0]];  // of references
 const DASHES = [null, [9, 4], [2, 3], [12, 4, 2, 4], [5, 5], [1, 6], [14, 6]];
-// Room for the marks of greedy play at the right edge [pixels]; all charts have the same episodes.
+// Width for the marks of greedy play at the right edge [pixels]. All charts have the same episodes.
 const MARKS = Math.max(...CURVES.charts.map(chart => (chart.marks || []).length));
-const PAD = MARKS ? 12 + 14 * MARKS : 0;
+const PAD = MARKS ? Math.max(56, 12 + 20 * MARKS) : 0;  // has space for "greedy"
 let moving = false;
 for (const chart of CURVES.charts) {
   const unit = chart.bend;
@@ -60,7 +60,8 @@ for (const tile of document.querySelectorAll(".tile.own")) {
   if (run >= 0) tile.style.setProperty("--own", CURVES.colours[run]);
 }
 
-// A scale that is linear above 0 and logarithmic below; `unit` is null where it is linear.
+// Maps a value to a scale that is linear above 0 and logarithmic below. If `unit` is null, the
+// whole scale is linear.
 function toScale(value, unit) {
   return unit && value < 0 ? -unit * Math.log1p(-value / unit) : value;
 }
@@ -74,7 +75,8 @@ function inWords(value, digits) {
     digits ? "" : ",");
 }
 
-// Round values between two: up to six above 0, and below 0 powers of ten and three times these.
+// Returns round values in a range: at most seven from 0 on, and below 0 powers of ten and three
+// times these.
 function ticks(low, high) {
   if (low >= 0 || high <= 0) return steps(low, high);
   const below = [];
@@ -165,24 +167,23 @@ function mark(canvas, area, dygraph, marks, onScale) {
   const at = value => dygraph.toDomYCoord(onScale(value));
   if (!marks.length) return;
   canvas.save();
-  const strip = area.x + area.w - 12 - 14 * marks.length;
+  const strip = {left: area.x + area.w - PAD + 6, width: PAD - 6};
+  const middle = strip.left + strip.width / 2;
   canvas.fillStyle = "rgba(128, 128, 128, 0.16)";
-  canvas.fillRect(strip + 6, area.y, area.x + area.w - strip - 6, area.h);
+  canvas.fillRect(strip.left, area.y, strip.width, area.h);
   const style = getComputedStyle(document.body);
-  canvas.save();
-  canvas.translate((strip + 6 + area.x + area.w) / 2, area.y + area.h - 24);  // above RANDOM
-  canvas.rotate(-Math.PI / 2);
   canvas.font = `12px ${style.fontFamily}`;
   canvas.fillStyle = style.color;
-  canvas.fillText("greedy play", 0, 4);
-  canvas.restore();
+  canvas.textAlign = "center";
+  canvas.fillText("greedy", middle, area.y + area.h - 40);  // above RANDOM
+  canvas.fillText("play", middle, area.y + area.h - 26);
   canvas.lineWidth = 2;
   marks.forEach(([mean, low, high], i) => {
     if (mean === null) return;
-    const x = area.x + area.w - 10 - 14 * (marks.length - 1 - i);
+    const x = middle + 20 * (i - (marks.length - 1) / 2);
     canvas.strokeStyle = canvas.fillStyle = CURVES.colours[i];
     canvas.beginPath();
-    canvas.arc(x, at(mean), 3, 0, 2 * Math.PI);
+    canvas.arc(x, at(mean), 4, 0, 2 * Math.PI);
     canvas.fill();
     if (low === null) return;
     canvas.beginPath();
@@ -197,8 +198,8 @@ function mark(canvas, area, dygraph, marks, onScale) {
   canvas.restore();
 }
 
-// The range of returns with the lines of references and the marks, without the lowest tenth of the
-// curves if the scale is linear: returns of the first episodes are far below.
+// Returns the range of the returns, the lines of references and the marks. On a linear scale it
+// leaves out the lowest tenth of the curves, as returns of the first episodes are far below.
 function visible(chart) {
   const values = chart.rows.flatMap(row => row.slice(1)).filter(value => value !== null)
     .sort((a, b) => a - b);

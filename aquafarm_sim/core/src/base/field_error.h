@@ -7,8 +7,8 @@
 
 namespace aquafarm::internal {
 
-/// Invalid value at a key, such as "disasters[0].grade". The YAML reader adds the file and the
-/// line.
+/// Thrown for an invalid value at a key, such as "disasters[0].grade". The YAML reader adds the
+/// file and the line to the message.
 class FieldError : public InputError {
  public:
   FieldError(std::string field_path, const std::string& text)

@@ -13,9 +13,10 @@ namespace aquafarm::internal {
 void NeedRegularFile(const std::string& path);
 
 /// Reads a regular file completely.
-/// @throws InputError if the file cannot be read or is too large. The limit is 512 MiB (the
-///   complete IBTrACS file has about 300 MiB). It is 64 MiB if the first non-blank character is {
-///   or [, because JSON takes several times its size in memory.
+/// @throws InputError if the file cannot be read or is too large. The limit is 64 MiB for JSON,
+///   which takes several times its size in memory, and 512 MiB for other files. A file counts as
+///   JSON if its first non-blank character is { or [. (The complete IBTrACS file has about 300
+///   MiB.)
 std::string ReadTextFile(const std::string& path);
 
 }  // namespace aquafarm::internal

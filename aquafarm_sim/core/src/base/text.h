@@ -43,24 +43,26 @@ std::string_view Trim(std::string_view text);
 /// Splits a text at blanks, tabs and carriage returns.
 std::vector<std::string_view> SplitWords(std::string_view text);
 
-/// Splits a text at commas and trims the fields. An empty text has one empty field.
+/// Splits a text at commas and trims the fields. Replaces the content of `fields`. An empty text
+/// has one empty field.
 void SplitFields(std::string_view text, std::vector<std::string_view>& fields);
 
-/// Returns "'text'" with control characters replaced by '?' and at most 40 bytes of the text.
+/// Returns the text in single quotes, for messages. Control characters below U+0020 become '?'. A
+/// text of more than 40 bytes is cut after 40 bytes, with "…" at the end.
 std::string Quoted(std::string_view text);
 
 /// Returns a text with a-z replaced by A-Z; other characters are kept.
 std::string Upper(std::string_view text);
 
 /// Trims a text and parses it as a decimal number, with or without a sign; nullopt if it is not
-/// one. Also accepts "inf" and "nan", so callers check the range.
+/// one. Also accepts "inf" and "nan", so callers must check the range.
 std::optional<double> ParseNumber(std::string_view text);
 
 /// Parses a whole number, with or without a sign; nullopt if `text` is not one. Blanks are not
 /// accepted.
 std::optional<std::int32_t> ParseWhole(std::string_view text);
 
-/// Removes the lines of a text up to the first non-blank one, and returns that line trimmed.
+/// Returns the first non-blank line of a text, trimmed, and removes it and the lines before it.
 /// Returns "" if there is no such line.
 std::string_view TakeLine(std::string_view& text);
 

@@ -82,7 +82,7 @@ void WriteFile(const std::string& path, const std::string& bytes) {
   if (file) fs::rename(temporary, path, error);
   if (!file || error) {
     std::remove(temporary.c_str());
-    throw InputError(path + ": cannot write");
+    throw InputError(path + ": cannot be written");
   }
 }
 

@@ -16,8 +16,8 @@ struct MapImage {
 /// Max width and height of an image [pixels].
 inline constexpr std::int32_t kMaxMapSide = 16384;
 
-/// Reads PGM (P2, P5), PNG or BMP, as detected from the content. The size in the header is checked
-/// before memory is allocated.
+/// Reads PGM (P2, P5), PNG or BMP; the content determines the format. Checks the size in the header
+/// before it allocates memory.
 /// @throws InputError "chart.pgm:3: got 12 bytes of pixels, expected 64 x 64 of 1 byte"
 MapImage ParseMapImage(const std::string& bytes, const std::string& origin_name);
 

@@ -75,7 +75,7 @@ void CheckForecast(const Farm& farm, std::int32_t disaster, const IssuedForecast
   RequireStep("points", last, "a last point after " + present, last > now);
   if (const IssuedForecast* newest = NewestForecast(farm, disaster, farm.step())) {
     RequireStep("step", forecast.step,
-                "at least that of the newest forecast, " + internal::Format(newest->step),
+                "at least the step of the newest forecast, " + internal::Format(newest->step),
                 forecast.step >= newest->step);
   }
 }

@@ -381,8 +381,8 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
   }
   if (spec.storms) {
     throw InputError(
-        "storms: got an archive, expected a disaster with a track; storms are drawn "
-        "by the scenario alone");
+        "storms: got an archive, expected a disaster with a track; only a scenario can draw "
+        "storms from an archive");
   }
   Disaster disaster =
       SpawnDisaster(spec, id, record_.seed, record_.episode, scenario_->width, scenario_->height);

@@ -30,8 +30,9 @@ void ReadRings(Reader& a, SavedDisaster& d) {
 // Rejects values from forged bytes that would cause access out of bounds or endless loops.
 void CheckDisaster(const SavedDisaster& d) {
   const auto is_heading = [](std::int32_t degrees) { return degrees >= 0 && degrees <= 359; };
-  if (!is_heading(d.heading_deg)) throw InputError("state: heading out of range");
-  if (!is_heading(d.bulletin.heading_deg)) throw InputError("state: bulletin heading out of range");
+  if (!is_heading(d.heading_deg) || !is_heading(d.bulletin.heading_deg)) {
+    throw InputError("state: a heading is not in [0, 359]; use another saved state");
+  }
   bool finite = true;
   const auto check = [&finite](const auto& values) {
     for (const float value : values) finite = finite && std::isfinite(value);
@@ -41,7 +42,8 @@ void CheckDisaster(const SavedDisaster& d) {
   for (const auto& values : {d.radius, d.radius_squared, d.risk, d.bulletin.radius}) check(values);
   for (const auto& side : d.bulletin.quadrant) check(side);
   for (const auto& side : d.quadrant) check(side);
-  if (!finite) throw InputError("state: a disaster's number is not finite");
+  if (!finite)
+    throw InputError("state: a number of a disaster is not finite; use another saved state");
 }
 
 }  // namespace
@@ -50,7 +52,10 @@ SavedDisaster DisasterFrom(const json& j) {
   SavedDisaster d;
   Reader reader(j);
   FieldsOf<SavedDisaster>::Visit(reader, d);
-  if (d.rings < 0 || d.rings > kMaxRings) throw InputError("state: disaster rings out of range");
+  if (d.rings < 0 || d.rings > kMaxRings) {
+    throw InputError("state: rings of a disaster: got " + std::to_string(d.rings) +
+                     ", expected [0, " + std::to_string(kMaxRings) + "]; use another saved state");
+  }
   ReadRings(reader, d);
   CheckDisaster(d);
   return d;

@@ -33,8 +33,8 @@ std::int32_t Int(Enum value) {
   return static_cast<std::int32_t>(value);
 }
 
-// Returns whether the rings may have grown since a bulletin was issued, so that its rings must be
-// stored. Rings of a track need not be stored, because they follow from the waypoints.
+// Returns whether the rings of a bulletin must be stored, because the rings of the disaster may
+// have changed since its issue. Tracks are not considered: their rings follow from the waypoints.
 inline bool RingsMayHaveChanged(const Disaster& disaster, const Bulletin& bulletin) {
   return disaster.radius_growth != 0.0F && bulletin.step != kNone;
 }
@@ -54,8 +54,8 @@ class Writer {
   void Fields(const char* key, const T&... values) {
     state[key] = json::array({ToJson(values)...});
   }
-  /// Writes a field that saved states of older versions lack. If it is missing, Reader keeps the
-  /// value.
+  /// Writes a field that saved states of older versions lack. Reader::Added keeps the value of a
+  /// missing field.
   template <typename T>
   void Added(const char* key, const T& value) {
     Field(key, value);
@@ -103,7 +103,7 @@ class Reader {
     if constexpr (std::is_enum_v<T>) {
       const int code = j.get<int>();
       if (code < 0 || code >= CountOf(value)) {
-        throw InputError("state: an enumeration value out of range");
+        throw InputError("state: got an unknown code of an enumeration; use another saved state");
       }
       value = static_cast<T>(code);
     } else if constexpr (std::is_same_v<T, Cell>) {
@@ -191,7 +191,7 @@ struct FieldsOf<EpisodeRecord> {
 };
 
 // The radii by quadrant are written only for a disaster that has them. The rings of the last
-// bulletin are written only if they may differ from the current rings. DisasterFrom reads both.
+// bulletin are written only if RingsMayHaveChanged. DisasterFrom reads both.
 template <>
 struct FieldsOf<SavedDisaster> {
   template <typename Archive, typename D>
@@ -224,8 +224,8 @@ struct FieldsOf<SavedDisaster> {
 };
 
 // Reads a disaster.
-// @throws InputError if a value is out of range
-// @throws json::exception if a field is missing or has another type
+// @throws InputError if a value is out of range or the rings of the bulletin are missing
+// @throws json::exception if another field is missing or has another type
 SavedDisaster DisasterFrom(const json& j);
 
 json TrackToJson(const std::vector<Waypoint>& track);

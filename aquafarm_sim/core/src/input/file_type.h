@@ -21,15 +21,16 @@ enum class FileKind : std::uint8_t {
 /// Kind and description of a file.
 struct DetectedFile {
   FileKind kind{};
-  std::string words;  ///< description, such as "a netCDF file"; for an unknown text, its first
-                      ///< line in quotes
+  /// Description, such as "a netCDF file". For an unknown text: its beginning in quotes.
+  std::string words;
 };
 
 /// Detects the kind of a file. @param text content of the file, or its beginning
 DetectedFile DetectFileType(const std::string& text);
 
-/// Returns the kind of chart that the extension of a file name suggests. The ranch builder uses it
-/// for content of unknown kind, so that the reader of that kind reports the error.
+/// Returns the kind of chart that the extension of a file name suggests; kUnknown for other
+/// extensions. If the content is of unknown kind, the ranch builder calls the reader of the
+/// suggested kind, which then reports the error.
 FileKind KindByName(const std::string& path);
 
 }  // namespace aquafarm::internal

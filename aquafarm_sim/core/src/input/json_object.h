@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// JSON as found in bulletins. The text may start with a byte order mark, may be inside a Markdown
-/// fence, or may be the value of a JavaScript variable (`let x = …;`, after comments). A number may
-/// be written as a string. A missing value is an absent key, null, a blank string or "null".
+/// JSON as found in bulletins. The text may start with a byte order mark or be inside a Markdown
+/// fence. It may be the value of a JavaScript variable (`let x = …;`), with comments before it. A
+/// number may be written as a string. A value is missing if its key is absent, or if it is null, a
+/// blank string or "null".
 
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -34,8 +35,8 @@ nlohmann::json ParseJson(const std::string& text, ParseContext& place);
 bool IsBlank(const nlohmann::json& value);
 
 /// Returns the line of the value at a path such as "[0].points[3].lat": the line on which an object
-/// or a list begins, or on which another value ends. If the path has no value, returns the line of
-/// its nearest existing parent.
+/// or list begins, or on which another value ends. If there is no value at the path, returns the
+/// line of its nearest existing parent.
 std::int32_t LineOfJson(const std::string& text, const std::string& path);
 
 /// A JSON object with its path. Each look-up accepts several spellings of a key and uses the first
@@ -48,33 +49,35 @@ class JsonObject {
   using Keys = std::initializer_list<const char*>;
   /// Returns the value, or nullptr if it is missing.
   const nlohmann::json* Find(Keys keys) const;
-  /// Returns the spelling that this object uses: the first one with a value, else the first one
-  /// whose value is missing, else the first of `keys`.
+  /// Returns the spelling of a key that this object uses: the first one with a value. If all values
+  /// are missing, returns the first spelling that the object contains, else the first of `keys`.
   std::string KeyOf(Keys keys) const;
-  /// Returns a number; nullopt if it is missing. @throws InputError if it is not in [min, max]
+  /// Returns a number; nullopt if it is missing.
+  /// @throws InputError if it is not a number in [min, max]
   std::optional<double> Number(Keys keys, double min, double max) const;
-  /// Returns a number. @throws InputError if it is missing or not in [min, max]
+  /// Returns a number. @throws InputError if it is missing or not a number in [min, max]
   double NeedNumber(Keys keys, double min, double max) const;
   /// As Number; an invalid value is ignored with one warning per key and file.
   std::optional<double> TryNumber(Keys keys, double min, double max) const;
-  /// Returns a string, or a number as text; "" if it is missing. @throws InputError for another
-  /// type
+  /// Returns a string, or a number as text; "" if it is missing.
+  /// @throws InputError for a value of another type
   std::string Text(Keys keys) const;
   /// As Text; a value of another type is ignored with one warning per key and file.
   std::string TryText(Keys keys) const;
-  /// Returns UTC seconds since 1970. @param zone_s offset that applies to a text without a zone [s]
+  /// Returns UTC seconds since 1970.
+  /// @param zone_s offset that applies to a text without a zone [s], positive east of Greenwich
   /// @throws FixError if the time is missing or invalid
   std::int64_t NeedTime(Keys keys, std::int64_t zone_s) const;
   /// Returns a position, with a longitude in (-180, 180].
-  /// @throws FixError if a coordinate is missing or not in range: latitude [-90, 90], longitude
-  ///   [-180, 360]
+  /// @throws FixError if the latitude is missing or not in [-90, 90], or the longitude is missing
+  ///   or not in [-180, 360]
   GeoPoint NeedPosition(Keys latitude, Keys longitude) const;
   /// Returns a list, or nullptr if it is missing. @throws InputError if it is not a list
   const nlohmann::json* List(Keys keys) const;
   /// As List; a value of another type is ignored with one warning per key and file.
   const nlohmann::json* TryList(Keys keys) const;
-  /// Sets the position of the parse context to this object, for an error or a warning, and returns
-  /// the context.
+  /// Sets the position of the parse context to this object and returns the context, so that the
+  /// caller can report an error or a warning.
   ParseContext& Here() const;
   const std::string& path() const { return path_; }
 

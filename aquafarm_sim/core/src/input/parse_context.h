@@ -15,9 +15,9 @@
 
 namespace aquafarm::internal {
 
-/// Thrown if the time or the position of an entry is invalid: a point of a track, a landfall or a
-/// notice. Readers of tracks leave out such a point. They reject the file if more points of a storm
-/// are left out than kept.
+/// Thrown if the time or the position of a track point, a landfall or a notice is invalid. Readers
+/// of tracks leave out such a point. They reject the file if they leave out more points of a storm
+/// than they keep.
 class FixError : public InputError {
  public:
   using InputError::InputError;
@@ -29,15 +29,15 @@ struct LeftOut {
   std::string first;  ///< error message of the first point left out
 };
 
-/// Position of a parser. Reports errors and warnings with the file and the line. If the list
-/// already contains 100 warnings, further ones are dropped.
+/// Position of a parser. Reports errors and warnings with the file and the line. Keeps at most 100
+/// warnings and drops later ones.
 class ParseContext {
  public:
   ParseContext(const std::string& file, std::vector<std::string>& warnings)
       : file_(file), warnings_(warnings) {}
 
-  std::int32_t line{};  ///< current line, from 1; 0: `locate` finds it on demand
-  /// Path of the current JSON value, which messages contain; empty if the text is not JSON.
+  std::int32_t line{};  ///< current line, from 1; 0: messages call `locate`
+  /// Path of the current JSON value, for messages; empty if the text is not JSON.
   std::string path;
   /// Function that returns the line of the JSON value at a path; not set if the text is not JSON.
   std::function<std::int32_t(const std::string& path)> locate;
@@ -55,8 +55,8 @@ class ParseContext {
   void Warn(const std::string& what);
   /// Adds a warning with the message of FailValue.
   void WarnValue(const std::string& value_path, const std::string& what);
-  /// Adds a warning for the first call with a `kind`. Later calls with that kind only update a
-  /// count in its text.
+  /// Adds a warning for the first call with a `kind`. Later calls with this kind only update a
+  /// count in the text of that warning.
   void WarnOnce(const std::string& kind, const std::string& what);
   /// As WarnOnce, with the message of FailValue.
   void WarnValueOnce(const std::string& kind, const std::string& value_path,
@@ -100,7 +100,7 @@ bool TryFix(Read read, LeftOut& left_out, ParseContext& place) {
   }
 }
 
-/// Iterates over the lines of a text, without CR and LF. Counts them in place.line.
+/// Iterates over the lines of a text, without CR and LF. Sets place.line to the number of the line.
 class LineReader {
  public:
   LineReader(std::string_view text, ParseContext& place) : rest_(text), place_(place) {

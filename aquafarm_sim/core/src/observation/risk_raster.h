@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Risk of disasters at many cells, for encodings. The float comparisons are those of RiskOf, but
-/// the vector extensions of GCC and Clang process runs of cells at once. § refers to the paper, see
-/// docs/model.md.
+/// Computes the risk of disasters at many cells, for encodings. Compares the same floats as RiskOf,
+/// but processes runs of cells at once with the vector extensions of GCC and Clang. § refers to the
+/// paper, see docs/model.md.
 
 #include <algorithm>
 #include <array>
@@ -33,9 +33,10 @@ class RiskBrush {
   /// @param disaster must outlive the brush
   RiskBrush(const ObservableDisaster& disaster, std::int32_t width, std::int32_t height);
 
-  /// Paints the disaster after it has moved for `ahead` steps along its motion. Cells keep the
-  /// worse of the painted risk and the one that the plane already has.
-  /// @param plane up to kRun - 1 bytes after its end may be read and written back unchanged
+  /// Paints the disaster after it has moved for `ahead` steps along its motion. A cell keeps the
+  /// worse of its risk and the painted one.
+  /// @param plane [H, W], followed by at least kRun - 1 bytes, which may be read and written back
+  ///   unchanged
   void Paint(float ahead, std::uint8_t* plane) const;
 
  private:

@@ -30,7 +30,7 @@ class TokenRisk {
     has_sea_ = scenario_.seas && !scenario_.seas->risk.empty();
   }
 
-  /// Returns whether the map has no risk: no disaster is known, and the sea has no risk.
+  /// Returns whether the map has no risk: no known disaster is active, and the sea has no risk.
   bool is_calm() const { return count_ == 0 && !has_sea_; }
   std::size_t count() const { return count_; }
   const KnownDisaster& disaster(std::size_t i) const { return *disasters_[i]; }
@@ -49,8 +49,9 @@ class TokenRisk {
     return -worst * kRiskScale;
   }
 
-  /// Returns true if no disaster can reach a ship that starts at `from` and moves for `steps`
-  /// steps. The bound is conservative, and the answer is always false if the sea has a risk.
+  /// Returns true only if no disaster can reach a ship that starts at `from` and moves for `steps`
+  /// steps. The check uses an upper bound of the reach, so it may return false without need. Always
+  /// returns false if the sea has a risk.
   bool IsCalmWithin(Cell from, std::int32_t steps) const {
     constexpr float kLongestMove = 1.4142136F;
     if (has_sea_) return false;
@@ -67,7 +68,8 @@ class TokenRisk {
     return true;
   }
 
-  /// Returns the times of the disaster that reaches the cell first; -1 if no disaster does.
+  /// Returns the times of the disaster that reaches the cell first. Both are -1 if no disaster
+  /// reaches it.
   RingTimes RingsAt(Cell cell) const {
     RingTimes first;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -77,9 +79,9 @@ class TokenRisk {
     return first;
   }
 
-  /// Returns the times of one disaster: the solutions t of |c + v·t − cell| = r, where c is its
-  /// centre now (extrapolated from its last known position), v its motion per step and r its
-  /// largest radius.
+  /// Returns the times of one disaster: the solutions t of |c + v·t − cell| = r before its end. c
+  /// is its centre now, extrapolated from its last known position. v is its motion per step and r
+  /// its largest radius.
   static RingTimes TimesOf(const KnownDisaster& known, Cell cell) {
     const ObservableDisaster& belief = known.belief;
     const auto age = static_cast<float>(known.age);

@@ -53,8 +53,10 @@ inline const RouteEntry* RoutesFrom(const View& view, Cell cell) {
 }
 
 /// The targets of a ship that have a slot: ports, and fetchable devices that are deployed or aboard
-/// the ship. The nearest ones by water are kept; devices aboard are always nearer than others.
-/// @tparam kDevices slots for devices @tparam kPorts slots for ports
+/// the ship. If there are more targets than slots, the nearest ones by water are kept. Devices
+/// aboard count as nearest.
+/// @tparam kDevices slots for devices
+/// @tparam kPorts slots for ports
 template <std::size_t kDevices, std::size_t kPorts>
 class TargetsOf {
  public:
@@ -82,8 +84,8 @@ class TargetsOf {
   /// Index of the device of a slot in RoutesFrom.
   std::size_t route(std::size_t slot) const { return routes_[slot]; }
 
-  // The routes below end at deployed devices that have a slot. Their length is kUnreachable if no
-  // such device can be reached, and 0 if there is no such device.
+  // FromPort and ToNextDevice return kUnreachable if no deployed device with a slot can be reached,
+  // and 0 if there is no such device. ToNextDeviceByPort returns kUnreachable if it finds no route.
 
   /// Returns the number of moves from the port of a slot to the nearest deployed device.
   std::int32_t FromPort(std::size_t slot) const {
@@ -93,8 +95,9 @@ class TargetsOf {
   std::int32_t ToNextDevice(std::size_t slot) const {
     return ToDevice(view_.devices[device(slot)].cell, slot);
   }
-  /// Returns the number of moves of the shortest route from the device of a slot to a port and then
-  /// to another deployed device; without another deployed device, to the nearest port.
+  /// Returns the number of moves of the shortest route from the device of a slot to a port with a
+  /// slot and then to another deployed device. Without another deployed device, returns the number
+  /// of moves to the nearest such port.
   std::int32_t ToNextDeviceByPort(std::size_t slot) const {
     const RouteEntry* const routes = RoutesFrom(view_, view_.devices[device(slot)].cell);
     std::int32_t best = kUnreachable;
@@ -115,7 +118,7 @@ class TargetsOf {
     return route;
   }
 
-  // Returns the number of moves to the nearest deployed device, without the one of slot `except`.
+  // Returns the number of moves to the nearest deployed device except the one of slot `except`.
   std::int32_t ToDevice(Cell from, std::size_t except) const {
     const RouteEntry* const routes = RoutesFrom(view_, from);
     std::int32_t best = kUnreachable;

@@ -226,7 +226,7 @@ class Builder {
                         static_cast<std::int32_t>(std::lround(wanted[1]))};
         ports.push_back(NearestShore(plan_.terrain, cell, ports));
         KeepOne(internal::CheckPort(place, ports.back(), request_, Area(), plan_.terrain));
-        Say(Text("port: asked for at (%d, %d), put at the shore at (%d, %d)", cell.x, cell.y,
+        Say(Text("port: given at (%d, %d), put on the shore at (%d, %d)", cell.x, cell.y,
                  ports.back().x, ports.back().y));
       }
     }
@@ -310,7 +310,7 @@ class Builder {
       constexpr double kWatched_s = 48 * 3600.0;
       plan_.archive_steps = duration_ = StepsToCover(kWatched_s, plan_.step_s);
       return Say(Text(
-          "time: %g s per step; storms are nearest 18 to 30 h after the start, over after %d steps",
+          "time: %g s per step; a storm is nearest 18 to 30 h after the start and lasts %d steps",
           plan_.step_s, duration_));
     }
     if (request_.track.empty()) return Say(Text("time: %g s per step; no storm", plan_.step_s));
@@ -390,7 +390,7 @@ class Builder {
       others += in_force ? 0 : 1;
       if (in_force) Say("notice: " + Describe(notice));
     }
-    if (others > 0) Say(Text("notices: %d more at other times", others));
+    if (others > 0) Say(Text("notices: %d more, not in force during the episode", others));
   }
 
   NamedLayer ReadLayer(const SeaLayerRequest& sea) {

@@ -53,8 +53,9 @@ std::string Degrees(const Extent& extent, double middle) {
 [[noreturn]] void RefuseElsewhere(const std::string& what, const Extent& got,
                                   const RanchArea& ranch, const std::string& next) {
   const double middle = MiddleOf(ranch).longitude;
-  throw InputError(what + ": got " + Degrees(got, middle) + ", expected the ranch at " +
-                   Degrees(ExtentOf(ranch), middle) + "; " + next);
+  throw InputError(what + ": got " + Degrees(got, middle) +
+                   ", expected an area with the ranch at " + Degrees(ExtentOf(ranch), middle) +
+                   "; " + next);
 }
 
 }  // namespace

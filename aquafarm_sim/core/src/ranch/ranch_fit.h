@@ -26,21 +26,23 @@ struct RanchArea {
 /// @param path file of the coast, for messages
 /// @throws InputError if the boxes do not overlap
 void NeedCover(const Coast& coast, const RanchArea& ranch, const std::string& path);
-/// Counts the cells of the ranch whose centre is outside a grid in degrees; they become land.
-/// @returns a warning if there are such cells, else "" @throws InputError if all cells are outside
+/// Checks that a grid in degrees contains the centre of at least one cell of the ranch. Cells
+/// outside the grid become land.
+/// @returns a warning with the number of cells outside, or "" if there are none outside
+/// @throws InputError if all cells are outside
 std::string NeedCover(const AsciiGrid& grid, const RanchArea& ranch, const std::string& path);
 /// Checks that a field has a value in at least one cell of the ranch.
 /// @param layer the values of `field` on the cells @param path file of the field, for messages
 /// @throws InputError if all values are NaN
 void NeedValues(const SeaField& field, const Layer& layer, const RanchArea& ranch,
                 const std::string& path);
-/// Returns a warning if the time of a field differs from the start by more than two days, else "".
-/// Also returns "" if one of the times is unknown.
+/// Returns a warning if the time of a field differs from the start by more than two days. Returns
+/// "" if not, or if one of the times is unknown.
 std::string CheckTime(const SeaField& field, std::optional<std::int64_t> start,
                       const std::string& path);
 /// Checks that a requested port is in the ranch and not on land.
 /// @param shore shore cell nearest to the port, for messages
-/// @returns a warning if it is not, else ""
+/// @returns "" if it is, else a warning
 /// @throws InputError instead of the warning if request.exact_ports is set
 std::string CheckPort(GeoPoint wanted, Cell shore, const RanchRequest& request,
                       const RanchArea& ranch, const Terrain& terrain);

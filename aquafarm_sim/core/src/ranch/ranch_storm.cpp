@@ -175,9 +175,8 @@ std::string CheckStart(std::int64_t start, std::int64_t end, const StormRings& s
   }
   const std::int64_t first = storm.waypoints.front().time;
   if (start >= first) return "";
-  return "start: got " + FormatTime(start) +
-         ", expected a time from the storm's first known position at " + FormatTime(first) +
-         " on; the storm stays there until then";
+  return "start: got " + FormatTime(start) + ", expected at least " + FormatTime(first) +
+         ", the time of the storm's first known position; the storm stays there until then";
 }
 
 }  // namespace aquafarm::internal

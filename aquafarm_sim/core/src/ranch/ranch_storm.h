@@ -11,9 +11,9 @@
 
 namespace aquafarm::internal {
 
-/// Finds the storm of `track` in another file. A single storm in the file matches if its name is
-/// equal or one of the names is missing. Otherwise the id selects the storm, or the name if no id
-/// matches.
+/// Finds the storm of `track` in another file. If the file has a single storm, it matches if the
+/// names are equal or one of the names is missing. In other cases the id selects the storm, or the
+/// name if no id matches.
 /// @param option name of the option with the file, for messages
 /// @throws InputError if the file has no such storm, or if its period does not overlap that of
 ///   `track`
@@ -25,14 +25,14 @@ const StormTrack& SameStorm(const std::string& option, const StormFile& file,
 /// @throws InputError if no storm or more than one matches
 StormTrack StormOf(const StormFile& file, const std::string& storm);
 
-/// Report of `aquafarm scenario` on a storm's passage, one line each.
+/// Report of `aquafarm scenario` on a storm's passage; each entry is one line.
 struct PassageReport {
   std::vector<std::string> lines;
   std::vector<std::string> warnings;
 };
 
-/// Describes the passage of a storm. The report makes no statement about the time after the storm's
-/// last known position, and it separates recorded from forecast data.
+/// Describes the passage of a storm until its last known position. Separates recorded from forecast
+/// data.
 /// @param storm with at least one waypoint
 PassageReport Report(const StormRings& storm, const Passage& passage,
                      const StormKnowledge& knowledge);
@@ -43,9 +43,10 @@ std::string CheckWinds(std::int32_t held);
 /// Returns the forecasts that agents receive during an episode: the newest one issued at or before
 /// the start, and those issued between start and end. Each keeps only its points after its time of
 /// issue. Of several forecasts with the same time of issue, the first one with such points is kept.
-/// @param forecasts sorted by time of issue @param start, end UTC [s since 1970]
-/// @param warnings receives a line if the first forecast ends at or before the start; this forecast
-///   is left out
+/// @param forecasts sorted by time of issue
+/// @param start, end UTC [s since 1970]
+/// @param warnings receives a line if the first of these forecasts ends at or before the start.
+///   This forecast is left out.
 std::vector<StormForecast> ForecastsDuring(const std::vector<StormForecast>& forecasts,
                                            std::int64_t start, std::int64_t end,
                                            std::vector<std::string>& warnings);
@@ -53,9 +54,10 @@ std::vector<StormForecast> ForecastsDuring(const std::vector<StormForecast>& for
 /// Returns one line that describes the storms of the archive `files` that a ranch uses.
 std::string ArchiveLine(const std::vector<std::string>& files, const StormsSpec& storms);
 
-/// Checks that an episode starts before its storm is over.
-/// @param end UTC at which the episode ends: when the storm has left the ranch, 12 hours after it
-///   was nearest, or at the end of its known track
+/// Checks that an episode starts before it ends, and not before the track of its storm.
+/// @param end UTC at which the episode ends, at most the end of the known track. It is one to two
+///   hours after the storm has left the ranch. If the storm does not reach the ranch, it is 13 to
+///   14 hours after the storm was nearest.
 /// @returns a warning if the start is before the first known position, else ""
 /// @throws InputError if the start is not before `end`
 std::string CheckStart(std::int64_t start, std::int64_t end, const StormRings& storm,

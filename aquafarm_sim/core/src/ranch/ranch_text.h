@@ -15,7 +15,7 @@
 
 namespace aquafarm::internal {
 
-/// Content of the file, as far as it differs from the request.
+/// Content of the file that the request does not determine alone.
 struct RanchPlan {
   std::int32_t width{};
   std::int32_t height{};
@@ -27,14 +27,14 @@ struct RanchPlan {
   Terrain terrain;
   std::vector<Cell> ports;        ///< empty: drawn at random
   std::vector<DeviceSite> sites;  ///< empty: drawn at random
-  StormRings storm;               ///< empty: no storm from a track
-  std::string storm_text;         ///< description of the storm, for people
+  StormRings storm;               ///< no waypoints: no storm from a track
+  std::string storm_text;         ///< name and source of the storm
   StormKnowledge knowledge;
   std::int32_t storm_steps{};
   std::vector<StormForecast> forecasts;  ///< forecasts of the storm, sorted by time of issue
   std::vector<DisasterSpec> presets;
-  /// Tracks of the archive's storms in reach, as text of an archive. If empty, the storms are not
-  /// selected yet, and the file lists the archive's files instead.
+  /// Tracks of the archive's storms in reach, as text of an archive. Empty until the storms are
+  /// selected; the scenario file then lists the files of the archive instead.
   std::string archive;
   std::int32_t archive_steps{};  ///< duration of an archive storm [steps]; 0: no archive
   std::vector<NamedLayer> layers;
@@ -43,11 +43,11 @@ struct RanchPlan {
 };
 
 /// Returns the text of the scenario file.
-/// @param decided lines that are written as YAML comments
+/// @param decided written as YAML comments, one line each
 std::string WriteRanch(const RanchRequest& request, const RanchPlan& plan,
                        const std::vector<std::string>& decided);
 
-/// Formats as printf does and returns at most 399 characters.
+/// Formats as printf does. The result has at most 399 bytes; a longer one is cut.
 template <typename... Args>
 std::string Text(const char* format, Args... args) {
   char text[400];

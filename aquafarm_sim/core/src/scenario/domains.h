@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Types of domains: the valid values of scenario keys. schema.h declares the domain of each key
-/// once, for the reader, the writer and the validation of scenarios created in code.
+/// Types of domains. A domain is the set of valid values of a scenario key. schema.h declares the
+/// domain of each key once. The reader, the writer and the validation of scenarios created in code
+/// use it.
 
 #include <array>
 #include <cmath>
@@ -19,7 +20,7 @@
 
 namespace aquafarm::internal {
 
-/// Numbers from min to max, both inclusive; min is exclusive if `open_min`.
+/// Numbers in [min, max], or in (min, max] if `open_min`.
 template <typename T>
 struct Interval {
   T min{};
@@ -34,7 +35,7 @@ struct TextOf {
 };
 /// Text of several lines, which the writer writes as a YAML block ("|").
 struct LinesOf : TextOf {};
-/// A cell of the largest possible farm. ValidateScenario checks that it is on the actual map.
+/// A cell of the largest possible map. ValidateScenario checks that it is on the map of the farm.
 struct AnyCell {};
 struct AnyFlag {};
 /// A finite number or NaN (.nan in files).

@@ -23,9 +23,10 @@ bool Has(Range<std::int32_t> years, std::int32_t year) {
 void CheckTimes(const StormsSpec& storms, double duration_h, const std::string& path) {
   if (storms.years.min <= storms.evaluation_years.max &&
       storms.evaluation_years.min <= storms.years.max) {
-    throw FieldError(Join(path, "evaluation_years"),
-                     "got " + RangeText(storms.evaluation_years) + ", expected no year of years, " +
-                         RangeText(storms.years) + ": training must not see them");
+    throw FieldError(Join(path, "evaluation_years"), "got " + RangeText(storms.evaluation_years) +
+                                                         ", expected years outside of 'years', " +
+                                                         RangeText(storms.years) +
+                                                         ": training must not see them");
   }
   const double first_h = storms.approach_h - storms.perturbation.start_h;
   const double last_h = storms.approach_h + storms.perturbation.start_h;

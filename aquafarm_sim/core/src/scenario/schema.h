@@ -8,8 +8,8 @@
 ///   FieldChecker  checks structs created in code or received in messages
 ///
 /// Archives provide Field, Renamed (a key that has an old name), Struct, Optional, Structs (a list
-/// of blocks), and Has (whether a key is given). When(used, condition) sets whether the keys that
-/// follow are in use, until Always.
+/// of blocks), and Has (whether a key is given). When(used, condition) sets whether the following
+/// keys are in use, and Always ends its effect.
 
 #include "aquafarm/grid/geo_frame.h"
 #include "aquafarm/scenario/limits.h"
@@ -26,8 +26,9 @@ struct SeaSource {
   std::string file;
   std::string variable;
   double depth_m{};
-  std::optional<std::int64_t> time;  ///< UTC [s since 1970]; if unset, the start of the episode; if
-                                     ///< that is unset too, the first time of the file
+  /// UTC [s since 1970]. If unset: the start of the episode; without a start, the first time of the
+  /// file.
+  std::optional<std::int64_t> time;
 };
 
 /// Reads a field and interpolates it at the cells of a farm.
@@ -36,7 +37,8 @@ struct SeaSource {
 void Resolve(const SeaSource& source, const WorldFrame& frame, const std::string& path,
              std::int32_t width, std::int32_t height, SeaLayer& layer);
 /// Evaluates an expression of the sea's layers at every cell, [H · W].
-/// @throws FieldError if `rule` is not a valid expression, or if the layers differ in size
+/// @throws FieldError if `rule` is not a valid expression, or if there are no layers or layers of
+///   different sizes
 std::vector<float> ByRule(const std::string& rule, const std::vector<SeaLayer>& layers,
                           const std::string& path);
 /// Checks one value per cell. @throws FieldError for a value that is not 0, NaN or in `range`

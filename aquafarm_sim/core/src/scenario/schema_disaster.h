@@ -23,8 +23,8 @@ struct GeoFix {
   std::optional<float> pressure_hpa;        ///< has no effect
 };
 
-/// Parameters that convert a GeoFix to a Waypoint. Functions accept nullptr instead of a frame if
-/// no file is read, because only files contain GeoFixes.
+/// Parameters that convert a GeoFix to a Waypoint. Functions accept nullptr instead of a frame
+/// where no file is read, because only files contain positions in degrees.
 struct WorldFrame {
   std::optional<GeoFrame> grid;
   std::optional<std::int64_t> start_time;
@@ -35,11 +35,12 @@ struct WorldFrame {
   double y{};
 };
 
-/// Converts a UTC time [s since 1970] to steps. @throws FieldError if the scenario has no start
+/// Converts a UTC time [s since 1970] to steps. @throws FieldError if the scenario has no
+/// time.start
 float ToStep(std::int64_t time, const WorldFrame* frame, const std::string& path);
 /// Converts a GeoFix to step, position and rings of a Waypoint.
-/// @throws FieldError if the scenario has no origin or start, or if the fix is more than 60 degrees
-///   from the origin
+/// @throws FieldError if the scenario has no grid.origin or time.start, or if the fix is more than
+///   about 60 degrees from the origin
 void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path,
              Waypoint& waypoint);
 
@@ -49,11 +50,11 @@ void VisitGeoPoint(Archive& a, Point& point) {
   a.Field("longitude", point.longitude, Interval<double>{-180.0, 180.0}, Need::kRequired);
 }
 
-/// Reads recorded storms and stores those in reach of the farm in disaster.storms. Also sets the
-/// track of the disaster to that of the first storm for training.
+/// Reads recorded storms and stores those of the requested years in reach of the farm in
+/// disaster.storms. Also sets the track of the disaster to that of the first storm for training.
 /// @param files files of tracks; if empty, storms.tracks contains the text of an archive
-/// @throws FieldError for an unreadable file, for times or years that contradict each other, or if
-///   no storm of the years for training or for evaluation comes in reach
+/// @throws FieldError if a file is unreadable, grid.origin is missing, times or years contradict
+///   each other, or no storm of the years for training or for evaluation comes in reach
 void Resolve(const std::vector<std::string>& files, const WorldFrame* frame,
              const std::string& path, DisasterSpec& disaster);
 

@@ -2,8 +2,8 @@
 #pragma once
 
 /// Keys of a scenario about kinds of devices and disasters; part of schema.h. They are written only
-/// where they differ from the defaults, so that these keys do not change the texts and hashes of
-/// scenarios without them.
+/// where they differ from the defaults, so the texts and hashes of scenarios without them stay the
+/// same.
 
 #include <algorithm>
 
@@ -36,7 +36,7 @@ void VisitDamageKinds(Archive& a, D& damage) {
 
 /// Visits the factors of risks by grade.
 /// @param used false if grade_risks or storms are given, which exclude these factors
-/// @param condition end of the message for unused factors: "is used only if …"
+/// @param condition end of the message "is used only if …" for factors that are given but not used
 template <typename Archive, typename D>
 void VisitGradeFactors(Archive& a, D& disaster, bool used, const char* condition) {
   constexpr Interval<float> kFactor{0.0F, 10.0F, true};

@@ -16,7 +16,7 @@ struct OldName {
   std::string new_key;
 };
 
-/// Line numbers of the keys read so far, by path, and the keys given by their old names.
+/// Line numbers of keys by path, and the keys that a file gives by their old names.
 class LineMap {
  public:
   void Put(const std::string& path, const YAML::Node& node);
@@ -56,7 +56,7 @@ class YamlReader {
     }
   }
 
-  /// Reads a key as Field does, by its present or its old name.
+  /// Reads a key as Field does. The file may give it by its present or its old name.
   template <typename T, typename Domain>
   void Renamed(const char* key, const char* old_key, T& value, const Domain& domain) {
     Field(IsOld(key, old_key) ? old_key : key, value, domain);

@@ -8,9 +8,9 @@
 namespace aquafarm::internal {
 
 /// Returns the offset at which the values of a classic netCDF file (CDF-1, 2 or 5) end [bytes],
-/// according to its header, without the padding of the last variable. Returns infinity if the file
-/// ends within its header, and nullopt if the header is invalid. Source: NetCDF classic format
-/// specification.
+/// without the padding of the last variable. The offset follows from the header. Returns infinity
+/// if the file ends within its header, and nullopt if the header is invalid. Source: NetCDF classic
+/// format specification.
 /// @param file at its first byte
 std::optional<double> EndOfClassicValues(std::istream& file);
 

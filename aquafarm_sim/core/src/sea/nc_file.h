@@ -11,8 +11,8 @@ namespace aquafarm::internal {
 /// An open netCDF file. Messages of errors contain the path.
 class NcFile {
  public:
-  /// @throws InputError if the path is not a regular file or not netCDF, or if the file has a
-  ///         classic format and is truncated
+  /// @throws InputError if the path is not a regular file or not netCDF. Also if the file has a
+  ///   classic format and is truncated or damaged.
   explicit NcFile(const std::string& path);
   ~NcFile();
   NcFile(const NcFile&) = delete;

@@ -31,8 +31,8 @@ std::array<double, kQuadrantCount> ReadQuadrants(
     place.WarnValue(path, wind + "has none of the quadrants " + keys[0] + ", " + keys[1] + ", " +
                               keys[2] + " and " + keys[3]);
   } else if (given > 0 && given < keys.size()) {
-    place.WarnValue(path, wind + "not every quadrant has a radius; the others are given " +
-                              (all ? "the radius of the whole ring" : "0"));
+    place.WarnValue(path, wind + "some quadrants have no radius; they get " +
+                              (all ? "the radius of the whole ring" : "the radius 0"));
   }
   return radius_km;
 }

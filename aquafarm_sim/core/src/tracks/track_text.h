@@ -31,8 +31,8 @@ double ReadLongitudeTenths(std::string_view text, const ParseContext& place);
 std::optional<double> CheckedPressure(std::optional<double> pressure_hpa,
                                       const std::string& value_path, ParseContext& place);
 
-/// Appends a fix. If its time equals that of the last fix, leaves it out with a warning.
-/// @throws InputError for more than kMaxFixes fixes
+/// Appends a fix. If its time equals that of the last fix, the fix is left out with a warning.
+/// @throws InputError if there are more than kMaxFixes fixes
 void AppendFix(StormFix fix, std::vector<StormFix>& fixes, ParseContext& place);
 
 /// Completes a track and its forecasts. Leaves out points that break the order of time or are more
@@ -51,7 +51,7 @@ std::optional<double> ParseDirection(std::string_view text);
 /// Header of a storm in the best tracks of CMA and JMA.
 struct BestTrackHeader {
   StormTrack track;
-  std::int32_t points{};  ///< number of lines that follow
+  std::int32_t points{};  ///< number of points, one per line
 };
 
 /// Reads best tracks. Each storm consists of a header line, which starts with 66666 and contains

@@ -281,7 +281,7 @@ TEST(IssueForecast, IsRefusedInWords) {
   EXPECT_EQ(refused([](IssuedForecast& f) { f.step = 11.0F; }),
             "forecast.step: got 11, expected at most the present step, 10");
   EXPECT_EQ(refused([](IssuedForecast& f) { f.step = 9.0F; }),
-            "forecast.step: got 9, expected at least that of the newest forecast, 10");
+            "forecast.step: got 9, expected at least the step of the newest forecast, 10");
   EXPECT_EQ(refused([](IssuedForecast& f) {
               f.step = 2.0F;
               f.points = {{8.0F, 1.0F, 1.0F}};

@@ -62,7 +62,7 @@ TEST(Ranch, PutsAPortAskedForAtTheNearestShore) {
   request.port_places = {{30.025, 122.025}};  // in the lake
   const BuiltRanch ranch = BuildRanch(request);
   ASSERT_EQ(ranch.scenario.ports.cells.size(), 1U);
-  EXPECT_TRUE(Says(ranch.decided, "port: asked for at (7, 8), put at the shore at ("));
+  EXPECT_TRUE(Says(ranch.decided, "port: given at (7, 8), put on the shore at ("));
 }
 
 TEST(Ranch, WarnsOfAPortOnLand) {
@@ -186,7 +186,7 @@ TEST(Ranch, RecognisesItsChartByItsContent) {
 TEST(Ranch, SaysTheNoticesInForce) {
   RanchRequest request = Request();
   request.notices = (kData / "anchorage.json").string();
-  EXPECT_TRUE(Says(BuildRanch(request).decided, "notices: 2 more at other times"));
+  EXPECT_TRUE(Says(BuildRanch(request).decided, "notices: 2 more, not in force"));
   request.track.clear();
   request.storm.clear();
   EXPECT_TRUE(Says(BuildRanch(request).decided, "rating 1 of 4, from 2026-04-30T15:00:00Z"));
@@ -206,9 +206,9 @@ TEST(Ranch, CountsNoticesAfterItsLastStepAsOfOtherTimes) {
   // 89 steps of 243 s from midnight end at 06:00, after which the storm is not known.
   EXPECT_TRUE(Says(warn("2021-07-25T06:00+00:00", "2021-07-26T12:00+00:00"), "notice: gale of x"));
   EXPECT_TRUE(Says(warn("2021-07-25T06:01+00:00", "2021-07-26T12:00+00:00"),
-                   "notices: 1 more at other times"));
+                   "notices: 1 more, not in force"));
   EXPECT_TRUE(Says(warn("2021-07-26T12:45+00:00", "2021-07-27T12:00+00:00"),
-                   "notices: 1 more at other times"));
+                   "notices: 1 more, not in force"));
   request.disasters = {"wave:height_m=4,radius_km=5,duration_h=48"};
   EXPECT_TRUE(Says(warn("2021-07-26T12:45+00:00", "2021-07-27T12:00+00:00"), "notice: gale of x"));
   fs::remove(path);

@@ -56,8 +56,8 @@ TEST_F(RanchFit, AGridFromZeroTo360IsReadWestOfGreenwich) {
 TEST_F(RanchFit, AGridElsewhereIsRefusedWithBothPlaces) {
   EXPECT_EQ(Refused(WithGrid({10.0, -156.5}, "202.5")),
             path_.string() +
-                ": got latitude 19.000 to 21.000, longitude -157.500 to -155.500, expected the "
-                "ranch at latitude 9.774 to 10.226, longitude -156.728 to -156.272; check "
+                ": got latitude 19.000 to 21.000, longitude -157.500 to -155.500, expected an area "
+                "with the ranch at latitude 9.774 to 10.226, longitude -156.728 to -156.272; check "
                 "--center, or leave out --chart for open sea");
 }
 
@@ -72,9 +72,9 @@ TEST_F(RanchFit, ACoastElsewhereIsRefusedWithBothPlaces) {
   const std::string ring = "[[121, 29], [122, 29], [122, 30], [121, 29]]";
   EXPECT_EQ(Refused(WithCoast({10.0, 150.0}, ring)),
             path_.string() +
-                ": got latitude 29.000 to 30.000, longitude 121.000 to 122.000, expected the ranch "
-                "at latitude 9.774 to 10.226, longitude 149.772 to 150.228; check --center, or "
-                "leave out --chart for open sea");
+                ": got latitude 29.000 to 30.000, longitude 121.000 to 122.000, expected an area "
+                "with the ranch at latitude 9.774 to 10.226, longitude 149.772 to 150.228; check "
+                "--center, or leave out --chart for open sea");
   EXPECT_NE(BuildRanch(WithCoast({29.5, 122.0}, ring)).yaml.find("islands:"), std::string::npos);
 }
 
@@ -111,9 +111,9 @@ TEST_F(RanchFit, AFieldElsewhereIsRefusedWithBothPlaces) {
   request.sea = {{"warmth", path_.string(), "t"}};
   EXPECT_EQ(Refused(request),
             path_.string() +
-                ": t: got latitude 29.000 to 31.000, longitude 121.000 to 123.000, expected the "
-                "ranch at latitude 9.774 to 10.226, longitude 149.772 to 150.228; check --center, "
-                "or use another file with --sea");
+                ": t: got latitude 29.000 to 31.000, longitude 121.000 to 123.000, expected an "
+                "area with the ranch at latitude 9.774 to 10.226, longitude 149.772 to 150.228; "
+                "check --center, or use another file with --sea");
 }
 
 TEST_F(RanchFit, APortOutsideTheRanchIsNamed) {

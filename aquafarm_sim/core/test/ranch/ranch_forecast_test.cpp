@@ -166,8 +166,8 @@ TEST_F(ForecastRanch, NamesAStormThatIsFarAwayAndAStartBeforeIt) {
   request_ = Request();
   request_.start = kMidnight - 48 * kHour_s;
   EXPECT_TRUE(Says(Make(kForecast).warnings,
-                   "start: got 2021-07-23T00:00:00Z, expected a time from the storm's first known "
-                   "position at 2021-07-24T00:00:00Z on; the storm stays there until then"));
+                   "start: got 2021-07-23T00:00:00Z, expected at least 2021-07-24T00:00:00Z, the "
+                   "time of the storm's first known position; the storm stays there until then"));
 }
 
 // A bulletin that ends before the storm arrives.

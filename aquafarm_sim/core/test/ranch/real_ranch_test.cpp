@@ -52,7 +52,7 @@ TEST(RealExcerpts, GiveDevicesTheirValueFromTheSea) {
   request.value = "salty";
   EXPECT_NE(Refused(request).find("expected an expression"), std::string::npos);
   request.center = GeoPoint{30.0, 122.0};
-  EXPECT_NE(Refused(request).find("expected the ranch at"), std::string::npos);
+  EXPECT_NE(Refused(request).find("expected an area with the ranch at"), std::string::npos);
 }
 
 // Chart and track of every clone: the track has the rings of its own agency.

@@ -265,10 +265,9 @@ TEST(StormsKey, KeepsTheStormsInReach) {
 }
 
 TEST(StormsKey, IsRefusedInOneLine) {
-  EXPECT_EQ(
-      Refused("[2010, 2023]", "[2009, 2023]"),
-      "ranch.yaml:9: disasters[0].storms.evaluation_years: got [2009, 2023], expected no year "
-      "of years, [2000, 2009]: training must not see them");
+  EXPECT_EQ(Refused("[2010, 2023]", "[2009, 2023]"),
+            "ranch.yaml:9: disasters[0].storms.evaluation_years: got [2009, 2023], expected years "
+            "outside of 'years', [2000, 2009]: training must not see them");
   EXPECT_EQ(Refused("[2000, 2009]", "[2003, 2009]"),
             "ranch.yaml:8: disasters[0].storms.years: got [2003, 2009], but none of the "
             "archive's 3 storms is from these years and brings a gale within within_km = 300 km of "

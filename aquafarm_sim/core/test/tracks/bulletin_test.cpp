@@ -125,8 +125,8 @@ TEST(Bulletin, LeavesOutWhatAForecastSaysOfBefore) {
   const std::string late = With(Sample("bulletin.json"), "\"time\": \"2021-07-25T20:00:00\"",
                                 "\"time\": \"2021-07-25T07:00:00\"");
   EXPECT_NE(Warnings(late).find("x:13: [0].points[0].forecast[0].points[0].time: got "
-                                "2021-07-24T23:00:00Z, expected a time after "
-                                "2021-07-25T00:00:00Z, the issue; the point is left out\n"),
+                                "2021-07-24T23:00:00Z, expected at least 2021-07-25T00:00:00Z, the "
+                                "time of issue; the point is left out\n"),
             std::string::npos)
       << Warnings(late);
 }
@@ -159,8 +159,8 @@ TEST(Bulletin, KeepsForecastsAndLandfallsInOrder) {
 TEST(WeatherService, ReadsTextForNumbersInsideAMarkdownFence) {
   const StormFile file = ParseStormFile(Sample("weather_service.json"), "x");
   EXPECT_EQ(file.warnings,
-            std::vector<std::string>{"x:9: track[0].windRadius64: 64 kt: not every quadrant has "
-                                     "a radius; the others are given 0"});
+            std::vector<std::string>{"x:9: track[0].windRadius64: 64 kt: some quadrants have no "
+                                     "radius; they get the radius 0"});
   const StormTrack& storm = file.tracks.at(0);
   ASSERT_EQ(storm.fixes.size(), 3U);
   EXPECT_EQ(storm.fixes[0].grade, StormGrade::kSuperTyphoon);

@@ -61,9 +61,11 @@ class EpisodeBagWriter {
   EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> scenario, BagFormat format);
 
   /// Writes spec, chart, risk (of every tenth and the last step), all states, the external changes
-  /// and the summary to a bag. The bag is written to path.partial and then renamed to `path`.
-  /// @throws ReplayError if number of steps, return or end reason differ from the log's record
-  /// @throws std::runtime_error if the bag cannot be written; a partial file is removed
+  /// and the summary to a bag. The bag is written to path.partial and then renamed to `path`. After
+  /// an error no partial bag remains.
+  /// @throws ReplayError if the number of steps, the return or the end reason differs from the
+  ///         log's record
+  /// @throws std::runtime_error if the bag cannot be written
   void Write(const EpisodeLog& log, const std::string& path);
 
  private:

@@ -20,8 +20,9 @@
 
 namespace aquafarm_sim {
 
-/// Selects the episodes to keep. kBest and kWorst keep one bag, which each better or worse episode
-/// replaces. kFailures keeps episodes in which not every device was delivered.
+/// Selects the episodes to keep. kBest keeps one bag, which each episode with a higher return
+/// replaces; kWorst keeps the bag of the lowest return. kFailures keeps episodes in which not every
+/// device was delivered.
 struct Keep {
   enum class Which : std::uint8_t { kNone, kAll, kEvery, kBest, kWorst, kFailures };
   Which which{};

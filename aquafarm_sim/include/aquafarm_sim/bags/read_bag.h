@@ -84,9 +84,9 @@ auto Bounded(std::uintmax_t size, const Work& work) -> decltype(work()) {
   try {
     return work();
   } catch (const std::bad_alloc&) {
-    throw Damage("it asks for more memory than a bag of its size needs");
+    throw Damage("reading it needs more memory than a bag of its size may use");
   } catch (const std::length_error&) {
-    throw Damage("a message of no possible length");
+    throw Damage("a message of an impossible length");
   }
 }
 
@@ -163,10 +163,9 @@ boost::shared_ptr<Message> Instantiate(const rosbag::MessageInstance& message) {
   });
 }
 
-/// Sets the fields of a message to zero that the definition of an earlier version lacks, as
-/// Instantiate does.
-/// @param definition definition of the type in a bag; empty or that of this version: nothing
-/// changes
+/// Sets each field that the definition of an earlier version lacks to zero, as Instantiate does.
+/// @param definition definition of the type in a bag; if it is empty or that of this version,
+///        nothing changes
 /// @throws an exception that ReadingBag converts to InputError
 template <typename Message>
 void DropAddedFields(const std::string& definition, Message& message) {

@@ -5,8 +5,8 @@
 /// version may add fields to a message, but not remove or change one. Fields that an old message
 /// lacks become zero: numbers 0, strings and arrays empty.
 ///
-/// If you add fields to a message that bags contain, add the md5 sum that it had in the last
-/// release to kOlderMessages. No other change is needed, because both definitions are parsed.
+/// If you add fields to a message that bags contain, add the md5 sum of its previous definition to
+/// kOlderMessages. No other change is needed, because both definitions are parsed.
 
 #include <array>
 #include <cstdint>
@@ -25,7 +25,7 @@ struct OlderMessage {
   std::string_view md5sum;
 };
 
-/// Definitions that this version can still read.
+/// Earlier definitions that this version can read.
 inline constexpr std::array<OlderMessage, 4> kOlderMessages{{
     {"aquafarm_msgs/FarmSpec", "dc645def7450ce7b7546018ebd6bd293"},        // 0.1.0
     {"aquafarm_msgs/FarmState", "7cc3a3ac59b389c71adbfc34a6052e14"},       // 0.1.0
@@ -81,8 +81,8 @@ class MessageTranslator {
  public:
   using Bytes = std::vector<std::uint8_t>;
 
-  /// @throws TranslationError for a definition that cannot be parsed, or for a field with another
-  ///         type
+  /// @throws TranslationError if a definition cannot be parsed, or a field has different types in
+  ///         the two definitions
   MessageTranslator(const std::string& type, const std::string& from, const std::string& to);
 
   /// Converts a message. Fields that only the new definition has become zero; fields that only the

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Publishes the topics of a ranch: state, risk, tf and clock at a limited wall rate, or after
-/// every step if SimParams::record is set; spec, chart, sea layers and tf_static at each start of
-/// an episode; observations after every step, or with the state after joint steps. A separate
-/// thread publishes, so that a step only sets a flag. Observations that have subscribers, and all
-/// topics with SimParams::record, are published by the thread that steps.
+/// Publishes the topics of a ranch:
+///   - state, risk, tf and clock at a limited wall rate; with SimParams::record after every step
+///   - spec, chart, sea layers and tf_static (if the map has an origin) with the first state of an
+///     episode
+///   - the observation of each ship that has subscribers: after every step, but after joint steps
+///     only with the state
+///   - the summary of each ended episode
+/// Usually a step only sets a flag, and a separate thread publishes. The thread that steps
+/// publishes the observations itself, except after joint steps. With SimParams::record it publishes
+/// all topics except the summaries.
 
 #include <aquafarm_msgs/EpisodeSummary.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -43,10 +48,9 @@ class FarmPublisher : public FarmListener {
   FarmPublisher(const FarmPublisher&) = delete;
   FarmPublisher& operator=(const FarmPublisher&) = delete;
 
-  /// Waits for a recorder: until `episode` and `state` have subscribers, and no subscriber has been
-  /// added to any topic for half a second. Only recorders subscribe to `episode` before the first
-  /// step.
-  /// @returns false if this takes longer than `limit_s`
+  /// Waits for a recorder: until `episode` and `state` have subscribers, and the number of
+  /// subscribers has not changed for half a second. Usually only recorders subscribe to `episode`.
+  /// @returns false if this takes longer than `limit_s`, or ROS shuts down
   bool WaitForRecorder(double limit_s);
 
   void OnChange(const ServerView& view) override;
@@ -100,7 +104,7 @@ class FarmPublisher : public FarmListener {
   aquafarm::Mutex message_mutex_;  // also guards the messages of the topics above
   std::uint64_t published_episode_ AQUAFARM_GUARDED_BY(message_mutex_){};
   bool episode_is_new_ AQUAFARM_GUARDED_BY(message_mutex_){};
-  // Limits recording to the rate of rosbag.
+  // With SimParams::record, earliest time of the next message, so that rosbag drops no message.
   std::chrono::steady_clock::time_point next_record_ AQUAFARM_GUARDED_BY(message_mutex_);
   MessageContext context_ AQUAFARM_GUARDED_BY(message_mutex_);
   aquafarm_msgs::FarmSpec spec_message_ AQUAFARM_GUARDED_BY(message_mutex_);

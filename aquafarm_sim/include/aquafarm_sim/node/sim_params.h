@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The private parameters of sim_node, such as the scenario, rates and frames. The numbers of the
-/// farm come only from the scenario file. An unknown parameter is an error.
+/// The private parameters of sim_node, such as the scenario, rates and frames. Sizes, rewards and
+/// rules of the farm are only in the scenario file. An unknown parameter is an error.
 
 #include <ros/node_handle.h>
 
@@ -19,7 +19,7 @@ struct SimParams {
   /// ~farms, ~threads, ~seed (-1: from the wall clock), ~pace, ~rate_hz, ~barrier_timeout_s,
   /// ~late_ships_hold, ~claim_timeout_s
   ServerOptions ranch;
-  double publish_hz{10.0};           ///< max states published per second; 0: none unless `record`
+  double publish_hz{10.0};           ///< max rate of states without `record`; 0: no states
   bool record{};                     ///< publish every step of farm 0
   std::string keep{"none"};          ///< episodes to write as bags, in the syntax of ParseKeep
   std::string keep_dir{"episodes"};  ///< folder of these bags
@@ -30,7 +30,8 @@ struct SimParams {
   std::string frame_prefix;  ///< prefix of the frames ship_<id> and disaster_<id>
 };
 
-/// Reads the parameters and checks all except scenario, keep and keep_dir.
+/// Reads the parameters and checks their types and ranges, and that pace is known. SimNode checks
+/// scenario, keep and keep_dir.
 /// @throws InputError "~rate_hz: got -1, expected [0.001, 1000]"; for an unknown parameter the
 ///         message lists the known ones
 SimParams ReadSimParams(const ros::NodeHandle& private_node);

@@ -19,8 +19,8 @@
 namespace aquafarm_sim {
 
 /// Collects the commands of the ships for the next step of a farm. It keeps only the newest command
-/// of each ship. In lockstep the caller of each command waits until all ships have a command. The
-/// owner must hold one mutex during every call; Wait releases it while it waits.
+/// of each ship. In lockstep the caller of each command waits until no ship is missing (IsMissing).
+/// The owner must hold one mutex during every call; Wait releases it while it waits.
 class CommandBarrier {
  public:
   using Clock = std::chrono::steady_clock;
@@ -44,7 +44,7 @@ class CommandBarrier {
   ///        until Withdraw; null: no call waits
   void Add(const ShipCommand& command, Call* call);
   /// Waits until the call is answered, superseded or dropped. Returns kTimedOut at `deadline`, or
-  /// if `ending` is true; the command then stays until Withdraw.
+  /// if `ending` is true; the command then stays until it is executed or Withdraw removes it.
   /// @param lock lock of the owner's mutex
   WaitEnd Wait(aquafarm::MutexLock& lock, const Call& call, Clock::time_point deadline,
                const bool& ending);

@@ -4,7 +4,8 @@
 /// The protocol of docs/ros_api.md for a FarmBatch, independent of the transport: retries that are
 /// not executed again (RequestLog), the lockstep barrier (CommandBarrier), claims of ships
 /// (ClaimTable), pace (PaceClock), joint steps, save and load. Every public function may be called
-/// from any thread. Requests never throw: an invalid request returns a code and changes nothing.
+/// from any thread. Requests never throw: an invalid request returns a code and does not change the
+/// farms.
 ///
 ///   lockstep:  ship 0 --Command--> waits ----------+--> result of step k+1
 ///              ship 1 -----------------Command-----+--> result of step k+1   (or TIMEOUT)
@@ -68,12 +69,12 @@ struct ServerCounters {
   /// Number of times that a ship held because it had no command (paced), or that lockstep stopped
   /// waiting for a ship.
   std::uint64_t late_ships{};
-  std::uint64_t barrier_timeouts{};     ///< lockstep: number of commands that returned TIMEOUT
-  std::uint64_t superseded{};           ///< number of commands that returned SUPERSEDED
-  std::uint64_t dropped_clients{};      ///< number of expired claims
-  std::uint64_t refused{};              ///< number of refused requests, for any reason
-  std::uint64_t saves{};                ///< number of successful save_state calls
-  std::vector<std::int32_t> absent;     ///< ships for which lockstep does not wait
+  std::uint64_t barrier_timeouts{};  ///< lockstep: number of commands that returned TIMEOUT
+  std::uint64_t superseded{};        ///< number of commands that returned SUPERSEDED
+  std::uint64_t dropped_clients{};   ///< number of expired claims
+  std::uint64_t refused{};           ///< number of refused requests, for any reason
+  std::uint64_t saves{};             ///< number of successful save_state calls
+  std::vector<std::int32_t> absent;  ///< late ships; lockstep waits again after their next command
   std::vector<std::uint64_t> absences;  ///< by ship: how often lockstep stopped waiting for it
   double joint_step_age_s{1e9};         ///< time since the last joint step; 1e9 before the first
   std::string fault;  ///< error that paused the paced farm; empty if there is none
@@ -88,7 +89,8 @@ struct ServerView {
   MessageContext context;
   std::uint64_t episode_count{};  ///< number of episodes that farm 0 has started or loaded
   std::uint64_t version{};        ///< changes with farm 0, its pace and its pause
-  bool joint{};  ///< true if a joint step made the last change: no driver needs every observation
+  /// True if a joint step made the last change. Ship drivers then do not need every observation.
+  bool joint{};
 };
 
 /// Receives changes while no farm steps. Callbacks must return quickly and must not call the
@@ -118,7 +120,8 @@ class FarmRecorder {
   /// Called after farm `number` has taken a step. @param actions [agents]
   virtual void OnStep(const aquafarm::Farm& farm, std::int32_t number,
                       const std::uint8_t* actions) = 0;
-  /// Called after an external change of farm `number` between two steps.
+  /// Called after an external change of farm `number` between two steps: a disaster, a forecast or
+  /// a loaded state.
   virtual void OnIntervention(const aquafarm::Farm& farm, std::int32_t number) = 0;
 };
 
@@ -133,7 +136,9 @@ class FarmServer {
   /// @param listener must stay valid until it is replaced or the server is destroyed; null: no
   ///        listener
   void SetListener(FarmListener* listener);
-  /// Sets the recorder, as SetListener, and calls its OnStart for the current episode of each farm.
+  /// Sets the recorder and calls its OnStart for the current episode of each farm.
+  /// @param recorder must stay valid until it is replaced or the server is destroyed; null: no
+  ///        recorder
   void SetRecorder(FarmRecorder* recorder);
 
   /// Executes a command. In lockstep it returns after the step, or when the command is refused or

@@ -20,8 +20,8 @@ class PaceClock {
 
   /// Advances the stamp by one step. A pause that is scheduled for this step begins.
   void Advance();
-  /// Begins or schedules a pause. If `paused` is false, it ends the pause and cancels a scheduled
-  /// one.
+  /// Begins or schedules a pause. With `paused` = false, ends the pause and cancels a scheduled
+  /// pause.
   /// @param after_steps number of steps until the pause begins; 0: immediately. The clock runs
   ///        during these steps, even if it is paused now.
   void SetPaused(bool paused, std::uint32_t after_steps = 0);

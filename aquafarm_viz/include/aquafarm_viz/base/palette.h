@@ -51,7 +51,7 @@ std::string DeviceName(std::uint8_t kind);
 /// counter-clockwise.
 const std::vector<cv::Point2f>& DeviceOutline(std::uint8_t kind);
 
-/// Returns the colour of a health: from green at 1 over amber at 0.5 to red at 0.
+/// Returns the colour of a health: green at 1, amber at 0.5, red at 0, interpolated in between.
 Rgb HealthColor(double health);
 
 /// Returns the colour of the deck of a ship. Six colours repeat by id.
@@ -63,7 +63,7 @@ const std::vector<cv::Point2f>& HullOutline();
 /// Returns the severity of a risk: 0 at -5 and above, 1 at -20 and below, linear in between.
 double Severity(double risk);
 
-/// Returns the colour of a severity in [0, 1] on dark water: from yellow over orange and red to
+/// Returns the colour of a severity in [0, 1] on dark water: from yellow through orange and red to
 /// magenta.
 Rgb SeverityColor(double severity);
 
@@ -76,7 +76,7 @@ Rgb GradeColor(std::uint8_t grade);
 /// @param share 0 for the lowest value, 1 for the highest
 Rgb ValueColor(double share);
 
-/// Frames of cells in rviz whose best move is a pickup or a drop-off.
+/// Colours of the frames in rviz around cells whose greedy action is a pickup or a drop-off.
 inline constexpr Rgb kPickupColor{0x5f, 0xe0, 0x8a};
 inline constexpr Rgb kDropOffColor{0xff, 0x8c, 0x42};
 

@@ -17,7 +17,7 @@ namespace aquafarm_viz {
 /// font. "?" replaces all other characters, but an ellipsis is drawn as three dots.
 class Font {
  public:
-  /// @param size_px  nominal height, from ascender to descender [pixels]; below 4 it counts as 4
+  /// @param size_px  nominal height, from ascender to descender [pixels]; at least 4 is used
   /// @param file     a TrueType file, see FindFontFile; if it is empty or cannot be read, OpenCV's
   ///                 stroke font is used
   Font(int size_px, const std::string& file);

@@ -2,7 +2,7 @@
 #pragma once
 
 /// Maps cells to pixels. The origin of an image is its top left corner. The origin of the farm is
-/// its south-west corner, so y changes its direction.
+/// its south-west corner, so the y axes have opposite directions.
 ///
 ///       picture                     farm
 ///   (0,0)--> column               ^ y (north)

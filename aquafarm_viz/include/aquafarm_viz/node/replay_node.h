@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The node that replays a bag. Clients control it with services: `pause` pauses it at once or
-/// after a number of steps, `set_pace` sets its speed, and `jump` shows a given step. rosbag play
-/// cannot jump, and its single step is a message, not a step of the ranch.
+/// The node that replays a bag. Clients control it with services. `pause` pauses or resumes the
+/// replay, or shows a number of steps immediately and then pauses. `set_pace` sets the speed, and
+/// `jump` shows a given step. rosbag play cannot jump, and it steps by messages, not by steps of
+/// the ranch.
 
 #include <aquafarm_msgs/Jump.h>
 #include <aquafarm_msgs/Pause.h>
@@ -21,7 +22,7 @@ namespace aquafarm_viz {
 struct ReplayParams {
   std::string bag;
   double speed{1.0};      ///< speed relative to the recording, [0.001, 1000]
-  double start_s{};       ///< start position in the bag [s]; above 0 it overrides start_episode
+  double start_s{};       ///< start position in the bag [s]; above 0: replaces the next two
   int start_episode{-1};  ///< episode to start with; -1: the first one of the bag
   int start_step{};       ///< step of that episode to start with
   double delay_s{1.0};    ///< wall time before the start [s], so that other nodes can start

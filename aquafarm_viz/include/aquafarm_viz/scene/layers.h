@@ -16,7 +16,7 @@ struct Layers {
   bool values{};      ///< V_π of each cell, if a policy publishes it
   bool moves{};       ///< greedy actions of the policy, see ShownActions
   bool directions{};  ///< arrows of the legal moves at each port (Fig. 5)
-  bool labels{};      ///< F and the id of each device (Fig. 5); of fetched ones, at their old cell
+  bool labels{};      ///< F and the id of each device (Fig. 5); if fetched, at its former cell
   std::string sea{};  ///< sea layer of the scenario, drawn below all others; empty: none
 };
 

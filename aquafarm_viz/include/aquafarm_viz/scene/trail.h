@@ -65,8 +65,8 @@ class Trail {
   std::map<std::int32_t, std::int64_t> fetched_at_;  // by device [s of the world time]
 };
 
-/// Returns the bearing with which a ship is drawn [degrees]: that of its move in this state. If it
-/// does not move, that of its last move in `trail`, or 0 if that is unknown.
+/// Returns the bearing with which a ship is drawn [degrees]: the bearing of its move in this state.
+/// For a ship that does not move, returns the bearing of its last move in `trail`; 0 if unknown.
 /// @param trail may be null
 int ShipBearingDeg(const aquafarm_msgs::ShipState& ship, const Trail* trail);
 

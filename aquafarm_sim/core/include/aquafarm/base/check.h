@@ -6,7 +6,7 @@
 
 namespace aquafarm {
 
-/// Thrown when a caller violates a documented precondition (a programming error, not bad input).
+/// Thrown if a caller violates a documented precondition (a programming error, not bad input).
 class LogicError : public std::logic_error {
  public:
   using std::logic_error::logic_error;

@@ -12,6 +12,7 @@ namespace aquafarm {
 /// splittable pseudorandom number generators", OOPSLA 2014). It is not a cryptographic hash.
 class Hasher {
  public:
+  /// Adds one word.
   void Add(std::uint64_t word) {
     std::uint64_t z = (hash_ ^ word) + 0x9e3779b97f4a7c15ULL;
     z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;

@@ -3,8 +3,9 @@
 
 /// A mutex whose use clang checks at compile time (-Wthread-safety; tools/check_locks runs it). A
 /// member declared AQUAFARM_GUARDED_BY(mutex_) may only be accessed while mutex_ is locked. A
-/// function declared AQUAFARM_REQUIRES(mutex_) may only be called while mutex_ is locked. Other
-/// compilers ignore the attributes. Source: https://clang.llvm.org/docs/ThreadSafetyAnalysis.html
+/// function declared AQUAFARM_REQUIRES(mutex_) may only be called while mutex_ is locked, and one
+/// declared AQUAFARM_EXCLUDES(mutex_) only while it is not. Other compilers ignore the attributes.
+/// Source: https://clang.llvm.org/docs/ThreadSafetyAnalysis.html
 
 #include <chrono>
 #include <condition_variable>
@@ -32,8 +33,8 @@ class AQUAFARM_CAPABILITY("mutex") Mutex {
   std::mutex mutex_;
 };
 
-/// Locks a mutex on construction and unlocks it at the end of the scope. Within the scope, Unlock
-/// releases it and Lock acquires it again.
+/// Locks a mutex on construction and unlocks it on destruction. Before destruction, Unlock may
+/// release the mutex early, and Lock may acquire it again.
 class AQUAFARM_SCOPED_CAPABILITY MutexLock {
  public:
   explicit MutexLock(Mutex& mutex) AQUAFARM_ACQUIRE(mutex) : lock_(mutex.mutex_) {}

@@ -2,8 +2,9 @@
 #pragma once
 
 /// Counter-based random numbers keyed by (seed, episode, purpose, stream). A draw does not depend
-/// on the order of calls, the number of threads or the compiler. The generator is Philox4x32-10 of
-/// Random123 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
+/// on the order of calls, the number of threads or the compiler. The generator is Philox4x32-10
+/// (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011), as implemented in
+/// Random123.
 
 #include <array>
 #include <cstdint>
@@ -42,7 +43,7 @@ struct StreamKey {
 /// Returns four 32-bit draws, which depend only on `key` and `index`.
 std::array<std::uint32_t, 4> Draw(const StreamKey& key, std::uint32_t index);
 
-/// Maps a draw to [0, 1): returns its upper 24 bits divided by 2^24, without rounding.
+/// Maps a draw to [0, 1): divides its upper 24 bits by 2^24. The result is exact.
 constexpr float ToUnit(std::uint32_t draw) {
   return static_cast<float>(draw >> 8U) * (1.0F / 16777216.0F);
 }
@@ -51,7 +52,8 @@ constexpr std::uint32_t ToBelow(std::uint32_t draw, std::uint32_t count) {
   return static_cast<std::uint32_t>((static_cast<std::uint64_t>(draw) * count) >> 32U);
 }
 
-/// Generates the draws of one stream. A copy of the object continues with the same draws.
+/// Generates the draws of one stream in order. A copy continues with the same draws as the
+/// original.
 class RandomStream {
  public:
   RandomStream() = default;
@@ -66,13 +68,13 @@ class RandomStream {
   }
   /// Returns a number that is uniform in [0, 1).
   float Unit() { return ToUnit(Next()); }
-  /// Returns a number that is uniform in [min, max); rounding may produce max.
+  /// Returns a number that is uniform in [min, max). Because of rounding, it may equal max.
   float Uniform(float min, float max) { return min + (max - min) * Unit(); }
   /// Returns an integer that is uniform in [0, count).
   std::uint32_t Below(std::uint32_t count) { return ToBelow(Next(), count); }
 
-  /// Returns a number that is approximately normal with mean 0 and standard deviation 1, in [-3.47,
-  /// 3.47]: the scaled sum of four uniform draws. It is bit-identical on every machine.
+  /// Returns a number that is approximately normal with mean 0 and standard deviation 1: the scaled
+  /// sum of four uniform draws. It is in [-3.47, 3.47] and bit-identical on every machine.
   double Normal() {
     constexpr double kScale = 1.7320508075688772;  // 1 / standard deviation of the sum
     double sum = -2.0;

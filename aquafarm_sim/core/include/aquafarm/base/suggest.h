@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Suggests a valid name for a mistyped one. It is header-only, for programs that do not link the
-/// core.
+/// Suggests a valid name for a mistyped one. Header-only, so that programs that do not link the
+/// core can use it.
 
 #include <algorithm>
 #include <cstddef>
@@ -36,10 +36,10 @@ inline std::string WithoutSeparators(std::string name) {
   return name;
 }
 
-/// Returns " (did you mean 'NAME'?)" with the name that needs the fewest edits, or the first of
-/// several such names. Returns "" if every name needs more than two edits, or more edits than half
-/// of the length of `text`. Also returns "" if `text` has more than 100 characters. A name that
-/// differs only in separators needs no edit: INFA is the storm IN-FA, not LINFA.
+/// Returns " (did you mean 'NAME'?)" with the name that needs the fewest edits. Of several such
+/// names it returns the first. Returns "" if every name needs more than two edits, or more edits
+/// than half of the length of `text`. Also returns "" if `text` has more than 100 bytes.
+/// A difference only in separators counts as no edit: for INFA the suggestion is IN-FA, not LINFA.
 inline std::string DidYouMean(const std::string& text, const std::vector<std::string>& names) {
   constexpr std::size_t kLongest = 100;
   std::size_t limit = std::min<std::size_t>(3, text.size() / 2 + 1);

@@ -2,7 +2,7 @@
 #pragma once
 
 namespace aquafarm {
-/// Version of the suite, recorded in bags, checkpoints and the JSON files of results. CMake reads
-/// it from this file. A header generated in each build would prevent ccache from reusing objects.
+/// Version of the suite. Bags, saved states, checkpoints and the JSON files of results contain it.
+/// CMake reads it from this file.
 inline constexpr const char* kVersion = "0.1.0";
 }  // namespace aquafarm

@@ -3,9 +3,9 @@
 
 /// Elevations as an ASCII grid. Each header line is a key and a number, in either order: "ncols 60"
 /// or "60 ncols". The keys are ncols, nrows, cellsize, NODATA_value (default -9999), and one key
-/// each for the position in x and y. For x it is xllcorner, which is the west edge of the grid, or
-/// xllcenter or xlower, which are the centre of the first column. The values follow row by row from
-/// the north. A line may have any number of values.
+/// each for the position in x and y. For x, xllcorner is the west edge of the grid; xllcenter and
+/// xlower are the centre of the first column. The keys for y are analogous. The values follow row
+/// by row from the north. A line may have any number of values.
 
 #include <array>
 #include <string>
@@ -22,14 +22,13 @@ struct AsciiGrid {
   double cell_size{};  ///< distance of neighbouring centres [degrees or metres]
   /// Returns whether coordinates are in degrees; if not, they are in metres. They are in degrees if
   /// `cell_size` is below 1, |west| is at most 720 and |south| is at most 180. These limits are
-  /// twice the valid ones, so the parser reports a mistyped corner in degrees instead of reading it
-  /// as metres.
+  /// twice the valid ones, so that the parser reports a mistyped corner in degrees as an error.
   bool IsGeographic() const;
-  /// Returns whether a position is in a grid in degrees, even where the grid has no data.
-  /// Longitudes are equal modulo 360.
+  /// For a grid in degrees: returns whether it contains a position, even where the grid has no
+  /// data. Longitudes are equal modulo 360.
   bool Covers(GeoPoint place) const;
-  /// Returns the column and row of the cell of a grid in degrees that is nearest to a position. At
-  /// least one of them is out of range for a position outside the grid.
+  /// For a grid in degrees: returns the column and row of the cell nearest to a position. At least
+  /// one of them is out of range for a position outside the grid.
   std::array<long, 2> Nearest(GeoPoint place) const;
 };
 
@@ -39,13 +38,13 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
 AsciiGrid LoadAsciiGrid(const std::string& path);
 
 /// Returns the land share [height, width] of the cells of a ranch, from a grid in degrees. Each
-/// cell has 5 × 5 sample points, which use the nearest values of the grid. A point is land if its
-/// value is above `sea_level` or missing, or if it is outside the grid.
+/// cell has 5 × 5 sample points. Each point uses the nearest value of the grid. A point is land if
+/// this value is above `sea_level` or missing, or if the point is outside the grid.
 /// @param sea_level in the unit of the values
 LandShare ShareOfLand(const AsciiGrid& grid, const GeoFrame& frame, std::int32_t width,
                       std::int32_t height, float sea_level);
-/// Returns the land share of a grid in metres, whose cells are those of the ranch: 1 if the value
-/// is above `sea_level` or missing, else 0.
+/// Returns the land share of the cells of a grid in metres, which are the cells of the ranch: 1 if
+/// the value is above `sea_level` or missing, else 0.
 LandShare ShareOfLand(const AsciiGrid& grid, float sea_level);
 
 }  // namespace aquafarm

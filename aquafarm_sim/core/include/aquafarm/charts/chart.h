@@ -21,11 +21,11 @@ using LandShare = Grid<float>;
 
 /// Min land share of an island cell ([decided]).
 inline constexpr float kLandShare = 0.4F;
-/// Min land share of a rock cell ([decided]). It has too little land for an island and too much for
-/// ships.
+/// Min land share of a rock cell ([decided]). A rock cell has too little land for an island and too
+/// much for ships.
 inline constexpr float kRockShare = 0.05F;
 
-/// Cell types of a ranch. All its water is connected.
+/// Cell types of a ranch. All water is connected.
 struct Terrain {
   Grid<std::uint8_t> land;          ///< [H, W]; 1: island
   std::vector<Cell> rocks;          ///< row by row from the south, each row from the west
@@ -33,24 +33,23 @@ struct Terrain {
   std::int32_t WaterCells() const;  ///< number of cells that are neither island nor rock
 };
 
-/// Converts land shares to islands and rocks. Of the bodies of water that the eight moves connect,
-/// only the largest one stays water; the others become land.
+/// Converts land shares to islands and rocks. Only the largest body of water that the eight moves
+/// connect remains water. Other bodies of water become land.
 /// @throws InputError if there is no water
 Terrain ToTerrain(const LandShare& share);
 
-/// Returns a small set of blocks that together cover all land cells and no other cell, as used in
-/// scenario files.
+/// Returns a small set of island blocks that together cover all land cells and no other cell.
 std::vector<IslandBlock> ToIslands(const Grid<std::uint8_t>& land);
 
-/// Returns the shore cell nearest to `wanted` that is not in `taken`. A shore cell is water with
-/// land among its eight neighbours. Of several nearest cells, returns the southernmost, and of
-/// these the westernmost.
+/// Returns the shore cell nearest to `wanted` that is not in `taken`. A shore cell is a water cell
+/// with land among its eight neighbours. Of several nearest cells, returns the southernmost, and of
+/// several southernmost the westernmost.
 /// @throws InputError if no shore cell is left
 Cell NearestShore(const Terrain& terrain, Cell wanted, const std::vector<Cell>& taken);
 
 /// Returns up to `count` shore cells that are far from one another. The first is nearest to the
-/// middle of the chart. Each later one is the cell whose nearest chosen cell is farthest away.
-/// Returns fewer cells if the shore has fewer, and an empty list if there is no land.
+/// middle of the chart. Each later one is the shore cell that is farthest from its nearest chosen
+/// cell. Returns fewer cells if the shore has fewer, and an empty list if there is no shore.
 std::vector<Cell> SpreadPorts(const Terrain& terrain, std::int32_t count);
 
 }  // namespace aquafarm

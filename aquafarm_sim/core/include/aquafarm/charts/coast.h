@@ -12,7 +12,7 @@
 
 namespace aquafarm {
 
-/// A closed line; the last point equals the first.
+/// A closed line whose last point equals its first.
 using CoastRing = std::vector<GeoPoint>;
 /// An outer ring (the shore), followed by its holes (lakes).
 using CoastPolygon = std::vector<CoastRing>;

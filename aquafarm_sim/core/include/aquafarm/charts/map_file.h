@@ -11,8 +11,9 @@
 ///   free_thresh: 0.196      a pixel with a lower occupancy is free
 ///   mode: trinary           between the thresholds: unknown (trinary), or linear (scale)
 ///
-/// The occupancy of a pixel is 0 if it is white and 1 if it is black. With mode: raw, grey values 0
-/// to 100 are the occupancy in percent. Source: wiki.ros.org/map_server
+/// The occupancy of a pixel is 0 if it is white and 1 if it is black (negate: 0). With mode: raw,
+/// grey values from 0 to 100 are the occupancy in percent, and larger values are unknown. Source:
+/// wiki.ros.org/map_server
 
 #include <array>
 #include <string>

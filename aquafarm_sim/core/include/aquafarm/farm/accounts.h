@@ -7,15 +7,16 @@
 ///   insured = saved + damaged + lost
 ///   loss    = damaged + lost
 ///
-/// The remaining value of a device is insured - damaged. The three parts of a device's value are:
+/// The remaining value of a device is insured - damaged. The three parts of a device's insured
+/// value are:
 ///
 ///   damaged   the share of its initial health that the device lost, times its insured value
 ///   lost      0 if the device was delivered to a port, else the remaining value times
 ///             money.at_sea_loss
 ///   saved     the remaining value minus `lost`
 ///
-/// `damaged` and then `lost` are rounded to cents, each once per device. The costs of ships and
-/// energy are separate from the ledger and are not part of the loss.
+/// For each device, `damaged` is rounded to cents before `lost` is computed and rounded. The costs
+/// of ships and energy are not in the ledger and are not part of the loss.
 
 #include <array>
 #include <cstdint>
@@ -56,7 +57,8 @@ struct Accounts {
   Cents OperatingCost() const { return ship_cost + energy_cost; }
 };
 
-/// Returns the insured value of a device.
+/// Returns the insured value of a device: DeviceSite::insured_value if set, else the value of its
+/// kind in MoneySpec::device_values.
 /// @param site entry of the device in an explicit placement; nullptr for other placements
 Cents InsuredValue(const MoneySpec& money, DeviceKind kind, const DeviceSite* site);
 

@@ -5,16 +5,17 @@
 ///
 ///      . . r2 . .        The risk at a cell is that of the smallest ring whose radius is at least
 ///    .   . r1 .   .      the Euclidean distance from the centre c to the centre of the cell. It is
-///   .  .   c--->.  .     0 outside all rings. With several disasters the worst risk applies. It is
-///    .   . . .   .       computed from the rings, without a grid.
+///   .  .   c--->.  .     0 outside all rings. With several disasters the worst risk applies. Risks
+///    .   . . .   .       are computed from the rings, without a grid.
 ///
 /// A ring may have a separate radius for each quadrant, as in typhoon bulletins. A cell due north
 /// of the centre belongs to the north-east quadrant, a cell due east to the south-east quadrant,
 /// and so on clockwise.
 ///
 /// Difference from the paper: the centre moves by a real number of cells along a heading in whole
-/// degrees. By default it is reflected at the border of the farm enlarged by the largest radius;
-/// Border has alternatives.
+/// degrees. By default it is reflected at a border outside the map, whose distance from the map is
+/// the largest initial radius. Border has alternatives. A disaster with a track follows its track
+/// instead.
 
 #include <array>
 #include <cstdint>
@@ -30,21 +31,23 @@ namespace aquafarm {
 
 /// Returns the (east, north) components of the unit vector of a compass bearing. The result is
 /// bit-identical on every machine.
-/// @param heading_deg in [0, 359] @throws LogicError for another bearing
+/// @param heading_deg in [0, 359]
+/// @throws LogicError for another bearing
 std::array<float, 2> HeadingVector(std::int32_t heading_deg);
 
 /// State of a disaster in its last bulletin (partial view).
 struct Bulletin {
   float x{};  ///< reported centre [cells], with the error of ViewSpec::bulletin_noise
   float y{};
-  float speed{};                          ///< [cells/step]
-  std::int32_t heading_deg{};             ///< compass bearing
-  std::int32_t step{kNone};               ///< step of issue; kNone: not issued yet
-  std::array<float, kMaxRings> radius{};  ///< at `step`, or of the last Farm::SetDisaster [cells]
-  std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< as `radius`, by quadrant
+  float speed{};               ///< [cells/step]
+  std::int32_t heading_deg{};  ///< compass bearing
+  std::int32_t step{kNone};    ///< step of issue; kNone: not issued yet
+  /// Radii at `step` [cells]. Farm::SetDisaster replaces them by radii of the new disaster.
+  std::array<float, kMaxRings> radius{};
+  std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< by quadrant; see `radius`
 };
 
-/// The part of a disaster's state that views copy. All of it is plain data.
+/// The part of a disaster's state that views copy. It contains only plain data.
 struct ObservableDisaster {
   DisasterKind kind{};
   Border border{};
@@ -62,15 +65,16 @@ struct ObservableDisaster {
   std::uint32_t turn_threshold{};  ///< the disaster turns if a 31-bit draw is below it
   float radius_growth{};           ///< [cells/step]; not used with a track
   float margin{};  ///< width of the border around the map: largest initial radius [cells]
-  std::int32_t steps_left{};     ///< 0: the disaster has ended and causes no risk
-  std::int32_t waypoint{kNone};  ///< index of the last waypoint passed; kNone: no track
-  bool by_quadrant{};  ///< if true, `quadrant` applies and `radius` holds the largest of the four
+  std::int32_t steps_left{};  ///< 0: the disaster has ended and causes no risk
+  /// Index of the last waypoint passed; 0 before the first waypoint; kNone without a track.
+  std::int32_t waypoint{kNone};
+  bool by_quadrant{};  ///< true: `quadrant` applies, and `radius` is the largest of its four values
   std::array<std::array<float, kMaxRings>, 4>
       quadrant{};  ///< radius by quadrant (NE, SE, SW, NW) and ring
 
   /// Returns whether the disaster has not ended.
   bool active() const { return steps_left > 0; }
-  /// Returns the largest radius, or 0 if there is no ring.
+  /// Returns the radius of the outermost ring, or 0 if there is no ring.
   float reach() const { return rings == 0 ? 0.0F : radius[static_cast<std::size_t>(rings - 1)]; }
 };
 
@@ -85,37 +89,38 @@ inline void CopyRings(const ObservableDisaster& disaster, Bulletin& bulletin) {
   bulletin.quadrant = disaster.quadrant;
 }
 
-/// Waypoints of a disaster. They do not change during an episode.
+/// Waypoints of a disaster. They do not change during an episode; Farm::SetDisaster replaces them.
 using Track = std::shared_ptr<const std::vector<Waypoint>>;
 
-/// Creates a disaster. A centre or heading that its spec does not set is drawn from (seed, episode,
-/// id). With a track, the disaster is in the state of the track at step 0.
+/// Creates a disaster. If the spec does not set the centre or the heading, they are drawn from
+/// (seed, episode, id). With a track, the disaster is in the state of the track at step 0.
 /// @param width, height size of the farm [cells]
 /// @param track waypoints that replace those of the spec; null: those of the spec apply
 Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t seed,
                        std::uint64_t episode, std::int32_t width, std::int32_t height,
                        const std::vector<Waypoint>* track = nullptr);
 
-/// Advances a disaster by one step, to step `step` of the episode; the first call has step 1. With
-/// a track, the disaster follows it; without one, the disaster turns, moves and grows. A disaster
+/// Advances a disaster by one step, to step `step` of the episode (1 for the first call). With a
+/// track, the disaster follows it. Without a track, the disaster turns, moves and grows. A disaster
 /// that has ended does not change.
 /// @param turn_key key of the random turns
 /// @param width, height size of the farm [cells]
 void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_key,
                   std::int32_t step, std::int32_t width, std::int32_t height);
 
-/// Sets position, rings, grade and motion of a disaster to those of its track at `step`. Before the
-/// first waypoint they are those of the first one, and after the last waypoint those of the last
-/// one. The search for the current leg starts at `disaster.waypoint`, so `step` must not decrease
-/// from call to call.
+/// Sets position, rings, risks, grade and motion of a disaster to those of its track at `step`.
+/// Before the first waypoint they are those of the first one, and after the last waypoint those of
+/// the last one.
+/// @param disaster `waypoint` must not be kNone. The search for the current leg starts there, so
+///   `step` must not decrease from call to call.
 void FollowTrack(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
                  std::int32_t step);
 
-/// Sets a ring to a circle. A ring of radius 0 is absent, so a track may gain and lose rings.
+/// Sets a ring to a circle. A ring of radius 0 is absent.
 void SetRing(ObservableDisaster& disaster, std::size_t ring, float radius);
 /// Sets the radius of a ring in each quadrant.
 void SetRing(ObservableDisaster& disaster, std::size_t ring, const QuadrantRadii& radii);
-/// Adds `by` cells to the radius of every ring, but keeps radii at or above 0. In a disaster with
+/// Adds `by` cells to the radius of every ring. Radii do not fall below 0. In a disaster with
 /// quadrants, a radius of 0 stays 0.
 void GrowRings(ObservableDisaster& disaster, float by);
 
@@ -150,7 +155,7 @@ inline float RiskOf(const ObservableDisaster& disaster, float x, float y) {
   return 0.0F;
 }
 
-/// Returns the worst risk of several disasters at a cell; 0 without a risk.
+/// Returns the worst risk of several disasters at a cell, 0 or negative.
 inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
   float worst = 0.0F;
   for (const Disaster& disaster : disasters) {
@@ -160,8 +165,8 @@ inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
   return worst;
 }
 
-/// Returns the risk that damages a device at a cell. The risk of each disaster is multiplied by the
-/// factor of the disaster's kind, and the worst product is returned. It may be below kWorstRisk.
+/// Returns the risk that damages a device at a cell: the worst product of the risk of a disaster
+/// and the factor of its kind. The result may be worse than kWorstRisk.
 /// @param factors factors of the device's kind, indexed by DisasterKind (DamageSpec::FactorsOf)
 inline float DamagingRiskAt(const std::vector<Disaster>& disasters, Cell cell,
                             const std::array<float, kDisasterKindCount>& factors) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// One episode on one farm (Algorithm 1; rules in docs/model.md). A step runs in this order:
-/// MoveDisasters, Act for each ship in id order (so the lower id has right of way), Damage, Consume
-/// (if the scenario has energy), Reward, CountShipSteps (if it has money), Finish.
+/// One episode on one farm (Algorithm 1 of the paper; rules in docs/model.md). A step calls, in
+/// this order: MoveDisasters; Act for each ship in id order, so the lower id has right of way;
+/// Damage; Consume if the scenario has energy; Reward; CountShipSteps if it has money; Finish.
 ///
-/// Step never allocates memory. Reset allocates only while its buffers grow, as in the first
-/// episodes, or if another owner still holds the track of a drawn storm.
+/// Step never allocates memory. Reset allocates only in two cases: its buffers grow, as in the
+/// first episodes, or another owner still holds the track of a drawn storm.
 
 #include <algorithm>
 #include <array>
@@ -30,8 +30,8 @@ namespace aquafarm {
 class Hasher;
 struct SavedDisaster;
 
-/// Forecasts of one disaster that were issued during an episode, in order of issue. Null if there
-/// are none.
+/// Forecasts of one disaster that were issued during an episode, in order of issue. Null if none
+/// was issued.
 using Forecasts = std::shared_ptr<const std::vector<IssuedForecast>>;
 
 /// A rescue ship, or a self-propelled device that acts as a ship.
@@ -54,7 +54,7 @@ struct Ship {
 /// State of a device in an episode.
 struct Device {
   Cell cell{};                  ///< current cell; while aboard, the cell of the pickup
-  float value{};                ///< added to the reward of a delivery, times `health`
+  float value{};                ///< value × health is added to the reward of its delivery
   float health{1.0F};           ///< [0, 1]
   std::int32_t carrier{kNone};  ///< id of the ship that carries it; kNone unless status is kAboard
   DeviceKind kind{};
@@ -64,7 +64,7 @@ struct Device {
 
 /// Statistics of an episode, updated every step.
 struct EpisodeRecord : EpisodeStatistics {
-  std::int32_t ship_steps{};  ///< sum over steps of rescue ships not moored; 0 without money
+  std::int32_t ship_steps{};  ///< ship-steps of rescue ships not moored; 0 without money
 };
 
 /// Returns the summary of an episode. @param farm index of the farm that played it
@@ -73,8 +73,8 @@ EpisodeSummary SummaryOf(const EpisodeRecord& record, std::int32_t farm);
 /// Storms that the disasters of a farm have drawn for the current episode.
 struct DrawnStorms {
   std::vector<std::shared_ptr<std::vector<Waypoint>>>
-      tracks;                                ///< by disaster; null if it has no storms
-  std::vector<const ArchivedStorm*> storms;  ///< by disaster; null if it has no storms
+      tracks;                                ///< by disaster; null without DisasterSpec::storms
+  std::vector<const ArchivedStorm*> storms;  ///< by disaster; null without DisasterSpec::storms
   StormPlacer placer;
   std::vector<StormErrors> errors;  ///< errors of the last storm placed
 };
@@ -86,8 +86,9 @@ class Farm {
   /// @param scenario must have passed ValidateScenario
   /// @throws InputError if its layout cannot be drawn
   explicit Farm(std::shared_ptr<const Scenario> scenario);
-  /// Creates a farm that uses a shared layout in all episodes and draws none.
-  /// @param fixed_layout layout of the same scenario; null: the farm draws its own
+  /// Creates a farm that uses a shared layout in all episodes instead of drawing layouts.
+  /// @param fixed_layout layout of the same scenario; null: the farm draws layouts
+  /// @throws InputError if the farm draws layouts and the first one cannot be drawn
   Farm(std::shared_ptr<const Scenario> scenario, std::shared_ptr<const Layout> fixed_layout);
 
   /// Starts episode `episode` of the sequence `seed`.
@@ -95,13 +96,13 @@ class Farm {
   ///   to another episode before it is used.
   void Reset(std::uint64_t seed, std::uint64_t episode);
 
-  /// Loads the first ship, device and disaster into the cache. This saves time if Step follows
-  /// about 50 ns later.
+  /// Loads the first ship, device and disaster into the cache, for a call of Step about 50 ns
+  /// later.
   void Prefetch() const;
 
   /// Executes one step.
   /// @param actions [AgentCount()], one Action per agent; kHold is allowed
-  /// @throws LogicError if the episode has ended or an action is invalid
+  /// @throws LogicError if the episode has ended, or if the action of an active ship is invalid
   void Step(const std::uint8_t* actions);
 
   const Scenario& scenario() const { return *scenario_; }
@@ -117,12 +118,12 @@ class Farm {
   const std::vector<Device>& devices() const { return devices_; }
   /// Disasters by id: the true state, independent of what ships observe.
   const std::vector<Disaster>& disasters() const { return disasters_; }
-  /// Returns the last bulletin of a disaster; its step is kNone if none was issued.
+  /// Returns the last bulletin of a disaster. Bulletin::step is kNone if none was issued.
   const Bulletin& BulletinOf(std::size_t disaster) const;
   /// Waypoints of each disaster; empty for a disaster without a track.
   const std::vector<Track>& tracks() const { return tracks_; }
   /// Forecasts of each disaster that were issued during this episode. They affect only what agents
-  /// observe. NewestForecast (forecast.h) also considers those of the scenario.
+  /// observe. NewestForecast (forecast.h) also considers the forecasts of the scenario.
   const std::vector<Forecasts>& forecasts() const { return forecasts_; }
   /// Statistics of this episode so far.
   const EpisodeRecord& record() const { return record_; }
@@ -136,8 +137,8 @@ class Farm {
   EndReason reason() const { return record_.reason; }
   /// Returns whether the episode has ended. Reset starts another one.
   bool over() const { return record_.reason != EndReason::kNone; }
-  /// Returns the accounts of an ended episode; nullopt before its end or if the scenario has no
-  /// money.
+  /// Returns the accounts of an ended episode. Returns nullopt before the end, or if the scenario
+  /// has no money.
   std::optional<Accounts> SettleAccounts() const;
 
   /// Returns the worst current risk of disasters and sea at a cell of the map; 0 or negative.
@@ -147,11 +148,12 @@ class Farm {
   /// DamageSpec::kinds.
   float DamagingRiskAt(Cell cell, DeviceKind kind) const;
 
-  /// Returns the current cell of a device: that of its carrier, or its own without a carrier.
+  /// Returns the current cell of a device: the cell of its carrier, or its own cell without a
+  /// carrier.
   Cell CellOf(std::int32_t device) const {
     return CellOf(devices_[static_cast<std::size_t>(device)]);
   }
-  /// As above. @param device a device of this farm
+  /// Overload for a device of this farm.
   Cell CellOf(const Device& device) const {
     // Branch-free: the processor could not predict a branch, because its outcome varies between
     // farms.
@@ -170,8 +172,8 @@ class Farm {
   std::uint64_t Hash() const;
 
   /// Returns a hash of the layout, ships, devices and disasters, without seed and episode number.
-  /// Right after Reset it identifies the start of an episode: two episodes of a scenario with equal
-  /// hashes differ at most in later random draws.
+  /// Right after Reset it identifies the start of an episode. Two episodes of a scenario with equal
+  /// start hashes differ only in later random draws.
   std::uint64_t StartHash() const;
 
   /// Returns the storm that a disaster drew in this episode; nullptr for a disaster without storms.
@@ -183,37 +185,37 @@ class Farm {
   /// @throws InputError if the bytes are damaged or belong to another version or scenario; the farm
   ///   is then unchanged
   void Load(const std::string& bytes);
-  /// Copies the episode in progress of a farm of the same scenario; the copy continues
-  /// bit-identically. The two scenario objects may differ in the observations of ships if their
-  /// hashes are equal.
+  /// Copies the episode in progress of a farm of the same scenario. The copy continues
+  /// bit-identically. The two farms may have different scenario objects with the same hash, for
+  /// example with different ViewSpecs.
   /// @throws LogicError if the hashes of the scenarios differ
-  /// @throws InputError if the layout must be drawn again, because only this farm observes routes,
-  ///   and cannot be drawn
+  /// @throws InputError if only one of the farms needs routes (ViewSpec::NeedsRoutes), so that a
+  ///   layout must be drawn for this farm, and it cannot be drawn
   void CopyStateFrom(const Farm& from);
 
   /// Applies a bulletin: replaces disaster `id`, or adds a disaster if `id` is the number of
   /// disasters. If the spec has neither start nor track, the disaster keeps the centre of the one
-  /// that it replaces; a new disaster needs a start or a track. The disaster follows the track of
-  /// the spec, whose steps count from the start of the episode. Agents receive the forecasts of the
-  /// spec, which replace all earlier ones. In partial view, a spec with forecasts also issues a
-  /// bulletin of the new state at once.
+  /// that it replaces. A new disaster needs a start or a track. The disaster follows the track of
+  /// the spec. The steps of the track count from the start of the episode.
+  /// Agents receive the forecasts of the spec, which replace all earlier ones. In partial view, a
+  /// spec with forecasts also issues a bulletin of the new state at once.
   /// @throws InputError if the id or the spec is invalid or the spec has storms; the farm is then
   ///   unchanged
   void SetDisaster(std::int32_t id, const DisasterSpec& spec);
 
   /// Applies a forecast of disaster `id`: agents receive it from now on. The disaster itself does
   /// not change. In partial view, a bulletin of the current state is issued at once.
-  /// @param forecast issued at the current step or earlier, but not before the newest forecast that
-  ///   applies. Its last point is after the current step. Its points have as many rings as the
-  ///   disaster, or none.
+  /// @param forecast its step of issue is not after the current step and not before that of the
+  ///   newest forecast that applies. Its last point is after the current step. Its points have as
+  ///   many rings as the disaster, or none.
   /// @throws InputError if the id or the forecast is invalid; the farm is then unchanged
   void IssueForecast(std::int32_t id, const IssuedForecast& forecast);
 
   /// Returns whether PlaceShip may move a ship to a cell. The cell must be on the map and not
-  /// blocked. It must be a port, the ship's own cell, or a cell without another ship.
+  /// blocked. It must also be a port, the ship's own cell, or a cell without another active ship.
   /// @throws LogicError if there is no such ship
   bool CanPlaceShip(std::int32_t ship, Cell cell) const;
-  /// Moves a ship to another cell, to query an agent's behaviour there.
+  /// Moves a ship to another cell, so that the caller can query what an agent does there.
   /// @throws InputError if CanPlaceShip returns false; the farm is then unchanged
   void PlaceShip(std::int32_t ship, Cell cell);
 
@@ -253,7 +255,7 @@ class Farm {
   std::vector<Track> tracks_;
   std::array<double, 2> move_km_{};  // length of a straight and of a diagonal move [km]
   std::int32_t remaining_{};         // number of devices not yet delivered
-  bool tracks_changed_{};            // whether SetDisaster or Load set tracks in this episode
+  bool tracks_changed_{};            // whether SetDisaster or Load has set tracks
   EpisodeRecord record_;
 
   std::shared_ptr<Layout> own_layout_;  // null if the layout is shared
@@ -263,8 +265,8 @@ class Farm {
   std::unique_ptr<DrawnStorms> drawn_;  // null if no disaster has storms
 };
 
-/// Returns the health that a device aboard loses in a crash into a rock or island. A self-propelled
-/// device loses as much in its own crash.
+/// Returns the health that each device aboard loses if its ship crashes into a rock or island. A
+/// self-propelled device loses the same if it crashes.
 /// @param bits CellBits of the rock or island
 /// @param crash_reward reward of the crash, 0 or negative
 float CrashDamage(const Scenario& scenario, std::uint8_t bits, float crash_reward);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Positions of ports, rocks and devices, drawn from (scenario, seed, episode), and the islands of
-/// the scenario. A breadth-first search ensures that water connects all devices and ports (paper
-/// §2.4, see docs/model.md).
+/// The layout of an episode: the islands of the scenario, and positions of ports, rocks and devices
+/// drawn from (scenario, seed, episode). A breadth-first search ensures that water connects all
+/// devices and ports (paper §2.4, see docs/model.md).
 
 #include <cstdint>
 #include <vector>
@@ -35,8 +35,8 @@ struct Layout {
   std::vector<Cell> ports;
   std::vector<Cell> rocks;
   std::vector<PlacedDevice> devices;
-  /// [H, W, route_count()] Routes from each cell to each port, then to each device that ships
-  /// fetch, in id order. Empty unless ViewSpec::NeedsRoutes().
+  /// [H, W, route_count()]. Routes from each cell to each port, followed by the routes to each
+  /// device that ships fetch, both in id order. Empty unless ViewSpec::NeedsRoutes().
   std::vector<RouteEntry> routes;
 
   /// Returns the number of targets in `routes`.
@@ -46,9 +46,10 @@ struct Layout {
 };
 
 /// Draws layouts. Keeps its scratch memory, so drawing into the same Layout again does not
-/// allocate. Islands and objects with cells in the scenario are placed first, then random ports,
-/// devices and rocks, in this order. Placements of devices:
-///   uniform  one device near the middle of each of `count` parts of the map of about equal size
+/// allocate. First places islands and the objects whose cells the scenario gives. Then places
+/// random ports, devices and rocks, in this order. Placements of devices:
+///   uniform  divides the map into `count` parts of about equal size; one device near the middle of
+///            each part
 ///   linear   devices in straight rows, all from west to east or all from south to north
 ///   random   anywhere on free water
 ///   explicit at the cells given in the scenario
@@ -58,7 +59,8 @@ class LayoutGenerator {
   explicit LayoutGenerator(const Scenario& scenario);
 
   /// Draws the layout of one episode into `layout` and reuses its memory. With LayoutMode::kFixed
-  /// the layout depends only on the scenario, and its seed is layout_seed.
+  /// the layout depends only on the scenario: Scenario::layout_seed replaces `seed`, and 0 replaces
+  /// `episode`.
   /// @throws InputError if 100 attempts find no layout in which water connects all ports and
   ///   devices; the message names a parameter to change
   void Generate(std::uint64_t seed, std::uint64_t episode, Layout& layout);
@@ -81,15 +83,15 @@ class LayoutGenerator {
   void AddRock(Cell cell, float reward, Layout& layout) const;
   void ChartAllWays(Layout& layout);
   bool AtShore(const Layout& layout, Cell cell) const;
-  /// Returns the nearest cell to `wanted` without any bit, searched in growing squares; its x is
-  /// kNone if there is no such cell.
+  /// Returns the first cell without bits in growing squares around `wanted`; its x is kNone if
+  /// there is no such cell.
   Cell NearestFree(const Layout& layout, Cell wanted) const;
-  /// Returns whether all ports and devices are connected through cells without any bit of
+  /// Returns whether all ports and devices are connected through cells without the bits in
   /// `blocked`.
   bool Connected(const Layout& layout, std::uint8_t blocked);
   /// Removes a random cell from candidates_ and returns it.
   Cell TakeCandidate(RandomStream& rng);
-  /// Sets candidates_ to the cells without any bit.
+  /// Sets candidates_ to the cells without bits.
   void CollectFree(const Layout& layout);
 
   const Scenario& scenario_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The actions of a ship, their outcomes, and the reasons why an episode ends. § and Eq. refer to
+/// The actions of a ship, their outcomes, and the reasons why an episode ends. § and Eq. mark
 /// sections and equations of the paper, see docs/model.md.
 
 #include <array>
@@ -12,9 +12,9 @@
 
 namespace aquafarm {
 
-/// Actions of a ship in one step (Eq. 1, §2.2). kHold leaves the ship where it is. The action space
-/// of learners does not contain it: a server executes it for a ship without a command, and some
-/// policies that do not learn use it.
+/// Actions of a ship in one step (Eq. 1, §2.2). With kHold the ship stays in its cell. Learners do
+/// not use kHold. A server executes it for a ship without a command, and some policies that do not
+/// learn use it.
 enum class Action : std::uint8_t {
   kNorth,
   kSouth,
@@ -29,7 +29,7 @@ enum class Action : std::uint8_t {
   kHold,
 };
 
-/// Number of moves, the first values of Action.
+/// Number of moves. The moves are the first values of Action.
 inline constexpr int kMoveCount = 8;
 /// Number of actions of learners: all except kHold.
 inline constexpr int kActionCount = 10;
@@ -47,9 +47,9 @@ constexpr ActionMask MaskOf(Action action) {
   return static_cast<ActionMask>(1U << static_cast<unsigned>(action));
 }
 
-/// Index of the first of eight consecutive features in the feature vector of an agent:
-/// "blocked.<move>", or "ship.blocked.<move>" with entity tokens. Encoder::feature_names lists all
-/// features.
+/// Index of the feature "blocked.north", the first of eight consecutive features "blocked.<move>"
+/// of an agent. With entity tokens their names are "ship.blocked.<move>". Encoder::feature_names
+/// lists all features.
 inline constexpr std::int32_t kFirstBlockedFeature = 5;
 
 /// Outcome of a ship's action in the last step.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The statistics of an episode. One list of them serves saved states, messages, metrics.csv,
-/// evaluation.csv and Python.
+/// The statistics of an episode. Saved states, messages, metrics.csv, evaluation.csv and Python use
+/// the list below.
 
 #include <cstdint>
 #include <type_traits>
@@ -18,9 +18,9 @@ struct EpisodeField {
   bool is_added{};     ///< true if files and saved states of version 0.1.0 lack it
 };
 
-/// Calls visit(field, member…) for every statistic. The members are those of the given records,
-/// each an EpisodeStatistics or a message EpisodeSummary. Append new statistics at the end, with
-/// is_added.
+/// Calls visit(field, member…) for every statistic. `member…` are the members of that name in the
+/// given records. Each record is an EpisodeStatistics or a message EpisodeSummary. Append new
+/// statistics at the end, with is_added = true.
 template <typename Visit, typename... Records>
 void VisitEpisodeFields(const Visit& visit, Records&... records) {
   visit(EpisodeField{"seed", "seed"}, records.seed...);
@@ -38,7 +38,7 @@ void VisitEpisodeFields(const Visit& visit, Records&... records) {
   visit(EpisodeField{"distance", "distance_km", true}, records.distance...);
 }
 
-/// Copies every statistic from one record to another, and converts between their types.
+/// Copies every statistic from one record to another and converts the types.
 template <typename From, typename To>
 void CopyEpisodeFields(const From& from, To& to) {
   VisitEpisodeFields([](const EpisodeField&, const auto& value,
@@ -51,15 +51,15 @@ struct EpisodeStatistics {
   std::uint64_t seed{};
   std::uint64_t episode{};
   std::int32_t steps{};
-  float episode_return{};  ///< sum over all ships and steps of the reward before sharing
+  float episode_return{};  ///< sum of the rewards of all ships and steps, before sharing
   std::int32_t delivered{};
   std::int32_t devices{};
-  /// In an EpisodeSummary the mean health of the delivered devices, or 0 without a delivery; in an
-  /// EpisodeRecord the sum of their health.
+  /// In an EpisodeSummary: mean health of the delivered devices, 0 without a delivery. In an
+  /// EpisodeRecord: sum of their health.
   float delivered_health{};
   std::int32_t crashes{};
   std::int32_t collisions{};
-  std::int32_t steps_in_disaster{};  ///< steps of ships that ended in a cell with a risk
+  std::int32_t steps_in_disaster{};  ///< number of ship-steps that end in a cell with a risk
   double energy{};                   ///< consumed by all ships [kWh]
   double distance{};                 ///< travelled by all ships [km]
   EndReason reason{};

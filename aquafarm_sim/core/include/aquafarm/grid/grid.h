@@ -17,8 +17,8 @@ constexpr std::int32_t LinearIndex(Cell cell, std::int32_t width) {
   return cell.y * width + cell.x;
 }
 
-/// Returns the Chebyshev distance: the number of moves between two cells on open water, where a
-/// diagonal is one move.
+/// Returns the Chebyshev distance: the number of moves between two cells on open water. A diagonal
+/// move counts as one.
 constexpr std::int32_t MovesBetween(Cell a, Cell b) {
   const std::int32_t dx = a.x < b.x ? b.x - a.x : a.x - b.x;
   const std::int32_t dy = a.y < b.y ? b.y - a.y : a.y - b.y;

@@ -2,17 +2,17 @@
 #pragma once
 
 /// The reward terms and their weights. The farm, scenario files, messages, pictures and Python use
-/// the two lists below. Append new terms at the end: saved episodes store the first seven by
-/// position and later ones by name. [decided]: our choice where the paper gives no value, see
-/// docs/model.md.
+/// the two lists below. Append new terms at the end, because saved episodes store the first seven
+/// terms by position. They store later terms by name. [decided] marks our choice where the paper
+/// gives no value, see docs/model.md.
 
 #include <array>
 #include <string_view>
 
 namespace aquafarm {
 
-/// Calls visit(name, member…) for every reward term. The members are those of the given records,
-/// each the struct or the message RewardTerms.
+/// Calls visit(name, member…) for every reward term. `member…` are the members of that name in the
+/// given records. Each record is the struct or the message RewardTerms.
 template <typename Visit, typename... Records>
 constexpr void VisitRewardTerms(const Visit& visit, Records&... records) {
   visit("crash", records.crash...);
@@ -31,7 +31,7 @@ inline constexpr int kRewardTermCount = [] {
   return count;
 }();
 
-/// Names of the terms, in the order of the list.
+/// Names of the terms, in the order of VisitRewardTerms.
 inline constexpr std::array<std::string_view, kRewardTermCount> kRewardTermNames = [] {
   std::array<std::string_view, kRewardTermCount> names{};
   std::size_t next = 0;
@@ -41,7 +41,7 @@ inline constexpr std::array<std::string_view, kRewardTermCount> kRewardTermNames
 
 /// The reward of one ship in one step, by term (paper §2.5, see docs/model.md).
 struct RewardTerms {
-  float crash{};     ///< reward of the rock or island that the ship moved into
+  float crash{};     ///< crash reward of the rock or island that the ship tried to enter
   float disaster{};  ///< risk of disasters and sea at the ship's cell after its action
   float pickup{};
   float drop_off{};  ///< includes health × value of each device delivered
@@ -50,7 +50,7 @@ struct RewardTerms {
   float step{};    ///< set only if no other term except energy applies
   float energy{};  ///< -EnergySpec::weight × energy of the step; 0 without EnergySpec
 
-  /// Returns the sum of the terms, added in the order of the list.
+  /// Returns the sum of the terms, added in the order of VisitRewardTerms.
   float Total() const {
     float total = 0.0F;
     VisitRewardTerms([&total](const char*, float term) { total += term; }, *this);
@@ -59,8 +59,8 @@ struct RewardTerms {
 };
 static_assert(sizeof(RewardTerms) == kRewardTermCount * sizeof(float));
 
-/// Rewards that a scenario sets (paper §2.5). RockSpec has the rewards of crashes into rocks, and
-/// EnergySpec has the weight of energy.
+/// Rewards that a scenario sets (paper §2.5). Two rewards are elsewhere: RockSpec::reward for
+/// crashes into rocks, and EnergySpec::weight for energy.
 struct RewardWeights {
   float island_crash{-20.0F};
   float pickup{20.0F};
@@ -76,8 +76,8 @@ struct RewardKey {
   bool is_penalty{};  ///< true if the value must not be positive
 };
 
-/// Calls visit(key, member…) for every weight. The members are those of the given records, each a
-/// RewardWeights or a message RewardTable.
+/// Calls visit(key, member…) for every weight. `member…` are the members of that name in the given
+/// records. Each record is a RewardWeights or a message RewardTable.
 template <typename Visit, typename... Records>
 constexpr void VisitRewardWeights(const Visit& visit, Records&... records) {
   visit(RewardKey{"island_crash", true}, records.island_crash...);

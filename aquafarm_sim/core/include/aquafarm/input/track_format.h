@@ -22,8 +22,8 @@ inline constexpr int kTrackFormatCount = 7;
 /// Returns the name of the format in messages, such as "JMA best track".
 std::string_view ToString(TrackFormat value);
 
-/// Detects the format of a text from its content; nullopt if it is not a track file. CMA and JMA
-/// files start with the same word; their second line distinguishes them.
+/// Detects the format of a text from its content; nullopt if it is not a file of tracks. CMA and
+/// JMA files start with the same word, so the second line decides between them.
 std::optional<TrackFormat> DetectTrackFormat(const std::string& text);
 
 }  // namespace aquafarm

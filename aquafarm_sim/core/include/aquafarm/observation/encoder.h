@@ -3,13 +3,13 @@
 
 /// Numeric encodings of a view: a tabular index, a feature vector, or H × W planes.
 ///
-/// Tabular index: status_rank · W·H + cell. `cell` is the linear index of the ship's cell, and
+/// Tabular index: status_rank · W·H + cell. `cell` is the linear index of the ship's cell.
 /// `status_rank` numbers the combinations of the status of all fetchable devices. Each device is
 /// deployed, aboard this ship, or gone (delivered or aboard another ship). A ship of capacity C
 /// carries at most C devices, so combinations with more devices aboard have no number. For C = 1
-/// and D devices, 2^D + D·2^(D−1) combinations remain. As in the paper, the index does not contain
-/// the disaster. The paper prints |S| = 128,000 and |O| = 32,000, but its products 25·25·2³·4 and
-/// 25·25·2³ are 20,000 and 5,000.
+/// and D devices there are 2^D + D·2^(D−1) combinations. As in the paper, the index does not
+/// contain the disaster. The paper prints |S| = 128,000 and |O| = 32,000, but its products
+/// 25·25·2³·4 and 25·25·2³ are 20,000 and 5,000.
 ///
 /// feature_names() and plane_names() list the features and planes in order.
 
@@ -45,8 +45,9 @@ class Encoder {
   static std::vector<std::string> plane_names();
   inline static constexpr std::int32_t kPlaneCount = 8;
 
-  /// Returns the tabular index in [0, state_count()); state_count() must not be 0. Full and partial
-  /// views give the same index, because both contain the ship's cell and the status of all devices.
+  /// Returns the tabular index in [0, state_count()). Full and partial views give the same index,
+  /// because both contain the ship's cell and the status of all devices.
+  /// @throws LogicError if state_count() is 0
   std::uint32_t Index(const Farm& farm, std::int32_t ship) const;
   std::uint32_t Index(const View& view) const;
   /// A decoded tabular state: the ship's cell and the status of each fetchable device.

@@ -2,9 +2,9 @@
 #pragma once
 
 /// Many farms of one scenario, stepped together. Observations are written directly to the caller's
-/// memory. A farm whose episode has ended ignores the action of the next Step and starts its next
-/// episode instead (next-step auto-reset, as in Gymnasium 1.x). No final observation is lost, and
-/// one call per step is enough.
+/// memory. If the episode of a farm has ended, the next Step ignores the action of that farm and
+/// starts its next episode (next-step auto-reset, as in Gymnasium 1.x). No final observation is
+/// lost, and one call per step is enough.
 
 #include <cstdint>
 #include <memory>
@@ -49,22 +49,24 @@ class FarmBatch {
   /// episodes i, i + N, i + 2N, … of the seed.
   /// @param farms N, at least 1
   /// @param threads number of threads that step the farms; results do not depend on it. If the
-  ///        process has stepped farms on several threads and then forks, its children use one
-  ///        thread.
+  ///   process has stepped farms on several threads and then forks, its child processes use one
+  ///   thread.
   /// @throws InputError if the scenario is a family, or if its layout cannot be drawn
   FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farms, std::int32_t threads = 1);
 
   /// Starts the sequence `seed` in all farms, with farm i at episode first_episode + i, and writes
   /// the first observations.
-  /// @param stride added to a farm's episode number for its next episode; 0 selects farms(). Use
-  ///        more if other batches play the episodes in between.
-  /// @throws InputError when an episode's layout cannot be drawn; call Reset with another episode
+  /// @param stride added to a farm's episode number for its next episode; 0 selects farms(). Pass a
+  ///   larger stride if other batches play the episodes in between.
+  /// @throws InputError if an episode's layout cannot be drawn; call Reset with another episode
   void Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output,
              std::uint64_t stride = 0);
 
   /// Steps every farm. @param actions [N, S], each in [0, kActionCount] (kHold allowed)
-  /// @throws InputError when an episode's layout cannot be drawn. With several threads, all other
-  ///         farms have then been stepped; with one thread, those after the failed farm have not.
+  /// @throws InputError if an episode's layout cannot be drawn. With several threads, all other
+  ///   farms have then been stepped. With one thread, the farms after the failed one have not been
+  ///   stepped.
+  /// @throws LogicError for an invalid action of an active ship
   void Step(const std::uint8_t* actions, const BatchOutput& output);
 
   /// Writes the results of the current state without stepping, for example after Load.
@@ -90,9 +92,9 @@ class FarmBatch {
   /// Starts farm i's next episode and writes its first observation.
   /// @throws InputError when its layout cannot be drawn
   void StartNext(std::int32_t i, const BatchOutput& output);
-  /// Starts episode `episode` of the sequence `seed` in farm i only and writes its first
-  /// observation. Sets the stride of this farm.
-  /// @throws InputError when its layout cannot be drawn
+  /// Starts episode `episode` of the sequence `seed` in farm i only, sets the stride of this farm,
+  /// and writes its first observation.
+  /// @throws InputError if its layout cannot be drawn
   void Start(std::int32_t i, std::uint64_t seed, std::uint64_t episode, std::uint64_t stride,
              const BatchOutput& output);
   /// Difference between the numbers of successive episodes of farm i. Initially farms(); Reset,
@@ -101,12 +103,12 @@ class FarmBatch {
   /// Sets the stride of farm i. @param stride at least 1
   void set_stride(std::int32_t i, std::uint64_t stride);
 
-  /// Serializes all farms; farms restored by Load continue bit-identically. The bytes do not
+  /// Serializes all farms. Farms restored by Load continue bit-identically. The bytes do not
   /// contain the strides.
   std::string Save() const;
   /// Restores farms written by Save. The strides do not change.
-  /// @throws InputError when the bytes are damaged or belong to another version, scenario or number
-  ///         of farms; nothing is then changed
+  /// @throws InputError if the bytes are damaged or belong to another version, scenario or number
+  ///   of farms; the farms are then unchanged
   void Load(const std::string& bytes);
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Groups of consecutive features, and the scales of features, for features.h and tokens.h.
+/// Groups of consecutive features, and the scales of features. features.h and tokens.h use them.
 
 #include <string>
 #include <vector>
@@ -12,12 +12,13 @@ namespace aquafarm {
 
 inline constexpr float kValueScale = 1.0F / 100.0F;  ///< 1 / max device value of the paper
 
-/// Factors that scale features to about [-1, 1].
+/// Quantities that scale features to about [-1, 1].
 struct FeatureScales {
   float length{};  ///< 1 / longer side of the map [1/cells]
   float time{};    ///< HorizonOf(scenario) [steps]
-  /// 1 / energy that a ship without load consumes if it moves straight in calm water for `time`
-  /// [1/kWh]; 0 if the scenario has no energy.
+  /// 1 / energy of `time` straight moves in calm water without load [1/kWh]. The moves are those of
+  /// a rescue ship, or of a self-propelled device if there is no rescue ship. 0 if the scenario has
+  /// no energy, or if such moves consume no energy.
   float energy{};
 };
 
@@ -29,8 +30,9 @@ struct FeatureGroup {
   void (*write)(const FeatureScales& scales, const View& view, float* out){};
 };
 
-/// Returns the max length of an episode [steps]: the step limit, or the longest duration of the
-/// scenario's disasters if that is shorter. A disaster set during an episode may extend it.
+/// Returns the max length of an episode [steps]: the smaller of the step limit and the longest
+/// duration of the scenario's disasters; the step limit without disasters. A disaster that is added
+/// during an episode may make the episode longer.
 float HorizonOf(const Scenario& scenario);
 
 }  // namespace aquafarm

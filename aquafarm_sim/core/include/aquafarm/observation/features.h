@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The feature vector of a ship as a table of groups. The table is the only place that defines the
-/// order, the names and the number of the features. Encoder writes the groups in this order.
+/// The feature vector of a ship as a table of groups. Only this table defines the order, the names
+/// and the number of the features. Encoder writes the groups in the order of the table.
 
 #include <string>
 #include <vector>

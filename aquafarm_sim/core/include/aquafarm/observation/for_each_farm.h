@@ -8,9 +8,9 @@ namespace aquafarm {
 
 /// Calls body(i, thread) for each i in [0, count) on `threads` threads. `thread` is the number of
 /// the calling thread in [0, threads). If the process has used several threads here and then forks,
-/// its children use one thread. With several threads, an exception of `body` is thrown again after
-/// all calls; with one thread, it prevents the calls that remain. Pass std::cref(body) to avoid a
-/// copy.
+/// its child processes use one thread. With one thread, an exception of `body` ends the loop. With
+/// several threads, all calls are made, and one of the exceptions is rethrown afterwards. Pass
+/// std::cref(body) to avoid a copy.
 void ForEachFarm(std::int32_t count, std::int32_t threads,
                  const std::function<void(std::int32_t i, std::int32_t thread)>& body);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Features as entity tokens (view.tokens). Their number does not depend on the size of the map or
+/// Features as entity tokens (view.tokens). Their number depends neither on the size of the map nor
 /// on the number of entities, so one network can play every ranch:
 ///
 ///   ship       1 token    the observing ship, its near surroundings and the risk of its courses
@@ -10,16 +10,16 @@
 ///   disaster   4 tokens   known disasters that have not ended
 ///   other      4 tokens   other visible ships
 ///
-/// A slot without an entity holds zeros; feature 0 of each slot except the ship's is its validity
-/// flag. Entities fill the slots in id order. If there are more entities than slots, those nearest
-/// to the ship are kept. The distance is the number of moves by water for devices and ports, the
-/// distance to the edge of the largest ring for disasters, and the number of moves on open water
-/// for other ships.
+/// A slot without an entity holds zeros. Feature 0 of each slot is its validity flag; the ship's
+/// slot has none. Entities fill the slots in id order. If there are more entities than slots, those
+/// nearest to the ship are kept. The distance of a device or a port is the number of moves by
+/// water; devices aboard are nearest. The distance of a disaster is that to the edge of its largest
+/// ring. The distance of another ship is the number of moves on open water.
 ///
 /// Lengths are in units of kTokenLength cells and clamped to [-4, 4]. Risks are divided by the
-/// worst risk of §2.1 (of the paper, see docs/model.md). Forecast risks assume that each known
-/// disaster keeps its motion and its size until it ends; ship.risk and ship.course ignore that it
-/// ends. docs/generalist.md lists every feature.
+/// worst risk of §2.1 of the paper (see docs/model.md). Forecast risks assume that each known
+/// disaster keeps its motion and its size until it ends. The features ship.risk and ship.course
+/// ignore the ends of disasters. docs/generalist.md lists every feature.
 
 #include <array>
 #include <cstdint>

@@ -2,13 +2,16 @@
 #pragma once
 
 /// Observation of a farm by one ship (paper §2.3, see docs/model.md). A full view contains
-/// everything. A partial view always contains the chart, and the initial cell and the status of
-/// every device. It contains the health of devices, other ships and disasters only within
-/// sensor_radius of the ship. A disaster is within this radius if its edge is. For disasters
-/// outside of it, the view contains the last bulletin and its age. Networked agents (shared_sight)
-/// use the sensors of all agents in play and know their cells. A monitoring device is a sensor of
-/// all ships, with radius monitoring_radius, while it is deployed and its health is above 0, unless
-/// it is self-propelled.
+/// everything.
+///
+/// A partial view always contains the chart, and the initial cell and the status of every device.
+/// It contains other ships, disasters and the health of devices only within sensor_radius of the
+/// ship. A disaster is within this radius if its edge is. For a disaster outside of it, the view
+/// contains the last bulletin and its age. Networked agents (shared_sight) use the sensors of all
+/// active agents, and so know their cells.
+///
+/// A deployed monitoring device observes for all ships within view.monitoring_radius, unless its
+/// health is 0 or it is self-propelled.
 
 #include <array>
 #include <cstdint>
@@ -38,7 +41,7 @@ struct KnownDevice {
   bool aboard_self{};  ///< aboard the observing ship
   bool self_propelled{};
   bool health_known{};
-  float health{1.0F};  ///< 1 unless health_known
+  float health{1.0F};  ///< 1 if it is not known
   float value{};
 };
 
@@ -47,15 +50,15 @@ struct KnownDisaster {
   bool visible{};      ///< in sensor range now; if false, the last bulletin applies
   std::int32_t age{};  ///< age of the information [steps]; 0 when visible
   /// State `age` steps ago: the centre is not extrapolated to now. Only steps_left is counted from
-  /// now. If agents receive a forecast, dx and dy are its mean motion from then until
-  /// kForecastSteps after now.
+  /// now. If agents receive a forecast, dx and dy are the mean motion of the forecast in the period
+  /// from `age` steps ago until kForecastSteps after now.
   ObservableDisaster belief;
-  /// Forecast positions [cells], one per lead time of view.forecast_leads_h, counted from now;
-  /// empty without view.disaster_slots.
+  /// Forecast positions [cells], one per lead time of view.forecast_leads_h. Lead times are counted
+  /// from now. Empty without view.disaster_slots.
   std::vector<std::array<float, 2>> forecast;
 };
 
-/// View of one ship. Observe reuses its memory from step to step.
+/// View of one ship. Observe reuses the memory of its lists.
 struct View {
   std::int32_t ship{};
   Cell self{};
@@ -67,8 +70,8 @@ struct View {
   std::vector<KnownShip> others;  ///< in id order, without the observing ship
   std::vector<KnownDevice> devices;
   std::vector<KnownDisaster> disasters;
-  /// Ids of the known disasters that have not ended, the most dangerous first (RankByDanger);
-  /// empty without view.disaster_slots.
+  /// Ids of the known disasters that have not ended, in the order of RankByDanger. Empty without
+  /// view.disaster_slots.
   std::vector<std::int32_t> by_danger;
   const Scenario* scenario{};
   const Layout* layout{};
@@ -83,17 +86,17 @@ void Observe(const Farm& farm, std::int32_t ship, View& view);
 /// Returns view.forecast_leads_h[lead] in steps, rounded to the nearest and at least 1.
 std::int32_t LeadSteps(const Scenario& scenario, std::size_t lead);
 
-/// Sets known.forecast to the positions that follow from the motion dx, dy of known.belief.
+/// Sets known.forecast to the positions that result from the motion dx, dy of known.belief.
 void ExtrapolateMotion(const Scenario& scenario, KnownDisaster& known);
 
-/// Returns the worst risk of a disaster's rings, 0 or negative; 0 if no ring has a radius above 0.
+/// Returns the worst risk of the rings with a radius above 0, 0 or negative; 0 without such a ring.
 float WorstRisk(const ObservableDisaster& disaster);
 
-/// Fills View::by_danger from the disasters and their forecast positions. The danger of a disaster
-/// for a ship is |worst risk| / (1 + gap / longer side of the map). The gap is the smallest
-/// distance from the ship to the edge of the disaster, at its last known position or at one of the
-/// forecast positions; 0 inside. At equal danger the lower id comes first. The paper does not
-/// define this order; docs/scenario.md explains it.
+/// Fills View::by_danger, the most dangerous disaster first. The danger of a disaster for a ship is
+/// |worst risk| / (1 + gap / longer side of the map). The gap is the smallest distance from the
+/// ship to the edge of the disaster at its last known position and at its forecast positions; 0
+/// inside. At equal danger the lower id comes first. The paper does not define this order;
+/// docs/scenario.md explains it.
 void RankByDanger(View& view);
 
 /// Returns the worst risk of the sea and of the disasters of the view at a cell, 0 or negative.

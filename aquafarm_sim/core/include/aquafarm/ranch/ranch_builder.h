@@ -15,7 +15,7 @@ namespace aquafarm {
 struct BuiltRanch {
   Scenario scenario;
   std::string yaml;                   ///< text of the scenario file, with comments on the sources
-  std::vector<std::string> decided;   ///< choices that BuildRanch made, one line each, for people
+  std::vector<std::string> decided;   ///< choices that BuildRanch made, one line each
   std::vector<std::string> warnings;  ///< warnings about the input files
 };
 
@@ -24,10 +24,10 @@ struct BuiltRanch {
 ///   water, or a storm that is not in the file
 BuiltRanch BuildRanch(const RanchRequest& request);
 
-/// Draws a layout of the scenario as text, north up: # island, o rock, P port, d device, . water.
-/// The layout is that of episode 0 of the seed Scenario::layout_seed; with LayoutMode::kFixed it is
-/// the layout of all episodes.
-/// @throws InputError when the layout cannot be drawn
+/// Returns a layout of the scenario as text, north up: # island, o rock, P port, d device, . water.
+/// The layout is that of episode 0 with the seed Scenario::layout_seed. With LayoutMode::kFixed all
+/// episodes have this layout.
+/// @throws InputError if the layout cannot be drawn
 std::string RenderAscii(const Scenario& scenario);
 
 }  // namespace aquafarm

@@ -40,27 +40,27 @@ struct RanchRequest {
 
   std::string track;  ///< file with the storm; empty for calm weather
   std::string storm;  ///< name or id of the storm; may be empty if the file has only one
-  std::string radii;  ///< file with radii for a track without radii; empty if unused
+  std::string radii;  ///< file with radii for fixes without radii; empty if unused
   RingReduction reduction{RingReduction::kEqualArea};
   /// File of bulletins with forecast points. Agents receive these forecasts; the storm itself
-  /// follows the track. The newest forecast continues a track that contains no forecast, unless the
-  /// track is a best track of the CMA or JMA. If empty, agents receive the present motion of the
-  /// storm.
+  /// follows the track. If the track contains no forecast, the newest of these forecasts continues
+  /// it, unless the track is a best track of the CMA or JMA. If no file is given, agents receive
+  /// the present motion of the storm.
   std::string forecasts;
 
   ArchiveRequest archive;  ///< alternative to `track`; a request with both is an error
 
-  std::vector<std::string> disasters;  ///< other disasters, in the format of presets.h
+  std::vector<std::string> disasters;  ///< other disasters, in the format of storms/presets.h
 
   std::int32_t ports{4};
   std::vector<GeoPoint>
       port_places;     ///< each is moved to the nearest shore water; replaces `ports`
-  bool exact_ports{};  ///< places of `port_places` on land or outside the ranch are errors
+  bool exact_ports{};  ///< a place of `port_places` on land or outside is an error
   std::int32_t devices{4};
   DevicePlacement placement{DevicePlacement::kRandom};
   std::int32_t ships{1};
-  /// Speed of a ship that tows a device. It determines the duration of a step, in which the ship
-  /// moves one cell.
+  /// Speed of a ship that tows a device. It determines the duration of a step, because a ship moves
+  /// one cell per step.
   double speed_kn{4.0};
   std::optional<double> step_s;  ///< duration of a step [s]; replaces speed_kn
   /// Hours from the start until the widest ring reaches the ranch. If no ring reaches it, the start
@@ -70,14 +70,15 @@ struct RanchRequest {
   std::optional<std::int64_t> start;  ///< UTC of step 0 [s since 1970]; replaces lead_h
   std::uint64_t seed{1};              ///< seed of the layout
 
-  /// Fields at the time nearest to the start; without a start, at the first time of the file.
+  /// Fields of the sea. The time nearest to the start is read; without a start, the first time of
+  /// the file.
   std::vector<SeaLayerRequest> sea;
   double sea_depth_m{0.0};  ///< depth of the fields below the surface
   std::string value;     ///< expression over the layers for the value of each device; empty: random
   std::string sea_risk;  ///< expression over the layers for the risk of each cell; empty if unused
 
   /// File of warnings or anchorage forecasts. BuiltRanch::decided lists those that are in force
-  /// during the episode.
+  /// during the episode, or all of them if the episode has no date.
   std::string notices;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Damage factors for real ranches, by kind of device and kind of disaster. Published reasons
-/// determine which of two factors in a row or column is larger; the values are our assumption
-/// (docs/data.md, Damage by kinds).
+/// Damage factors for real ranches, by kind of device and kind of disaster. The order of the
+/// factors within a row or column follows from published reasons. The values themselves are our
+/// assumption (docs/data.md, Damage by kinds).
 
 #include "aquafarm/scenario/scenario.h"
 

@@ -21,7 +21,7 @@ inline constexpr int kDeviceKindCount = 4;
 enum class DeviceStatus : std::uint8_t { kDeployed, kAboard, kDelivered };
 inline constexpr int kDeviceStatusCount = 3;
 
-/// The kinds of disasters. They differ in the damage that they do to each kind of device.
+/// The kinds of disasters. DamageSpec::kinds sets the damage that each does to each kind of device.
 enum class DisasterKind : std::uint8_t {
   kTyphoon,
   kStormSurge,
@@ -32,18 +32,19 @@ enum class DisasterKind : std::uint8_t {
 };
 inline constexpr int kDisasterKindCount = 6;
 
-/// Returns the name used in scenario files, such as "deep_water_breeding" or "red_tide".
+/// Returns the name used in files and messages, such as "deep_water_breeding" or "red_tide".
+/// @throws LogicError for a value outside the enumeration
 std::string_view ToString(DeviceKind value);
 std::string_view ToString(DeviceStatus value);
 std::string_view ToString(DisasterKind value);
 
-/// Whether all episodes share the layout of Scenario::layout_seed, or each draws its own.
+/// Whether all episodes have the layout of Scenario::layout_seed, or each episode draws its own.
 enum class LayoutMode : std::uint8_t { kFixed, kPerEpisode };
 inline constexpr int kLayoutModeCount = 2;
 /// How the places of devices are chosen; see `placement` in docs/scenario.md.
 enum class DevicePlacement : std::uint8_t { kUniform, kLinear, kRandom, kExplicit };
 inline constexpr int kDevicePlacementCount = 4;
-/// What a moving disaster does at the border of the enlarged map; see `border` in
+/// What a disaster without a track does at a border outside the map; see `border` in
 /// docs/scenario.md.
 enum class Border : std::uint8_t { kReflect, kWrap, kLeave };
 inline constexpr int kBorderCount = 3;

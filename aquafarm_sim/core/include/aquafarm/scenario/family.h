@@ -3,7 +3,7 @@
 
 /// Generated ranches. A scenario with the key `family` describes a family of ranches, and every
 /// episode draws another ranch of the family. The other keys of the scenario apply to every ranch,
-/// unless DrawRanch draws their values.
+/// except those that DrawRanch draws.
 
 #include <cstdint>
 
@@ -11,24 +11,26 @@
 
 namespace aquafarm {
 
-/// Max length of an episode on a ranch with generated disasters [steps].
+/// Max length of an episode on a ranch without the scenario's own disasters [steps].
 inline constexpr std::int32_t kMaxRanchSteps = 3000;
 
 /// Draws the ranch of an episode; a pure function of its arguments. The ranch has a fixed layout
-/// and no family, so ToYaml writes it as an ordinary scenario. Evaluation seeds (rng.h) draw other
-/// ranches than training seeds.
+/// and no family, so ToYaml writes it as an ordinary scenario.
 ///
-///   map          width and height; island blocks, which may overlap; on coast_share of the ranches
-///                a coast along one side; rocks in proportion to the number of cells
+///   map          width and height; ports; island blocks, which may overlap; rocks in proportion to
+///                the number of cells; a coast along one side on coast_share of the ranches
+///   ships        capacity
 ///   devices      placed at random, in rows or evenly; kinds in turn, starting with a random kind
-///   disasters    of all kinds, with one to three rings, that wander, grow or shrink; on
-///                storm_share of the ranches the scenario's own disasters instead
-///   duration     of episodes with generated disasters: the time that one ship needs to fetch all
-///                devices, roughly estimated, times a random factor in [1, 2]
+///   damage       exposure_damage
+///   disasters    of all kinds, with one to three rings; they wander, and some grow or shrink.
+///                storm_share of the ranches have the scenario's own disasters instead.
+///   step_limit   a rough estimate of the time in which one ship fetches all devices, times a
+///                random factor in [1, 2]. Generated disasters last as long. Ranches with the
+///                scenario's own disasters keep its step_limit.
 ///
 /// @param family scenario with Scenario::family
-/// @param attempt from 0; if the layout of the ranch cannot be drawn, the caller draws another
-///   ranch with the next attempt
+/// @param attempt from 0. If the layout of the ranch cannot be drawn, the caller draws another
+///   ranch with the next attempt.
 /// @throws InputError if the parts of the ranch do not fit on its map
 Scenario DrawRanch(const Scenario& family, std::uint64_t seed, std::uint64_t episode,
                    std::uint32_t attempt);

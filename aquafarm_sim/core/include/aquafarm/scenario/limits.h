@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Limits of every scenario. Each number is defined only here.
+/// Limits of scenarios and farms. Each number is defined only here.
 
 #include <cstdint>
 
@@ -15,7 +15,7 @@ inline constexpr int kMaxSide = 4096;
 inline constexpr std::int32_t kMaxDisasters = 64;
 /// Max number of rescue ships of a farm.
 inline constexpr std::int32_t kMaxShips = 64;
-/// Max number of farms that are stepped together.
+/// Max number of farms of one simulator node.
 inline constexpr std::int32_t kMaxFarms = 4096;
 /// Bounds of the risk in a disaster's rings, [kWorstRisk, kMildestRisk] (paper §2.1, see
 /// docs/model.md).

@@ -37,7 +37,7 @@ struct IslandBlock {
 };
 
 /// Rocks: `count` random cells, or exactly the cells in `cells`. The crash reward of each rock is
-/// drawn with the layout.
+/// drawn when the layout is drawn.
 struct RockSpec {
   Range<std::int32_t> count{20, 40};  // [decided]
   Range<float> reward{-5.0F, -1.0F};  ///< range of the crash rewards (§2.5)
@@ -60,13 +60,13 @@ struct ShipSpec {
 struct DeviceSite {
   Cell cell{};
   DeviceKind kind{};
-  std::optional<float> value;  ///< if unset, from SeaSpec::device_value or DeviceSpec::value
+  std::optional<float> value;  ///< if unset: SeaSpec::device_value or DeviceSpec::value
   bool self_propelled{};
-  std::optional<double> insured_value{};  ///< if unset, MoneySpec::device_values of the kind
+  std::optional<double> insured_value{};  ///< if unset: MoneySpec::device_values of the kind
 };
 
-/// Devices. With DevicePlacement::kExplicit they are those of `sites`. Otherwise there are `count`
-/// devices, and device i has kind kinds[i mod kinds.size()].
+/// Devices. With DevicePlacement::kExplicit, `sites` lists them. With another placement there are
+/// `count` devices, and device i has kind kinds[i mod kinds.size()].
 struct DeviceSpec {
   DevicePlacement placement{DevicePlacement::kRandom};
   std::int32_t count{3};
@@ -74,7 +74,7 @@ struct DeviceSpec {
                                 DeviceKind::kBreedingRelease, DeviceKind::kDeepWaterBreeding};
   Range<float> value{50.0F, 100.0F};  ///< range from which the value of each device is drawn
   float health{1.0F};                 ///< health at the start of an episode, in (0, 1]
-  std::int32_t self_propelled{0};     ///< number of self-propelled devices: the last of `count`
+  std::int32_t self_propelled{0};     ///< number of self-propelled devices; they are the last ones
   std::vector<DeviceSite> sites;      ///< for DevicePlacement::kExplicit
   /// Returns the number of devices.
   std::int32_t Total() const {
@@ -91,24 +91,24 @@ struct IssuedForecast {
   std::vector<Waypoint> points{};
 };
 
-/// Random differences between a drawn storm and the recorded one (storms/draw_storm.h). Shifts have
-/// mean 0, factors have mean or median 1.
+/// Random differences between a drawn storm and the recorded one (storms/draw_storm.h). The shifts
+/// have mean 0. The factor of the wind has mean 1, and that of the radii has median 1.
 struct StormPerturbation {
   double along_km{};   ///< standard deviation of the shift along the storm's motion
   double across_km{};  ///< standard deviation of the shift across the storm's motion
-  double start_h{};    ///< max shift of the closest approach in time [hours]; uniform
-  double intensity{};  ///< standard deviation of the factor of the wind
+  double start_h{};    ///< max shift of the time of the closest approach [hours]; uniform
+  double intensity{};  ///< standard deviation of the factor of the wind (at least 0.3)
   double size{};       ///< standard deviation of the logarithm of the factor of the radii
 };
 
 /// Recorded storms. In each episode the disaster follows one of them (storms/draw_storm.h).
 struct StormsSpec {
   Range<std::int32_t> years;             ///< years of the storms for training
-  Range<std::int32_t> evaluation_years;  ///< years of the storms for evaluation; not in `years`
+  Range<std::int32_t> evaluation_years;  ///< years of the storms for evaluation; outside `years`
   double within_km{300.0};  ///< max distance of the closest approach to the middle of the farm
   double approach_h{24.0};  ///< hours from step 0 to the closest approach
   StormPerturbation perturbation;
-  std::string tracks;  ///< the storms in reach, as text of an archive (tracks/archive.h)
+  std::string tracks;  ///< the storms of these years in reach, as an archive (tracks/archive.h)
   /// The storms of `tracks` on the farm; set by the reader of scenarios.
   std::shared_ptr<const StormLibrary> library;
   GradeRisks risks;  ///< risks of the rings for grades 1 to 4; set by the reader of scenarios
@@ -129,17 +129,17 @@ struct DisasterSpec {
   std::optional<std::array<float, 2>> start;  ///< centre (x, y) [cells]; random if unset
   std::vector<Waypoint> track;                ///< if not empty, determines position and rings
   std::vector<QuadrantRadii> quadrants{};     ///< as in Waypoint
-  /// Risks of the rings for grades 1 to 4; empty if unset. Waypoints without own risks get those of
-  /// their grade, and so do the waypoints of bulletins that arrive during an episode.
+  /// Risks of the rings for grades 1 to 4; empty if unset. Waypoints that specify no risks get
+  /// those of their grade. So do the waypoints of bulletins that arrive during an episode.
   GradeRisks grade_risks{};
-  /// Factors of `risks` for grades 1 to 4, an alternative to grade_risks; if both are empty, the
-  /// grade does not affect the risks. They do not change the own risks of waypoints.
+  /// Factors of `risks` for grades 1 to 4, an alternative to grade_risks. If both are empty, the
+  /// grade does not affect the risks. Waypoints that specify risks keep them.
   std::vector<float> grade_factors{};
   /// Forecasts issued by an authority, in order of issue. Agents observe the newest issued
   /// forecast; the disaster itself follows the track. Requires a track; see forecast.h.
   std::vector<IssuedForecast> forecasts{};
-  /// If set, every episode draws a storm and follows it instead of `track`, which then holds the
-  /// first storm as recorded.
+  /// If set, every episode draws a storm, which the disaster follows instead of `track`. `track`
+  /// then contains the first storm for training, as recorded.
   std::optional<StormsSpec> storms{};
   /// Min wind in each ring [kn], strongest first, one per risk; empty if unknown. Pictures label
   /// the rings with it; it has no other effect.
@@ -148,7 +148,7 @@ struct DisasterSpec {
   std::string name{};
 };
 
-/// Returns the risks of the rings for grades 1 to 4: grade_risks if set, else risks times each of
+/// Returns the risks of the rings for grades 1 to 4: grade_risks if set, else `risks` times each of
 /// grade_factors, clamped to [kWorstRisk, kMildestRisk]. Empty if both are unset.
 GradeRisks RisksByGrade(const DisasterSpec& disaster);
 
@@ -198,15 +198,15 @@ struct EnergySpec {
   EnergyFigures self_propelled;  ///< for self-propelled devices; per_device has no effect
 };
 
-/// Values and prices in a currency. farm/accounts.h explains what they are used for. They are not
-/// part of rewards and observations.
+/// Values and prices in a currency, used by the equations of farm/accounts.h. They do not affect
+/// rewards and observations.
 struct MoneySpec {
   std::string currency{"CNY"};                           ///< name of the unit; has no effect
   std::array<double, kDeviceKindCount> device_values{};  ///< insured value by DeviceKind
   double ship_hour{};       ///< price of an hour in which a rescue ship is not moored in a port
   double kwh{};             ///< price of a kWh of energy
   double at_sea_loss{1.0};  ///< share of a device's remaining value that is lost if the device is
-                            ///< at sea when the episode ends, [0, 1]
+                            ///< not in a port when the episode ends, [0, 1]
 };
 
 /// Observation settings of the agents (§2.3).
@@ -226,13 +226,14 @@ struct ViewSpec {
   /// Sensor radius of deployed monitoring devices, which observe for all ships in partial view
   /// [cells]; 0: they observe nothing.
   float monitoring_radius{};
-  /// Mean error of a disaster's forecast position after 24, 48 and 72 hours [km]. Agents observe a
-  /// forecast track with this mean error; the disaster itself follows its track. If empty, agents
-  /// observe issued forecasts or, without them, the current motion. See forecast.h.
+  /// Mean error of a disaster's forecast position after 24, 48 and 72 hours [km]. If not empty,
+  /// agents observe a forecast track with this mean error; the disaster itself follows its track.
+  /// Issued forecasts take precedence. If empty and without an issued forecast, agents observe the
+  /// current motion. See forecast.h.
   std::vector<float> forecast_error_km{};
-  /// Number of disaster slots in addition to one per disaster of the scenario, for disasters that
-  /// arrive during an episode; see observation/disaster_slots.h. If 0, the features have no slots
-  /// and contain the scenario's own disasters by id.
+  /// Number of disaster slots in addition to one per disaster of the scenario. They serve disasters
+  /// that arrive during an episode; see observation/disaster_slots.h. If 0, there are no slots, and
+  /// the features contain the scenario's own disasters by id.
   std::int32_t disaster_slots{};
   /// Lead times of the forecast positions in a slot [hours], ascending.
   std::vector<float> forecast_leads_h{};
@@ -240,7 +241,7 @@ struct ViewSpec {
 
 /// A field of the sea on the cells of a farm, read from netCDF or given in the scenario.
 struct SeaLayer {
-  std::string name;           ///< for expressions and topics: a-z, 0-9 and _, a letter first
+  std::string name;           ///< in expressions and topics: a-z, 0-9, _; starts with a letter
   std::string units;          ///< units given by the source; may be empty
   std::vector<float> values;  ///< [H, W] from the south-west; NaN: land or unknown
 };
@@ -251,7 +252,7 @@ struct SeaSpec {
   /// Risk at each cell without disasters, [H, W]: 0, NaN (unknown) or a number in [-20, -5]. Empty
   /// if unset.
   std::vector<float> risk;
-  /// Value of a device that is placed at the cell, [H, W]; NaN: drawn from DeviceSpec::value.
+  /// Value of a device at the cell, [H, W]; NaN: the value is drawn from DeviceSpec::value.
   /// DeviceSite::value overrides it. Empty if unset.
   std::vector<float> device_value;
 };
@@ -260,14 +261,14 @@ struct SeaSpec {
 struct FamilySpec {
   Range<std::int32_t> width{12, 60};   ///< [cells]
   Range<std::int32_t> height{12, 60};  ///< [cells]
-  Range<std::int32_t> islands{0, 8};   ///< blocks, each at most a fifth of a side
+  Range<std::int32_t> islands{0, 8};   ///< blocks; their sides are at most a fifth of the map's
   float coast_share{0.3F};             ///< share of ranches with a coast along one side
   Range<float> rocks{0.0F, 0.06F};     ///< share of the cells
   Range<std::int32_t> devices{1, 10};
   Range<std::int32_t> ports{1, 6};
   Range<std::int32_t> capacity{1, 3};
   Range<std::int32_t> disasters{0, 4};
-  float storm_share{0.0F};  ///< share of ranches with the scenario's disasters, not generated ones
+  float storm_share{0.0F};  ///< share of ranches with the scenario's own disasters
   Range<float> exposure_damage{0.0F, 0.002F};  ///< range of DamageSpec::exposure_damage
 };
 
@@ -299,8 +300,8 @@ struct Scenario {
   std::optional<MoneySpec> money;    ///< if unset, episodes have no accounts
   std::optional<FamilySpec> family;  ///< if set, every episode draws another ranch; see family.h
 
-  /// HashScenario of this scenario, set by the reader; equal for equivalent files. DrawRanch sets a
-  /// hash that identifies the ranch.
+  /// HashScenario of this scenario, set by the reader. Equal for files with the same parameters.
+  /// DrawRanch sets another hash, which identifies the ranch.
   std::uint64_t hash{};
 
   std::int32_t CellCount() const { return width * height; }
@@ -318,8 +319,8 @@ struct Scenario {
   std::int32_t SelfPropelledCount() const;
   /// Number of devices that a ship must fetch.
   std::int32_t FetchableCount() const { return devices.Total() - SelfPropelledCount(); }
-  /// Number of ships and self-propelled devices, which is the number of actions per step. Rescue
-  /// ships come first.
+  /// Number of rescue ships and self-propelled devices, which is the number of actions per step.
+  /// Rescue ships come first.
   std::int32_t AgentCount() const { return ships.count + SelfPropelledCount(); }
 };
 

@@ -13,8 +13,8 @@ namespace aquafarm {
 ///         whose message lists the valid keys.
 Scenario LoadScenario(const std::string& path);
 
-/// Reads a scenario from text, without notices. `origin_name` replaces the file name in messages;
-/// paths in the text are relative to its folder.
+/// Reads a scenario from text as LoadScenario does, but prints no notices. `origin_name` replaces
+/// the file name in messages. Paths in the text are relative to the folder of `origin_name`.
 Scenario ParseScenario(const std::string& text, const std::string& origin_name);
 
 /// Writes every used parameter of a scenario, in a fixed order and in grid units.
@@ -23,13 +23,13 @@ Scenario ParseScenario(const std::string& text, const std::string& origin_name);
 /// @param old_names whether renamed keys get the names of version 0.1.0
 std::string ToYaml(const Scenario& scenario, bool old_names = false);
 
-/// Returns a hash of the parameters that affect episodes: HashBytes of ToYaml without the names and
-/// descriptions of the scenario and its disasters and without winds. ParseScenario stores it in
+/// Returns a hash of the parameters that affect episodes. It is HashBytes of ToYaml with old names,
+/// without names, descriptions, and the winds of rings and waypoints. ParseScenario stores it in
 /// Scenario::hash.
 std::uint64_t HashScenario(const Scenario& scenario);
 
 /// Converts a time to UTC seconds since 1970. The format is YYYY-MM-DDTHH:MM[:SS] followed by a
-/// zone, Z or ±HH:MM.
+/// zone: Z or ±HH:MM.
 /// @param name name of the option or column, for the message
 /// @throws InputError if `text` is not such a time or has no zone
 std::int64_t ParseUtc(const std::string& name, const std::string& text);

@@ -5,11 +5,11 @@
 ///
 ///   value(time, depth, lat, lon) ── nearest time and depth ── window around the ranch ── Layer
 ///
-/// Packed values are unpacked with scale_factor and add_offset. Values become NaN (land or unknown)
-/// if, in packed form, they equal _FillValue (or netCDF's default for the type) or missing_value,
-/// or lie outside valid_range or valid_min … valid_max. Latitude may ascend or descend. Longitude
-/// may be in [-180, 180] or [0, 360]. Depth may be positive down or up. Curvilinear grids cause an
-/// error.
+/// Packed values are unpacked with scale_factor and add_offset. A value becomes NaN (land or
+/// unknown) if its packed form equals _FillValue or missing_value, or lies outside valid_range or
+/// valid_min … valid_max. Without _FillValue, netCDF's default for the type applies. Latitude may
+/// ascend or descend. Longitude may be in [-180, 180] or [0, 360]. Depth may be positive down or
+/// up. Curvilinear grids cause an error.
 
 #include <array>
 #include <limits>
@@ -22,13 +22,13 @@
 
 namespace aquafarm {
 
-/// Value of a field on land and where the file has none.
+/// Value of a field on land and where the file has no value.
 inline constexpr float kNoSeaValue = std::numeric_limits<float>::quiet_NaN();
 
 /// Selects the field to read from a file.
 struct SeaFieldChoice {
   std::string variable;  ///< name or standard_name
-  /// UTC [s since 1970]; selects the nearest time. If unset, the first time of the file.
+  /// UTC [s since 1970]: selects the nearest time. If unset: selects the first time of the file.
   std::optional<std::int64_t> time;
   double depth_m{};  ///< depth below the surface; selects the nearest depth
 };
@@ -38,11 +38,12 @@ struct SeaField {
   std::string name;                  ///< name of the variable
   std::string units;                 ///< the variable's attribute `units`; "" if absent
   std::optional<std::int64_t> time;  ///< time of the values, UTC; nullopt if the file has no time
-  std::optional<double> depth_m;     ///< depth of the values; nullopt without a depth in metres
+  std::optional<double> depth_m;     ///< depth of the values; nullopt if unknown
   std::vector<double> latitude;      ///< ascending [degrees]
-  std::vector<double> longitude;     ///< ascending [degrees], shifted to the ranch's range
+  std::vector<double> longitude;     ///< ascending [degrees], shifted by 0 or ±360
   Grid<float> value;                 ///< [latitude, longitude]; NaN: land or unknown
-  /// South, north, west and east of the whole file [degrees], with longitudes shifted as above.
+  /// South, north, west and east of the whole file [degrees]. West and east are shifted as
+  /// `longitude`.
   std::array<double, 4> extent{};
 };
 
@@ -56,9 +57,9 @@ using Layer = Grid<float>;
 SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, const GeoFrame& frame,
                       std::int32_t width, std::int32_t height);
 
-/// Interpolates the field bilinearly at the centre of each cell. Values of NaN are left out of the
-/// weighted mean of the four values. A cell is NaN if all four values are NaN, or if its centre is
-/// more than half a grid step outside the field.
+/// Interpolates the field bilinearly at the centre of each cell: a weighted mean of four values.
+/// NaN values are left out of the mean. A cell is NaN if all values with a weight are NaN, or if
+/// its centre is more than half a grid step outside the field.
 Layer ToLayer(const SeaField& field, const GeoFrame& frame, std::int32_t width,
               std::int32_t height);
 

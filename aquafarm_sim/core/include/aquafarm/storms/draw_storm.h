@@ -17,14 +17,15 @@ struct DrawnStorm {
   StormErrors errors;
 };
 
-/// Returns the storms from which a seed draws: those of the evaluation years for an evaluation seed
-/// (rng.h), else those of the years for training.
+/// Returns the storms from which a seed draws. An evaluation seed (rng.h) draws from the evaluation
+/// years, and another seed from the years for training.
 const std::vector<ArchivedStorm>& StormsOf(const StormsSpec& storms, std::uint64_t seed);
 
 /// Draws one of StormsOf with equal probability, and its displacement. The displaced storm is
-/// closest to (x, y) at storms.approach_h hours after step 0, plus or minus at most
+/// closest to (x, y) storms.approach_h hours after step 0, plus or minus at most
 /// perturbation.start_h.
-/// @param disaster id of the disaster @param x, y middle of the farm [cells]
+/// @param disaster id of the disaster
+/// @param x, y middle of the farm [cells]
 DrawnStorm DrawStorm(const StormsSpec& storms, std::uint64_t seed, std::uint64_t episode,
                      std::int32_t disaster, double x, double y);
 

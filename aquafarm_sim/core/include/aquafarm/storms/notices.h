@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Reads files that announce hazards at a place and a time, without a storm: warnings of a weather
-/// service (JSON with "warning") and anchorage forecasts of Zhoushan (JSON with "anchors"). Both
-/// become notices; docs/data.md lists the fields that are not read.
+/// Reads warnings of a weather service (JSON with "warning") and anchorage forecasts of Zhoushan
+/// (JSON with "anchors"). Each becomes a notice: a hazard at a place for a period. docs/data.md
+/// lists the fields that are not read.
 
 #include <cstdint>
 #include <optional>
@@ -22,20 +22,20 @@ struct Notice {
   std::optional<double> wind_mps;    ///< mean wind
   std::optional<double> gust_mps;    ///< max gust
   std::optional<double> wave_max_m;  ///< upper end of the range of wave heights
-  std::int32_t suitability{};        ///< worst of the four ratings of the anchorage, 4 suitable …
-                                     ///< 1 severe; 0 if not given
+  std::int32_t suitability{};        ///< worst of the anchorage's ratings, from 4 (suitable) to 1
+                                     ///< (severe); 0 if not given
 };
 
 struct NoticeFile {
   std::vector<Notice> notices;        ///< in the order of the file
-  std::vector<std::string> warnings;  ///< repairs: "file:line: what was done"
+  std::vector<std::string> warnings;  ///< "file:line: …"
 };
 
 /// Reads a file of warnings or of anchorage forecasts. Cancelled warnings are left out.
 /// @throws InputError "file:line: warning[0].endTime: got '…', expected a time"
 NoticeFile LoadNotices(const std::string& path);
 
-/// Reads a text as LoadNotices reads a file; `origin_name` replaces the file name in messages.
+/// As LoadNotices, for a text; `origin_name` replaces the file name in messages.
 NoticeFile ParseNotices(const std::string& text, const std::string& origin_name);
 
 /// Returns a description, such as "大风 of 上海中心气象台, grade 1, from … to …".

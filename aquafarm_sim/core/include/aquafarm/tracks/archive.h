@@ -9,9 +9,10 @@
 ///   storm 2106 2 CMA | In-Fa
 ///   202107250600 30 122.2 TY 33 970 34=300,200,200,250 50=100,100,80,100
 ///
-/// A line `storm` has the id, the averaging period of the winds [min], the agency and the name. A
-/// fix has the time (UTC), latitude, longitude, grade, wind [m/s], pressure [hPa], and the radii
-/// [km] of each ring that the source gives. "-" replaces an unknown wind or pressure.
+/// A line `storm` has the id, the averaging period of the winds [min], the agency and the name. The
+/// next lines are its fixes. A fix has the time (UTC), latitude, longitude, grade, wind [m/s],
+/// pressure [hPa], and the radii [km] of each ring that the source gives. "-" replaces an unknown
+/// wind or pressure.
 
 #include <string>
 #include <vector>
@@ -20,9 +21,10 @@
 
 namespace aquafarm {
 
-/// Returns a track with the content and the precision that an archive stores: times in minutes,
-/// positions to 0.001 degrees; winds, pressures and radii to 0.1; one averaging period for all
-/// fixes. Motion, estimated rings, forecasts and landfalls are left out.
+/// Returns a track with the content and the precision of an archive: times in minutes; positions to
+/// 0.001 degrees; winds, pressures and radii to 0.1; one averaging period for all fixes. Everything
+/// that an archive does not store is left out, such as motion, estimated rings, forecasts and
+/// landfalls.
 StormTrack Archived(const StormTrack& track);
 
 /// Writes tracks as the text of an archive. ParseStormFile reads the tracks of Archived from it and

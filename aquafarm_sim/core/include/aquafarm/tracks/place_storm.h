@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Places a storm on a farm, displaced by errors: as a member of an ensemble, or as the storm that
-/// an episode draws from an archive. Without errors, the result is the recorded storm. Results are
-/// bit-identical on every machine.
+/// Places a storm on a farm, displaced by errors. The result is a member of an ensemble, or the
+/// storm that an episode draws from an archive. Without errors, the result is the recorded storm.
+/// Results are bit-identical on every machine.
 
 #include <vector>
 
@@ -22,23 +22,25 @@ struct StormErrors {
   double size_factor{1.0};  ///< multiplies every radius
 };
 
-/// Places storms and reuses memory: Place does not allocate if it has placed a path with as many
-/// points into the same vector before.
+/// Places storms and reuses memory. Place does not allocate if it has placed a path with as many
+/// points and rings into the same vector before.
 class StormPlacer {
  public:
   /// Computes the waypoints of a displaced storm.
   ///
   /// If the wind changes, the grade becomes that of the new wind, and the rings change:
-  ///   - A radius is multiplied by the ratio of EstimateRadius for the new and for the old wind.
-  ///   - A ring whose wind the storm no longer reaches gets radius 0.
-  ///   - A ring whose wind the storm newly reaches gets the radius of EstimateRadius times the
-  ///     ratio of recorded to estimated radius of the next weaker ring that has both, else times
-  ///     StormPoint::size.
-  ///   - A ring with StormPoint::keeps_radii and a radius above 0 does not change.
-  /// Rings of a fix without a known wind do not change either. size_factor then multiplies all
-  /// radii. The order of the fixes in time does not change: each fix stays later than the previous
-  /// one.
-  /// @param errors empty for no errors, one entry for all fixes, or one entry per fix of the path
+  ///    - A radius is multiplied by the ratio of EstimateRadius for the new wind to that for the
+  ///      old wind.
+  ///    - A ring whose wind the storm no longer reaches gets radius 0.
+  ///    - A ring whose wind the storm newly reaches gets the radius of EstimateRadius times a
+  ///      ratio. The ratio is the recorded radius to the estimated radius of the next weaker ring
+  ///      that has both. If there is no such ring, it is StormPoint::size.
+  ///    - A ring with StormPoint::keeps_radii and a radius above 0 does not change.
+  /// The rings of a fix without a known wind do not change either. size_factor then multiplies all
+  /// radii, and no ring extends beyond one of a weaker wind. The order of the fixes in time does
+  /// not change: each fix stays later than the previous one.
+  /// @param errors no entry: no errors; one entry: for all fixes; else one entry per fix of the
+  ///   path
   /// @param risks of the rings for grades 1 to 4, worst first. If a row has fewer risks than the
   ///   storm has rings, the innermost rings share its first risk. If it has more, its last risks
   ///   apply.

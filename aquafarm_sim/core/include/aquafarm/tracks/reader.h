@@ -16,7 +16,7 @@ namespace aquafarm {
 struct StormFile {
   TrackFormat format{};
   std::vector<StormTrack> tracks;     ///< at least one, in the order of the file
-  std::vector<std::string> warnings;  ///< repairs: "file:line: what was done"
+  std::vector<std::string> warnings;  ///< "file:line: …", for example about points left out
 };
 
 /// Reads a file of tracks and detects its format.
@@ -24,12 +24,12 @@ struct StormFile {
 ///   "CH2021BST.txt:12: latitude: got 950, expected [-900, 900]"
 StormFile LoadStormFile(const std::string& path);
 
-/// Reads a text as LoadStormFile reads a file; `origin_name` replaces the file name in messages.
+/// As LoadStormFile, for a text; `origin_name` replaces the file name in messages.
 StormFile ParseStormFile(const std::string& text, const std::string& origin_name);
 
 /// Returns the track with the given id or, if no id matches, with the given name. Case is ignored.
-/// @throws InputError if no track matches (the message lists those of the file), or if several
-///   tracks match (the message lists these)
+/// @throws InputError if no track matches (the message lists the tracks of the file), or if several
+///   tracks match (the message lists the matching ones)
 const StormTrack& FindTrack(const StormFile& file, const std::string& storm);
 
 }  // namespace aquafarm

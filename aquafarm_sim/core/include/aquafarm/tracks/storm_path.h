@@ -2,7 +2,7 @@
 #pragma once
 
 /// A storm in the units of a farm: its track and its rings in cells and steps. The path is computed
-/// once per storm and farm. StormPlacer (place_storm.h) then displaces it many times at low cost.
+/// once per storm and farm. StormPlacer (place_storm.h) displaces it many times at low cost.
 ///
 ///   StormTrack ──ToRings──> StormRings ──ToPath──> StormPath ──StormPlacer──> waypoints
 
@@ -26,17 +26,17 @@ struct StormPoint {
   double east{};  ///< (east, north): unit vector of the motion; (0, 1) without motion
   double north{1.0};
   double latitude{};  ///< [degrees]
-  double wind_mps{};  ///< if unknown, the lower limit of the grade; 0 if that is unknown, too
+  double wind_mps{};  ///< if unknown: lower limit of the grade; 0 if both are unknown
   std::int32_t averaging_min{};
   StormGrade grade{};
   std::array<double, kMaxStormRings> radius{};     ///< [cells], the strongest wind first
-  std::array<double, kMaxStormRings> median_km{};  ///< radius of EstimateRadius for the wind
+  std::array<double, kMaxStormRings> median_km{};  ///< EstimateRadius for `wind_mps`
   std::array<std::array<double, kQuadrantCount>, kMaxStormRings> quadrants{};  ///< [cells]
-  /// By ring: true if StormErrors of the wind do not change its radii, because they are reported or
-  /// are the larger radii of both ends of an interval (ToFineRings).
+  /// By ring: true if StormErrors of the wind do not change its radii. This applies to reported
+  /// radii, and to the larger radii of both ends of an interval (ToFineRings).
   std::array<bool, kMaxStormRings> keeps_radii{};
-  /// Ratio of the storm's radii to EstimateRadius. It scales rings of winds that the storm reaches
-  /// only with a changed wind.
+  /// Ratio of the storm's radii to EstimateRadius. It scales the rings of winds that the storm
+  /// reaches only after StormErrors changed its wind.
   double size{1.0};
 };
 
@@ -53,8 +53,8 @@ struct StormPath {
 /// Converts the part of a storm that is within 60 degrees of the frame's origin.
 /// @param storm with at least one waypoint and at most kMaxStormRings rings
 /// @param start_time UTC of step 0 of the path [s since 1970]
-/// @throws InputError for a storm that never comes within 60 degrees of the frame's origin, or that
-///   leaves this area and comes back
+/// @throws InputError if the storm never comes within 60 degrees of the frame's origin, or leaves
+///   this area and comes back
 StormPath ToPath(const StormRings& storm, const GeoFrame& frame, double cell_size_m,
                  double step_duration_s, std::int64_t start_time);
 
@@ -66,7 +66,8 @@ struct PathApproach {
 /// Returns the closest approach of a path to a point. The path is linear between fixes.
 /// @param path with at least one point
 /// @param x, y the point [cells]
-/// @param along, across displacement of every fix: forward and to the right of its motion [cells]
+/// @param along, across displacement of every fix: forward along its motion and to the right of it
+///   [cells]
 PathApproach ClosestApproach(const StormPath& path, double x, double y, double along = 0.0,
                              double across = 0.0);
 

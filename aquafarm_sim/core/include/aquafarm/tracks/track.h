@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Tropical cyclones as published by authorities. One type, StormTrack, represents all formats:
-/// best tracks, b-decks, archives and bulletins. reader.h reads tracks, and storms/to_disaster.h
+/// Tropical cyclones as published by authorities. StormTrack represents all formats, such as best
+/// tracks, b-decks, archives and bulletins. reader.h reads tracks, and storms/to_disaster.h
 /// converts them to disasters.
 ///
 ///      NW | NE        A wind ring has a radius for each quadrant: winds of at least `wind_kt` blow
@@ -56,7 +56,7 @@ inline constexpr int kQuadrantCount = 4;
 
 /// Extent of winds of at least `wind_kt`.
 struct WindRing {
-  std::int32_t wind_kt{};  ///< usually 34, 50, 64 (Beaufort 7, 10, 12), or 30 and 50 of the JMA
+  std::int32_t wind_kt{};  ///< usually 34, 50 and 64; for the JMA 30 and 50
   std::array<double, kQuadrantCount>
       radius_km{};   ///< NE, SE, SW, NW; 0 if the wind does not blow in the quadrant
   bool estimated{};  ///< estimated (EstimateRing in wind_radii.h) or derived from another ring
@@ -87,10 +87,10 @@ struct StormFix {
   const WindRing* Ring(std::int32_t wind_kt) const;
 };
 
-/// A forecast of a storm, as issued with one of its fixes.
+/// A forecast that was issued with one fix of a storm.
 struct StormForecast {
   std::string agency;           ///< as written, UTF-8
-  std::int64_t issued{};        ///< UTC [s since 1970]; the time of that fix
+  std::int64_t issued{};        ///< UTC [s since 1970]; the time of the fix
   std::vector<StormFix> fixes;  ///< sorted by time
 };
 
@@ -102,10 +102,10 @@ struct Landfall {
 
 /// One storm.
 struct StormTrack {
-  std::string id;          ///< unique in its file: "2106", "CMA3" (no number), "WP082014", a SID
-  std::string name;        ///< as written; empty if not given
-  std::string local_name;  ///< in the agency's language; empty if not given
-  std::string agency;      ///< agency whose positions these are
+  std::string id;               ///< unique in its file, such as "2106" or "WP082014"
+  std::string name;             ///< as written; empty if not given
+  std::string local_name;       ///< in the agency's language; empty if not given
+  std::string agency;           ///< agency whose positions these are
   std::vector<StormFix> fixes;  ///< sorted by time, each time once
   std::vector<StormForecast> forecasts;
   std::vector<Landfall> landfalls;  ///< sorted by time
@@ -117,8 +117,9 @@ struct StormTrack {
 /// TS, 2 for STS, 3 for TY, 4 for STY and SuperTY. This table is our choice.
 std::int32_t DisasterGrade(StormGrade grade);
 
-/// Computes headings and speeds that the source does not give, from the geodesic (WGS 84) to the
-/// next fix, and at the last fix from the geodesic from the previous one. A single fix gets none.
+/// Computes the headings and speeds that the source does not give. They follow from the geodesic
+/// (WGS 84) to the next fix, and for the last fix from that between the last two fixes. A single
+/// fix gets neither. A storm that does not move gets no heading.
 /// @param fixes sorted by time
 void ComputeMotion(std::vector<StormFix>& fixes);
 

@@ -14,8 +14,8 @@ namespace aquafarm {
 /// that quadrant.
 using QuadrantRadii = std::array<float, 4>;
 
-/// A timed waypoint of a disaster. Positions, radii and risks are interpolated between waypoints;
-/// the grade is that of the last waypoint passed.
+/// A waypoint of a disaster at a step. Positions, radii and risks are interpolated between
+/// waypoints. The grade is that of the last waypoint passed.
 struct Waypoint {
   float step{};  ///< steps since the episode's start; may be negative
   float x{};     ///< [cells]

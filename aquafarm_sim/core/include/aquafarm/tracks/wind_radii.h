@@ -19,30 +19,30 @@
 
 namespace aquafarm {
 
-/// Estimate of a radius. The standard deviation of ln(radius) is log_sigma.
+/// Estimate of a radius.
 struct RadiusEstimate {
   double median_km{};  ///< 0 if the wind does not blow anywhere in the storm
-  double log_sigma{};  ///< 0 if median_km is 0
+  double log_sigma{};  ///< standard deviation of ln(radius); 0 if median_km is 0
 };
 
 /// Estimates the radius within which winds of at least `wind_kt` blow.
 /// @param wind_kt 30, 34, 50 or 64
-/// @param storm_wind_mps max mean wind of the storm. The storm reaches wind_kt if this wind is at
-///   least 98 % of it, because the lower limits of the grades are rounded (TS from 17.2 m/s, which
-///   is 33.4 kt). Else the estimate is 0.
+/// @param storm_wind_mps max mean wind of the storm. The estimate is 0 if it is below 98 % of
+///   wind_kt. The 2 % allow for the rounded lower limits of the grades (TS from 17.2 m/s, which is
+///   33.4 kt).
 /// @param latitude [degrees], north or south
 /// @param averaging_min averaging period of the wind [min]: 10 selects the JMA, 1 the JTWC, another
 ///   number the CMA
 RadiusEstimate EstimateRadius(std::int32_t wind_kt, double storm_wind_mps, double latitude,
                               std::int32_t averaging_min);
 
-/// Returns RadiusEstimate::log_sigma of EstimateRadius for the storm's wind; if that is unknown
-/// (NaN or 0) or does not reach `wind_kt`, for a storm wind of `wind_kt`.
+/// Returns RadiusEstimate::log_sigma for the wind of a storm. If this wind is unknown (NaN or 0) or
+/// below `wind_kt`, returns that for a wind of `wind_kt`.
 double SizeSigma(std::int32_t wind_kt, double storm_wind_mps, double latitude,
                  std::int32_t averaging_min);
 
-/// Adds the ring of a wind, marked as estimated, to a fix that has no ring of this wind: a circle
-/// with the median radius of EstimateRadius.
+/// Adds the ring of a wind, marked as estimated, to a fix that has no ring of this wind. The ring
+/// is a circle with the median radius of EstimateRadius, which may be 0.
 /// @param wind_kt 30, 34, 50 or 64
 /// @returns whether a ring was added; false if the fix has such a ring or its wind is unknown
 bool EstimateRing(StormFix& fix, std::int32_t wind_kt);

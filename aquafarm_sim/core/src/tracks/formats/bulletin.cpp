@@ -152,8 +152,8 @@ bool IsAhead(std::int64_t time, std::int64_t observed, const std::string& path,
   }
   if (time < observed) {
     place.WarnValueOnce("forecast before", path,
-                        "got " + FormatTime(time) + ", expected a time after " +
-                            FormatTime(observed) + ", the issue; the point is left out");
+                        "got " + FormatTime(time) + ", expected at least " + FormatTime(observed) +
+                            ", the time of issue; the point is left out");
   }
   return time >= observed;
 }

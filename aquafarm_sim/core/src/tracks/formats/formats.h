@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The readers of tracks, one for each format. They add warnings to the parse context and throw
-/// InputError for invalid files.
+/// The readers of tracks, one for each format. They add warnings to the parse context, and throw
+/// InputError for an invalid file.
 
 #include <array>
 #include <string_view>

@@ -8,10 +8,10 @@ enum class ExitCode : int {
   kOk = 0,
   kInternal = 1,      ///< a bug in the suite
   kBadInput = 2,      ///< an argument, scenario, policy or checkpoint was refused
-  kStorage = 3,       ///< run folder in use, not writable, or disk full
+  kStorage = 3,       ///< a file cannot be written, or the run folder is in use
   kLost = 4,          ///< the farms were unreachable for too long; a training run is saved
   kDiverged = 5,      ///< learning failed; the last valid checkpoint is kept
-  kRankLost = 6,      ///< another rank of the training did not start or ended; checkpoints are kept
+  kRankLost = 6,      ///< another rank is missing or has ended; checkpoints are kept
   kInterrupted = 130  ///< stopped with Ctrl-C; a training run is saved
 };
 

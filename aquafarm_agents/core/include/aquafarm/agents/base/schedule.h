@@ -26,7 +26,7 @@ struct Schedule {
   ScheduleKind kind{ScheduleKind::kConstant};
   double start{};
   double end{};          ///< ignored by kConstant
-  double fraction{1.0};  ///< progress at which `end` is reached, (0, 1]; ignored by kConstant
+  double fraction{1.0};  ///< progress at which the value is `end`, (0, 1]; ignored by kConstant
 
   /// Returns the value at `progress`, the share of the run that is done, in [0, 1].
   double At(double progress) const;

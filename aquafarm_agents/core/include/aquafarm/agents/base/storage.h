@@ -17,11 +17,12 @@ class StorageError : public std::runtime_error {
 
 /// Writes a temporary file next to `path`, syncs it and renames it, so that `path` always contains
 /// either the complete old file or the complete new one.
-/// @throws StorageError; the temporary file is then removed. `path` is unchanged, unless only the
-///   final sync of its folder failed
+/// @throws StorageError. The temporary file is then removed. `path` has the new contents if only
+/// the
+///   sync of its folder failed, else the old contents
 void WriteFileAtomically(const std::string& path, std::string_view bytes);
 
-/// As above, for a file that consists of `parts` in this order. Does not join them in memory.
+/// As above, for a file that consists of `parts` in this order. The parts are not joined in memory.
 void WriteFileAtomically(const std::string& path, const std::vector<std::string_view>& parts);
 
 /// Removes all files of `folder` that end in ".tmp". WriteFileAtomically leaves such a file if its

@@ -10,7 +10,7 @@ namespace aquafarm::agents {
 
 /// Parses `text` as a finite number.
 /// @param what prefix of error messages
-/// @throws InputError "gamma: got 'x', expected a number" if any part of `text` is something else
+/// @throws InputError "gamma: got 'x', expected a number" if `text` is not a finite number
 double ParseNumber(const std::string& text, const std::string& what);
 
 /// Returns the shortest decimal text that parses back to the same number.

@@ -12,9 +12,9 @@
 /// The loss is (1 − β) L_inverse + β e with β = 0.2. Only L_inverse trains φ. In Pathak et al., e
 /// also trains φ, which shrinks features that are hard to predict.
 ///
-/// The learner receives r + w · min(e / ē, 5), where ē is a moving average of e. On any farm, the
-/// weight w is therefore about the mean intrinsic reward of a step, in units of reward. (η of
-/// Pathak et al. corresponds to w / ē. The division by ē follows Burda et al. 2019.)
+/// The learner receives r + w · min(e / ē, 5), where ē is a moving average of e. The weight w is
+/// therefore approximately the mean intrinsic reward of a step, on any farm. (η of Pathak et al.
+/// corresponds to w / ē. The division by ē follows Burda et al. 2019.)
 
 #include <cstdint>
 #include <memory>

@@ -8,9 +8,9 @@
 ///   loss = (y − Q(s, a))², or the Huber loss
 ///
 /// and LSTM-DQN (Algorithm 2): DQN with a recurrent network, trained from sequences of steps of one
-/// episode. The network first reads the burn_in steps before a sequence, starting with the
-/// recurrent state that was stored at the first of them. One forward pass computes the actions of
-/// all farms. DeepOptions lists the options.
+/// episode. The network first reads the burn_in steps before a sequence. It starts with the
+/// recurrent state that was stored at the first of these steps. One forward pass computes the
+/// actions of all farms. DeepOptions lists the options.
 
 #include <memory>
 #include <string>

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The only interface between learners and farms. An environment has N farms with S agents each;
-/// the farms run in this process or behind ROS services. Both give bit-identical transitions. A
-/// slot is one agent of one farm, with the index farm · S + agent.
+/// The only interface between learners and farms. An environment has N farms with S agents each.
+/// The farms run in this process or behind ROS services, with bit-identical transitions. A slot is
+/// one agent of one farm, with the index farm · S + agent.
 ///
 /// If the episode of a farm is over (its end reason is not kNone), the next Step ignores the
 /// actions of this farm and starts its next episode. In the results of that Step, the farm has
 /// is_first = 1, its rewards are 0, and its slots hold no transition.
 ///
 /// An agent may be done before its farm: a delivered self-propelled device is no longer active (as
-/// in PettingZoo's parallel API). Its last transition, the delivery, is terminal. After it the slot
-/// holds no transition of this agent until the next episode; its reward is 0, or the team's reward
-/// if the scenario has a team reward.
+/// in PettingZoo's parallel API). Its last transition, the delivery, is terminal. From then until
+/// the next episode, the slot holds no transition. Its reward is 0, or the team's reward if the
+/// scenario has a team reward.
 
 #include <cstdint>
 #include <stdexcept>
@@ -43,7 +43,7 @@ enum ObservationTypeBits : std::uint8_t {
 /// Static properties of the farms, available to a learner before it starts.
 struct EnvironmentSpec {
   std::string scenario_name;
-  std::string scenario_yaml;  ///< canonical text; stored in run folders and checkpoints
+  std::string scenario_yaml;  ///< canonical text of the scenario; run folders contain it
   std::uint64_t scenario_hash{};
   std::string version;
   std::int32_t farms{};
@@ -73,7 +73,7 @@ struct StepResults {
   }
 
   std::vector<float> rewards;             ///< [N, S]
-  std::vector<float> terms;               ///< [N, S, kRewardTermCount]; see kOwnRewardsBit
+  std::vector<float> terms;               ///< [N, S, kRewardTermCount]; see WantsOwnRewards
   std::vector<float> energy;              ///< [N, S] consumed in the step [kWh]
   std::vector<float> distance;            ///< [N, S] travelled in the step [km]
   std::vector<std::uint8_t> outcomes;     ///< [N, S] Outcome
@@ -133,14 +133,14 @@ class Environment {
 
   /// Serializes all farms, also in the middle of an episode.
   virtual std::string Save() = 0;
-  /// Restores saved farms, which continue bit-identically, and returns their current results with
-  /// an empty `finished`.
+  /// Restores saved farms, which continue bit-identically. Returns their current results, with an
+  /// empty `finished`.
   /// @throws InputError if the bytes do not match this environment; farms in this process are then
   ///   unchanged
   virtual const StepResults& Load(const std::string& bytes) = 0;
 
-  /// Returns true once after Step has started new episodes in all farms, because the sim node
-  /// restarted or another client changed its farms. The results of the last call are then first
+  /// Returns true once after a Step that started new episodes in all farms because the sim node had
+  /// restarted or another client had changed its farms. The results of that Step are first
   /// observations.
   virtual bool ConsumeRestart() { return false; }
 };

@@ -17,7 +17,7 @@ namespace aquafarm::agents {
 /// @throws InputError if none of 100 drawn ranches has a valid layout
 Farm MakeRanch(const Scenario& family, std::uint64_t seed, std::uint64_t episode);
 
-/// Environment whose farms play another ranch of a family in every episode. The start of an episode
+/// Environment whose farms play a new ranch of a family in every episode. The start of an episode
 /// allocates memory; other steps do not.
 class FamilyEnvironment final : public Environment {
  public:

@@ -11,7 +11,7 @@
 
 namespace aquafarm::agents {
 
-/// Which farms an environment has if several processes divide all farms among themselves.
+/// The farms of one environment, if several processes divide all farms among themselves.
 struct FarmShare {
   std::int32_t first{};  ///< index of the environment's first farm among all farms
   std::int32_t total{};  ///< number of all farms; 0 if the environment has all of them
@@ -61,7 +61,7 @@ inline FarmShare WholeOr(const FarmShare& share, std::int32_t farms) {
   return share.total == 0 ? FarmShare{0, farms} : share;
 }
 
-/// Returns which of `farms` farms a rank has.
+/// Returns the share of one rank.
 /// @param farms number of farms of all ranks
 /// @param rank [0, ranks)
 /// @param ranks number of processes that train together

@@ -32,11 +32,11 @@ struct Evaluation {
   double return_per_step{};  ///< sum of returns / sum of steps (paper §4.2, see docs/model.md)
   double success_rate{};     ///< fraction of episodes that delivered every device
   double mean_steps{};       ///< per episode
-  /// Health of the delivered devices, averaged over the episodes with a delivery; 0 if there is
-  /// none.
+  /// Health of the delivered devices, averaged over the episodes with a delivery; 0 if no device
+  /// was delivered.
   double mean_delivered_health{};
   double mean_crashes{};            ///< per episode
-  double mean_steps_in_disaster{};  ///< ship-steps at a risk, per episode
+  double mean_steps_in_disaster{};  ///< steps of all ships in cells with a risk, per episode
   double mean_energy{};             ///< of all ships per episode [kWh]
   double mean_distance{};           ///< of all ships per episode [km]
   double wall_s{};                  ///< duration of the evaluation [s]
@@ -55,15 +55,15 @@ struct Evaluation {
 /// Returns the accounts of a farm whose episode has just ended; nullopt without `money`.
 using AccountsOf = std::function<std::optional<Accounts>(std::int32_t farm)>;
 
-/// Plays episodes 0 … episodes − 1 of EvaluationSeed(seed). For a deterministic policy the result
-/// does not depend on the number of farms, except for the rounding of a network, which may differ
-/// between batch sizes.
+/// Plays episodes 0 … episodes − 1 of EvaluationSeed(seed). For a deterministic policy, the result
+/// does not depend on the number of farms, except that a network may round differently in another
+/// batch size.
 /// @param stop may be set by a signal handler; null if the evaluation cannot be stopped
 /// @param episodes at least 1
-/// @param on_progress called every 5 s with the number of finished episodes
+/// @param on_progress called about every 5 s with the number of finished episodes
 /// @param policy_seed seed of the policy's random numbers; by default that of the episodes
-/// @param accounts_of called once for each episode. If it is empty, `losses` is unset; through ROS
-///        services, accounts are not available
+/// @param accounts_of called once for each episode. If it is empty, `losses` is unset. Farms behind
+///        ROS services do not provide accounts
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
                     std::int32_t episodes, const std::atomic<bool>* stop = nullptr,
                     const std::function<void(std::size_t done)>& on_progress = {},

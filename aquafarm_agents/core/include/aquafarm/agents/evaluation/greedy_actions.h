@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Greedy action and value estimate of a policy when ship 0 is moved to each free cell. They give
-/// the arrows of Fig. 11 and the map of V_π.
+/// Greedy action and value estimate of a policy for each cell to which ship 0 can be moved. Fig. 11
+/// shows the actions as arrows. A map of V_π shows the values.
 
 #include <atomic>
 #include <cstdint>
@@ -32,7 +32,7 @@ std::string WhyNoBestMoves(const Scenario& scenario);
 /// row from the south-west. Other ships keep their cells. Empty if WhyNoBestMoves gives a reason or
 /// ship 0 is not active.
 /// @param policy is reset before it acts, so that a recurrent policy starts from an empty state
-/// @param stop if set, the cells so far are returned; null if the function cannot be stopped
+/// @param stop ends the function early if set; it then returns the cells so far. May be null
 /// @throws InputError if the scenario does not have the observation types
 std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t observation_types,
                                         Policy& policy, const std::atomic<bool>* stop = nullptr);

@@ -10,12 +10,12 @@
 ///   general loss distributions", Journal of Banking & Finance 26, 2002).
 ///
 /// Episodes with equal starts are not independent. The standard error is therefore cluster-robust,
-/// and the intervals come from a cluster bootstrap: distinct starts are drawn with replacement,
-/// each with all its episodes, and the interval reaches from the 2.5 % to the 97.5 % percentile
-/// (Davison and Hinkley, "Bootstrap Methods and their Application", 1997, sections 3.8 and 5.3). If
-/// all starts are distinct, these are the ordinary standard error and bootstrap. The intervals of
-/// CVaR are somewhat too short if few episodes are in the tail. Equal episodes with equal seeds
-/// give equal intervals.
+/// and the intervals come from a cluster bootstrap. It draws distinct starts with replacement, each
+/// with all its episodes. The interval reaches from the 2.5 % to the 97.5 % percentile (Davison and
+/// Hinkley, "Bootstrap Methods and their Application", 1997, sections 3.8 and 5.3). If all starts
+/// are distinct, these are the ordinary standard error and bootstrap. The intervals of CVaR are
+/// somewhat too short if few episodes are in the tail. Equal episodes with equal seeds give equal
+/// intervals.
 
 #include <array>
 #include <cstddef>
@@ -28,7 +28,7 @@
 
 namespace aquafarm::agents {
 
-/// VaR and CVaR are of the worst 1 / kTailInverse of the episodes.
+/// VaR and CVaR describe the worst 1 / kTailInverse of the episodes.
 inline constexpr std::size_t kTailInverse = 20;
 
 /// An estimate with its 95 % interval, which is NaN for fewer than two distinct starts.

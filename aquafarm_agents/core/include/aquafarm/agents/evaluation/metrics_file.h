@@ -9,7 +9,7 @@
 
 namespace aquafarm::agents {
 
-/// Returns the names of the CSV columns of an EpisodeSummary that files of every version have,
+/// Returns the names of the CSV columns of an EpisodeSummary that files of every version contain,
 /// separated by commas.
 std::string EpisodeColumns();
 /// Returns the names of the columns that were added after version 0.1.0, each after a comma. They

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// V_π measured by rollouts (Fig. 10, Eq. 10). For each cell, an episode that starts with ship 0 in
-/// that cell is played to its end. The value of the cell is the return of all agents, discounted on
-/// request. This is a measured return, not an estimate of a network, so it also exists for
-/// planners.
+/// V_π measured by rollouts (Fig. 10, Eq. 10). For each cell, an episode is played that starts with
+/// ship 0 in that cell. The value of the cell is the return of all agents, discounted on request.
+/// It is measured, not estimated by a network, so planners have it, too.
 
 #include <atomic>
 #include <memory>
@@ -30,13 +29,14 @@ struct RolloutValues {
   std::vector<Cell> devices;  ///< cells of the devices at the start of the first episode
 };
 
-/// Plays the `episodes` episodes of EvaluationSeed(seed) from number `episode` on, from every free
-/// cell.
+/// Plays `episodes` episodes of EvaluationSeed(seed), the first of which has the number `episode`.
+/// Each of them is played once from every free cell.
 /// @param scenario with at most kMaxCells cells; several episodes require a fixed layout
 /// @param stop may be set by a signal handler; the values are then invalid. Null if the function
 ///        cannot be stopped
 /// @param discount in [0, 1]
-/// @throws InputError if the scenario or the policy does not fit
+/// @throws InputError if the farm has too many cells, if several episodes are requested without a
+///   fixed layout, or if the policy does not fit the scenario
 RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario,
                          std::uint8_t observation_types, const MakePolicyFor& make_policy,
                          std::uint64_t seed, std::uint64_t episode, std::int32_t episodes,

@@ -63,7 +63,7 @@ class TabularModel {
   /// Returns V* by value iteration (Eq. 11), [rows()], without a step limit.
   /// @param discount in [0, 1]
   /// @throws InputError if the iteration does not converge, or if rewards depend on more than the
-  ///   tabular state: with disasters or damage
+  ///   tabular state: with disasters, crash damage, or damage by the risk of the sea
   std::vector<double> OptimalValues(double discount) const;
 
  private:
@@ -87,7 +87,9 @@ PolicyMatrix MakePolicyMatrix(const TabularModel& model, const std::vector<float
 /// @param checkpoint checkpoint of a tabular learner
 /// @param policy such as "epsilon_greedy:0.1" or "boltzmann:1"
 /// @param discount discount of V*
-/// @throws InputError if the checkpoint, the policy or the scenario does not fit; StorageError
+/// @throws InputError if the checkpoint, the policy or the scenario is not supported, or if
+///   OptimalValues does not converge
+/// @throws StorageError if a file cannot be written
 void WriteMatrices(const std::string& prefix, const Scenario& scenario,
                    const Checkpoint& checkpoint, const std::string& policy, double discount);
 

@@ -91,8 +91,8 @@ struct Checkpoint : CheckpointInfo {
   /// Adds the sections of a part, such as the learner of one agent, with `prefix` before their
   /// names.
   void AddPart(const std::string& prefix, Checkpoint&& part);
-  /// Returns a checkpoint with the sections that AddPart added with `prefix`, and with the metadata
-  /// of this checkpoint.
+  /// Returns a checkpoint with the metadata of this one and with the sections that AddPart added
+  /// with `prefix`. Their names are those without the prefix.
   Checkpoint Part(const std::string& prefix) const;
 
  private:
@@ -112,16 +112,17 @@ Checkpoint ReadCheckpoint(const std::string& path);
 
 /// Checks that a training with the given settings can resume from a checkpoint.
 /// @param path file name of the checkpoint, for messages
-/// @throws InputError naming the difference
+/// @throws InputError that states the first difference
 void CheckContinues(const Checkpoint& checkpoint, const std::string& path,
                     const std::string& algorithm, const std::string& options, std::uint64_t seed,
                     const EnvironmentSpec& spec);
 
-/// Checks that a property of a policy equals that of the farms on which it plays.
+/// Checks that the policy and the farms on which it plays have the same value of a property.
 /// @param what name of the property, for the message
 /// @param got value of the policy
 /// @param expected value of the farms
-/// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
+/// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …" if the
+///   values differ
 void CheckFit(const Checkpoint& policy, const EnvironmentSpec& spec, const std::string& what,
               const std::string& got, const std::string& expected);
 void CheckFit(const Checkpoint& policy, const EnvironmentSpec& spec, const std::string& what,

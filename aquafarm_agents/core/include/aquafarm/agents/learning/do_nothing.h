@@ -8,7 +8,8 @@
 
 namespace aquafarm::agents {
 
-/// Policy with which every ship holds its cell in every step. Rescues are compared with it.
+/// Policy with which every ship holds its cell in every step. Its losses are the reference for what
+/// a rescue saves.
 class DoNothingPolicy final : public Policy {
  public:
   explicit DoNothingPolicy(const EnvironmentSpec& spec)

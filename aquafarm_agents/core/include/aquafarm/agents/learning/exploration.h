@@ -57,13 +57,14 @@ enum class ExplorationOf : std::uint8_t {
 /// Parses "epsilon_greedy", "boltzmann" or "entropy", alone or with a schedule:
 /// "epsilon_greedy:0.1", "boltzmann:exponential:10:0.5:0.5", "entropy:linear:0.02:0:1". The prefix
 /// "icm+" adds curiosity, optionally with a schedule of its weight: "icm+epsilon_greedy:0.1",
-/// "icm:linear:2:0:0.5+boltzmann".
+/// "icm:linear:2:0:0.5+boltzmann". The text "icm" alone means "icm+entropy" for kPolicies, else
+/// "icm+epsilon_greedy".
 /// @param learners kind of the learner that explores
 /// @throws InputError if `text` has another form, names a strategy that `learners` do not accept,
 ///   or has a value out of range
 ExplorationOptions ParseExploration(const std::string& text,
                                     ExplorationOf learners = ExplorationOf::kValues);
-/// Returns the text from which ParseExploration reads the same options.
+/// Returns a text from which ParseExploration reads the same options.
 std::string ToString(const ExplorationOptions& options);
 
 /// A greedy action and its value.
@@ -74,7 +75,7 @@ struct Best {
 
 /// Returns the greedy action among the allowed ones. Ties go to the lowest action number.
 /// @param values [kActionCount]
-/// @param allowed at least one bit of kAllActions
+/// @param allowed mask with at least one action
 inline Best BestOf(const float* values, ActionMask allowed) {
   Best best{0, -std::numeric_limits<float>::infinity()};
   if (allowed == kAllActions) {  // the common case, without a branch per action
@@ -95,22 +96,23 @@ inline Best BestOf(const float* values, ActionMask allowed) {
 }
 
 /// Draws one of the allowed actions, each with the same probability.
-/// @param allowed at least one bit of kAllActions
+/// @param allowed mask with at least one action
 std::uint8_t DrawAction(ActionMask allowed, RandomStream& stream);
 
 /// Returns the action probabilities of Eq. 8 with temperature T. Forbidden actions have probability
 /// 0. No intermediate result overflows.
 /// @param values [kActionCount], finite
-/// @param allowed at least one bit of kAllActions
-/// @param temperature above 0, on the scale of the values
+/// @param allowed mask with at least one action
+/// @param temperature above 0, in the unit of `values`
 std::array<double, kActionCount> BoltzmannProbabilities(const float* values, ActionMask allowed,
                                                         double temperature);
 
 /// Chooses exploratory actions. A restored explorer continues bit-identically.
 class Explorer {
  public:
-  /// @param slots farms × agents; slot i draws from stream i of (seed, exploration)
-  /// @param value_scale scale of the values passed to Choose, per unit of reward
+  /// @param slots farms × agents; slot i draws from stream i of (seed, RngStream::kExploration)
+  /// @param value_scale factor that converts rewards to the unit of the values passed to Choose. It
+  ///   multiplies the temperature
   Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t slots,
            double value_scale = 1.0);
 
@@ -131,7 +133,7 @@ class Explorer {
   }
 
   void Save(Checkpoint& checkpoint) const { streams_.Save(checkpoint); }
-  /// @throws InputError if the number of slots differs
+  /// @throws InputError as AgentRng::Load
   void Load(const Checkpoint& checkpoint) { streams_.Load(checkpoint); }
 
  private:

@@ -21,8 +21,8 @@ class LearnerFailed : public std::runtime_error {
 
 /// Training statistics of a learner.
 struct LearnerStatus {
-  float loss{};  ///< moving average of the squared error of the values [reward²]; NaN before
-                 ///< the first update
+  float loss{};  ///< moving average of the squared error of the learned values [reward²]; NaN
+                 ///< before the first update
   float exploration{};  ///< ε, temperature, or the mean entropy of the policy [nats]
   float learning_rate{};
 };
@@ -42,7 +42,7 @@ class Learner {
   /// Learns from the transitions that ended in `results`, then chooses the next exploratory
   /// actions. Farms with is_first = 1 have no transition and are skipped. Targets bootstrap after
   /// truncation, but not after termination.
-  /// @param progress of the run, [0, 1]; drives the schedules
+  /// @param progress fraction of the run that is done, [0, 1]; determines the schedules
   /// @param actions is resized to [N, S]
   /// @throws LearnerFailed if learning cannot continue
   virtual void Step(const StepResults& results, double progress,
@@ -51,12 +51,12 @@ class Learner {
   /// Returns the current training statistics.
   virtual LearnerStatus status() const = 0;
 
-  /// Returns the current greedy policy as a copy, which the learner no longer changes.
+  /// Returns a copy of the current greedy policy. Later learning does not change the copy.
   virtual std::unique_ptr<Policy> GreedyPolicy() const = 0;
 
-  /// Adds the sections from which Algorithm::make_policy creates the greedy policy.
+  /// Adds the sections from which Algorithm::make_policy makes the greedy policy.
   virtual void SavePolicy(Checkpoint& checkpoint) const = 0;
-  /// Adds the complete state: a learner restored from it continues bit-identically.
+  /// Adds the complete state. A learner restored from it continues bit-identically.
   virtual void Save(Checkpoint& checkpoint) const = 0;
   /// Restores the state saved by Save. @throws InputError if sections are missing or do not fit
   virtual void Load(const Checkpoint& checkpoint) = 0;

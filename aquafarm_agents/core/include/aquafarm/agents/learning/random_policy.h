@@ -9,10 +9,12 @@
 
 namespace aquafarm::agents {
 
-/// The actions among which RANDOM draws.
+/// The actions among which the policy RANDOM draws (paper §4.2, see docs/model.md).
 enum class RandomActions : std::uint8_t {
-  kAll,        ///< every action, legal or not
-  kReachable,  ///< legal actions except moves onto a rock, an island or off the map (§4.2)
+  kAll,  ///< every action, legal or not
+  /// The legal actions. Moves onto a rock, onto an island or off the map are excluded, unless this
+  /// excludes every move.
+  kReachable,
 };
 inline constexpr int kRandomActionsCount = 2;
 std::string_view ToString(RandomActions value);
@@ -24,7 +26,7 @@ RandomActions ParseRandomActions(const std::string& options);
 /// @throws InputError as ParseRandomActions
 std::uint8_t RandomObservationTypes(const std::string& options);
 
-/// The policy RANDOM of §4.2: draws each action of RandomActions with the same probability.
+/// The policy RANDOM. It draws each action that RandomActions describes with the same probability.
 class RandomPolicy final : public Policy {
  public:
   explicit RandomPolicy(const EnvironmentSpec& spec, RandomActions actions = RandomActions::kAll)
@@ -49,7 +51,7 @@ class RandomLearner final : public Learner {
   /// @throws InputError on an unknown option or value
   RandomLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
   std::uint8_t observation_types() const override { return policy_.observation_types(); }
-  /// Returns an empty text for actions=all, as in checkpoints from before the option existed.
+  /// Returns an empty text for actions=all, because older checkpoints contain no options.
   std::string options() const override;
   void Step(const StepResults& results, double progress,
             std::vector<std::uint8_t>& actions) override;

@@ -2,8 +2,8 @@
 #pragma once
 
 /// Replay buffer: a ring of time steps. A time step contains one observation for each slot, that
-/// is, for each agent of each farm. Every observation is stored once: a transition consists of two
-/// consecutive time steps, a sequence of several.
+/// is, for each agent of each farm. Every observation is stored once, although it belongs to two
+/// transitions: a transition consists of two consecutive time steps.
 ///
 ///   time step     t            t+1          t+2
 ///   observation   o_t          o_t+1        o_t+2
@@ -27,7 +27,7 @@ namespace aquafarm::agents {
 /// Sum tree of priorities (Schaul et al. 2016, "Prioritized experience replay").
 class SumTree {
  public:
-  /// All priorities are 0 at first.
+  /// Makes a tree in which all priorities are 0.
   explicit SumTree(std::size_t leaves);
   void Set(std::size_t leaf, float priority);
   float Get(std::size_t leaf) const { return nodes_[leaves_ + leaf]; }
@@ -44,7 +44,7 @@ class SumTree {
 
 /// Sizes of a replay buffer.
 struct ReplayOptions {
-  std::size_t capacity{100000};    ///< transitions
+  std::size_t capacity{100000};    ///< max number of stored observations of single agents
   std::size_t slots{1};            ///< farms × agents
   std::int32_t agents{1};          ///< agents per farm
   std::size_t observation_size{};  ///< values per observation
@@ -60,7 +60,7 @@ struct Transition {
   float discount{};  ///< factor of the value at `to`; 0 after termination
 };
 
-/// A transition of all agents of a farm over n steps, or fewer if the episode ended or the farms
+/// A transition of all agents of a farm over n steps, or fewer if all agents are done or the farms
 /// were lost.
 struct JointTransition {
   std::size_t to{};  ///< row of the farm's first agent at the time step of the bootstrap value
@@ -88,35 +88,36 @@ class Replay {
   std::size_t slots() const { return options_.slots; }
 
   /// Returns whether a transition begins at this time step: at least `steps` later time steps are
-  /// stored, the agent is not done, and the next time step belongs to the same episode. (It does
-  /// not if the farms were lost in between.)
+  /// stored, the agent is not done, and the next time step belongs to the same episode. (The next
+  /// time step belongs to another episode if the farms were lost.)
   /// @param age number of time steps after the oldest stored one, [0, size())
   bool Begins(std::size_t age, std::size_t slot, std::size_t steps) const {
     return age + steps < size_ && end_reasons_[Row(age, slot)] == 0 &&
            is_first_[Row(age + 1, slot)] == 0;
   }
-  /// Returns whether Begins holds for any agent of a farm. @param first slot of the farm's first
-  /// agent
+  /// Returns whether Begins is true for any agent of a farm.
+  /// @param first slot of the farm's first agent
   bool BeginsForAny(std::size_t age, std::size_t first, std::size_t steps) const {
     for (std::size_t agent = 0; agent < static_cast<std::size_t>(options_.agents); ++agent) {
       if (Begins(age, first + agent, steps)) return true;
     }
     return false;
   }
-  /// Returns the transition over `steps` steps that begins at a time step. Begins must hold there.
+  /// Returns the transition over `steps` steps that begins at time step `age`. Begins must be true
+  /// for the same arguments.
   /// @param discount γ per step
   Transition At(std::size_t age, std::size_t slot, std::size_t steps, float discount) const;
 
-  /// Returns the transition of all agents of a farm over `steps` steps. BeginsForAny must hold
-  /// there.
+  /// Returns the transition of all agents of a farm over `steps` steps that begins at time step
+  /// `age`. BeginsForAny must be true for the same arguments.
   /// @param first slot of the farm's first agent
   /// @param discount γ per step
   /// @param rewards receives the discounted sum of each agent's rewards, [agents]
   JointTransition JointAt(std::size_t age, std::size_t first, std::size_t steps, float discount,
                           float* rewards) const;
 
-  /// Returns the row of the arrays with the data of a slot at a time step. The row does not change
-  /// while the time step is stored.
+  /// Returns the row of the arrays with the data of a slot at time step `age`. The row does not
+  /// change while the time step is stored.
   std::size_t Row(std::size_t age, std::size_t slot) const {
     return ((oldest_ + age) % max_size_) * options_.slots + slot;
   }

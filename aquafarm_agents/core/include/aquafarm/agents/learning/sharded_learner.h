@@ -11,9 +11,9 @@ namespace aquafarm::agents {
 /// process group.
 class ShardedLearner : public Learner {
  public:
-  /// Returns the interval, in calls of Step, at which the trainer counts steps, saves and ends. 1
-  /// with a single shard. With several shards it is the length of a rollout, so that the training
-  /// ends at the same step with any number of ranks.
+  /// Returns the number of calls of Step between two points at which the trainer may count steps,
+  /// save and end. The number is 1 for a single shard. For several shards it is the length of a
+  /// rollout, so that the training ends at the same step with any number of ranks.
   virtual std::uint32_t sync_interval() const = 0;
 };
 

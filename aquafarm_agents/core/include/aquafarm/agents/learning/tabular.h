@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Q-learning (Watkins; Eq. 12) and SARSA (Rummery and Niranjan; Eq. 14) over a table of floats:
+/// Q-learning (Watkins 1989; Eq. 12) and SARSA (Rummery and Niranjan 1994; Eq. 14) with a table of
+/// floats. The equations are those of the paper (docs/model.md):
 ///
 ///   Q(s, a) ← Q(s, a) + α (r + γ V(s') − Q(s, a))        V(s') = 0 after termination
 ///   Q-learning: V(s') = max_a' Q(s', a')         SARSA: V(s') = Q(s', a') of the chosen a'
 ///
-/// The two differ only in V. Both choose a' before the update. Each agent has one table for all
-/// farms, which it updates in the order of the farms. The last step of a truncated episode
-/// bootstraps like any other step.
+/// The algorithms differ only in V. Both choose a' before the update. Each agent has one table,
+/// which is updated with the transitions of all farms, in the order of the farms. The last step of
+/// a truncated episode bootstraps like any other step.
 
 #include <cstdint>
 #include <limits>
@@ -91,7 +92,7 @@ class TableLearner : public Learner {
   /// Updates the reported loss, a moving average. @param loss mean squared TD error of one step
   void AddLoss(float loss);
 
-  /// Value in pending_ of an agent that was not active, so that it has no last action.
+  /// Value in pending_ of an agent that has no last action, because it was not active.
   inline static constexpr auto kNoAction = std::numeric_limits<std::uint64_t>::max();
 
   std::string resolved_;

@@ -5,7 +5,7 @@
 
 namespace aquafarm::agents {
 
-/// A learner that can begin with the weights of a saved policy (fine-tuning).
+/// Interface of learners that can start with the weights of a saved policy (fine-tuning).
 class WarmStart {
  public:
   virtual ~WarmStart() = default;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// MADDPG (Lowe et al. 2017; §3.3) for discrete actions: each agent's actor reads its own
-/// observation. The critic, used only in training, reads all observations and actions.
+/// MADDPG (Lowe et al. 2017; paper §3.3, see docs/model.md) for discrete actions. The actor of an
+/// agent reads the agent's observation. The critic is used only in training. It reads the
+/// observations of all agents and the actions of the other agents.
 ///
 ///   o_i ─ actor i ─ logits ─ Gumbel-softmax ─ a_i       critic i (o_1 … o_S, a_others) → Q_i(a_i)
 ///
@@ -26,8 +27,8 @@
 
 namespace aquafarm::agents {
 
-/// Returns the observation types that MADDPG requires with these options. @throws InputError on a
-/// wrong option
+/// Returns the ObservationTypeBits that MADDPG requires with these options.
+/// @throws InputError on a wrong option
 std::uint8_t MaddpgObservationTypes(const std::string& options);
 /// Makes a MADDPG learner. @throws InputError on a wrong option
 std::unique_ptr<Learner> MakeMaddpg(const EnvironmentSpec& spec, std::uint64_t seed,

@@ -22,9 +22,10 @@ enum class LossKind : std::uint8_t { kHuber, kMse };
 inline constexpr int kLossKindCount = 2;
 std::string_view ToString(LossKind value);
 
-/// Hyperparameters of DQN, VDN and LSTM-DQN. The preset sets the defaults: *tuned* has values tuned
-/// on the shipped farms; *paper* has Eq. 15 and Algorithm 2 as printed, without any extension. The
-/// members are initialized with the tuned defaults of DQN.
+/// Hyperparameters of DQN, VDN and LSTM-DQN. The preset sets the defaults. *tuned* has values tuned
+/// on the shipped farms. *paper* has the values printed in Eq. 15 and Algorithm 2, disables the
+/// extensions, and keeps the tuned values of all other options. The members are initialized with
+/// the tuned defaults of DQN.
 struct DeepOptions {
   NetworkKind network{NetworkKind::kMlp};
   std::int32_t hidden_size{256};  ///< units of each hidden layer; for LSTM-DQN, units of the LSTM
@@ -37,27 +38,27 @@ struct DeepOptions {
   std::uint64_t learning_starts{5000};                    ///< farm steps before the first update
   std::uint64_t buffer_size{100000};                      ///< capacity in transitions
   std::uint64_t target_update_interval{250};  ///< updates between hard copies to the target network
-  double tau{0.0};  ///< rate of the soft target update in each update; 0: hard copies
+  double tau{0.0};  ///< weight of the online network in soft target updates; 0: hard copies
   LossKind loss{LossKind::kHuber};
   double max_grad_norm{10.0};  ///< max norm of the gradient; 0: no limit
 
-  // Extensions beyond §3.4.3, with their sources.
+  // Extensions of the paper's §3.4.3 (docs/model.md), with their sources.
   bool double_dqn{true};            ///< van Hasselt et al. 2016
   bool dueling{false};              ///< Wang et al. 2016
   std::int32_t n_step{1};           ///< Sutton 1988; 1 disables it
   double priority_exponent{0.6};    ///< exponent α of Schaul et al. 2016; 0: uniform
   double importance_exponent{0.4};  ///< initial exponent β of Schaul et al. 2016; rises to 1
   double reward_scale{0.05};        ///< factor of the rewards; 1: unscaled
-  /// Rate of a moving average of the weights, by which the agents then act (Polyak and Juditsky
-  /// 1992). For the first 1 / rate updates it is the arithmetic mean. 0 disables it.
+  /// Rate of a moving average of the weights (Polyak and Juditsky 1992). The agents act with the
+  /// average. For the first 1 / rate updates it is the arithmetic mean. 0 disables it.
   double ema_rate{0.0};
   /// α of advantage learning (Baird 1999; Bellemare et al. 2016): subtracts
   /// α · (max_a Q − Q(s, a)) from the target, so that approximation errors change the greedy action
   /// less often. 0 disables it.
   double action_gap{0.0};
-  /// Penalty on the value of an action during training [reward], for each time that the action was
-  /// already taken in the same situation (cell, load, remaining devices) of this episode; see
-  /// RepetitionPenalty. 0 disables it.
+  /// Penalty on the value of an action during training [reward]. It is subtracted for each time
+  /// that the agent took the action in the same situation of this episode; see RepetitionPenalty. 0
+  /// disables it.
   double repetition_penalty{0.0};
   bool mask_illegal{true};   ///< exclude illegal actions when acting and bootstrapping
   bool mask_blocked{false};  ///< also exclude moves onto a rock, an island or off the map
@@ -66,8 +67,8 @@ struct DeepOptions {
   std::int32_t sequence_length{4};  ///< training steps per sequence; 1 with paper_tuple
   std::int32_t burn_in{2};  ///< warm-up steps before a sequence, not trained on; 0 with paper_tuple
   bool skip_connection{true};  ///< skip connection around the LSTM; the paper has none
-  /// The option replayed=paper_tuple: replays single transitions and evaluates each end with the
-  /// recurrent state stored there, as Algorithm 2 prints it.
+  /// The option replayed=paper_tuple: replays single transitions, and evaluates each of the two
+  /// observations with the recurrent state stored for it, as in Algorithm 2.
   bool paper_tuple{};
 
   /// Train the sum of all agents' values instead of each value (VDN). Set by the algorithm, not by

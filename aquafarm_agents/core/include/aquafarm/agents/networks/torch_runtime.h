@@ -8,12 +8,12 @@
 
 namespace aquafarm::agents {
 
-/// Sets the number of threads of libtorch and of OpenBLAS. Call it before a network is made. If the
-/// BLAS is a slow one, TakeTorchWarning then returns a warning.
+/// Sets the number of threads of libtorch and of OpenBLAS. Must be called before a network is made.
+/// If the BLAS is the reference BLAS, which is slow, TakeTorchWarning then returns a warning.
 void PrepareTorch(std::int32_t threads);
 
-/// Returns the warning of PrepareTorch, one readable line, at the first call after it; empty at
-/// later calls or if there is no warning.
+/// Returns the warning of PrepareTorch as one readable line, and clears it. Returns an empty text
+/// if there is no warning.
 std::string TakeTorchWarning();
 
 /// Returns the libraries used by the networks, such as "libtorch 1.13.1, OpenBLAS 0.3.21 …

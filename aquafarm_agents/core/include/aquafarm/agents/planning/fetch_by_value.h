@@ -3,17 +3,17 @@
 
 /// Fetch by value: the rule of an operator who has no forecast. Ships choose in id order:
 ///
-///   - A ship with free capacity fetches the most valuable device that it can still bring to a port
-///     before the episode ends and that no other ship is fetching. Of equally valuable devices it
-///     fetches the nearest one.
-///   - A ship without such a device returns to the nearest port.
+///   - A ship with free capacity fetches the most valuable device that no other ship is fetching
+///     and that it can still bring to a port before the episode ends. Of equally valuable devices
+///     it fetches the nearest one.
+///   - If there is no such device, or no free capacity, the ship sails to the nearest port.
 ///   - A ship with devices aboard unloads in every port that it enters.
 ///
 /// The value of a device is its insured value (farm/accounts.h) if the scenario has money, else the
 /// value that the reward credits (Device::value). Routes are the shortest ones by water. The rule
-/// ignores disasters, except that the episode ends when all of them have ended. A ship fetches the
-/// chosen device until the device is aboard or can no longer be brought home in time. A
-/// self-propelled device sails to the nearest port.
+/// uses disasters only to compute the end of the episode: an episode ends with its last disaster,
+/// or at the step limit. A ship keeps its chosen device until the device is aboard, or can no
+/// longer be brought home in time. A self-propelled device sails to the nearest port.
 
 #include <cstddef>
 #include <cstdint>

@@ -17,28 +17,28 @@ namespace aquafarm::agents {
 /// Comparison over the episodes that could be planned.
 struct OptimumShare {
   std::size_t planned{};    ///< number of planned episodes
-  std::size_t too_large{};  ///< number of episodes with too many states or devices for a plan
+  std::size_t too_large{};  ///< number of episodes not planned: too many states or devices
   double mean_return{};     ///< mean return of the policy
   double mean_optimum{};    ///< mean return of the best plans
   double share{};           ///< mean_return / mean_optimum; 0 if no episode was planned
   /// Bounds of the 95 % interval of `share`, by bootstrap over episodes. Resamples whose mean
-  /// optimum is not positive are left out; NaN if none remains.
+  /// optimum is not positive are left out. NaN if no resample remains, 0 if no episode was planned.
   double low{};
   double high{};
   std::size_t solvable{};  ///< planned episodes in which the best plan delivers every device
   std::size_t solved{};    ///< solvable episodes in which the policy also delivered every device
 };
 
-/// Compares the returns of a policy with the best plans of the same episodes. The plans use the
-/// disasters' true future.
-/// @param episodes played by the policy, on farms with one ship
+/// Compares the returns of a policy with those of the best plans of the same episodes. The plans
+/// use the disasters' true future.
+/// @param episodes played by the policy, on farms with one agent
 /// @param make_farm makes the farm at the start of an episode
 /// @param max_states max number of states of a plan (Planner::state_count); an episode with more
 ///   states counts as too large
 /// @param seed of the bootstrap
 /// @param stop ends the comparison early if set; may be null
-/// @throws InputError if the mean return of the best plans is not positive, for several agents, or
-///   if the planner refuses the rewards
+/// @throws InputError if the mean return of the best plans is not positive, if a farm has several
+///   agents, or if the planner does not support the rewards
 OptimumShare CompareWithOptimum(
     const std::vector<EpisodeSummary>& episodes,
     const std::function<Farm(std::uint64_t seed, std::uint64_t episode)>& make_farm,

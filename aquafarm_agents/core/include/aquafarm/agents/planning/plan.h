@@ -23,10 +23,10 @@ enum class Foresight : std::uint8_t {
 };
 
 /// Cells and steps reserved for ships that already have a plan. The plan of another ship avoids
-/// them. In each step a ship reserves its own cell. It also reserves its cell of the next step
-/// against ships with a higher id, and its cell of the previous step against ships with a lower id,
-/// because ships move in id order. A planner does not query cells of ports, since any number of
-/// ships may share a port.
+/// them. In each step, a ship reserves its cell of this step against all ships. Since ships move in
+/// id order, it also reserves its cell of the next step against ships with a higher id, and its
+/// cell of the previous step against ships with a lower id. A planner does not query cells of
+/// ports, since any number of ships may share a port.
 class Reservations {
  public:
   void Clear() { taken_.clear(); }
@@ -51,8 +51,8 @@ class Reservations {
 /// The part of a farm's work that one ship does.
 struct Task {
   std::int32_t ship{0};  ///< id of the ship
-  /// Ids of the devices that the ship fetches or carries; for a self-propelled device its own id.
-  /// At most as many as the `max_devices` of the Planner.
+  /// Ids of the devices that the ship fetches or carries; for a self-propelled device, its own id.
+  /// The max number is the `max_devices` of the Planner.
   std::vector<std::int32_t> devices;
   /// Last step of the plan of a ship without devices, which only avoids risks. 0: the plan ends
   /// with the last delivery or with the episode.
@@ -60,8 +60,8 @@ struct Task {
   const Reservations* others{};  ///< cells that the plan avoids; nullptr: it avoids none
 };
 
-/// Changes disasters so that MoveDisaster moves them as the plan assumes, along the returned
-/// tracks.
+/// Changes disasters so that MoveDisaster, called with the returned tracks, moves them as the plan
+/// assumes.
 /// @param disasters a copy of the farm's present disasters; kOracle does not change it
 /// @returns the assumed track of each disaster
 std::vector<Track> Foresee(const Farm& farm, Foresight foresight, std::vector<Disaster>& disasters);

@@ -5,15 +5,15 @@
 /// and a status of each device. With the true future of the disasters the plan has the exact max
 /// return of a seeded episode: the clairvoyant optimum, the reference of paper §4.2 (see
 /// docs/model.md). A policy may also plan again at each step (receding horizon) from the issued
-/// forecast or, without a forecast, from each disaster's present heading. The plan then uses only
-/// what an operator knows at that time, except that it knows which crashes cause damage.
+/// forecast or, without a forecast, from each disaster's current heading. The plan then uses only
+/// what an operator knows at that time, with one exception: it knows which crashes cause damage.
 ///
 /// Health is computed exactly. The health of a deployed device depends only on time. The health of
 /// a device aboard depends on the route. Each pickup is therefore planned in two ways, paid and
-/// unpaid. Paid: the value is credited at pickup, losses are subtracted as they occur, and the
-/// device must be delivered. Unpaid: neither value nor losses count, and the device may be
-/// delivered for the drop-off reward alone. The better of the two has the exact value of the
-/// device, which is never negative.
+/// unpaid. If it is paid, the value is credited at pickup, losses are subtracted as they occur, and
+/// the device must be delivered. If it is unpaid, neither value nor losses count, and the device
+/// may be delivered for the drop-off reward alone. The better of the two plans has the exact value
+/// of the device, which is never negative.
 ///
 /// The search runs forward in time and keeps the max return so far of each state. It prunes a state
 /// if an upper bound of its return does not exceed the return of the best complete plan found so
@@ -36,8 +36,8 @@ class Planner {
  public:
   /// @param scenario must outlive the planner
   /// @param max_devices max number of devices of a task; 0: the number of devices of the scenario
-  /// @throws InputError if the reward of steps or of illegal actions is positive, if max_devices is
-  ///   more than 12, or if there are more than kMaxPlanStates states
+  /// @throws InputError if the reward of steps or of illegal actions is positive, if the max number
+  ///   of devices exceeds kMaxPlanDevices, or if there are more than kMaxPlanStates states
   explicit Planner(const Scenario& scenario, std::int32_t max_devices = 0);
   ~Planner();
   Planner(Planner&&) noexcept;

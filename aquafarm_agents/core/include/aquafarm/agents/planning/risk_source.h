@@ -5,9 +5,9 @@
 /// disasters itself. The same exact search therefore runs on the true future, on a forecast, and on
 /// the mean of an ensemble of futures.
 ///
-/// Mean of an ensemble: disasters do not react to ships, so the expected reward of a fixed plan is
-/// its reward under the mean layers. The same holds for damage as long as no health reaches 0,
-/// because the loss of health is linear in the risk.
+/// A plan may use the mean layers of an ensemble. Disasters do not react to ships, so the expected
+/// reward of a fixed plan is its reward under these layers. The same is true of damage as long as
+/// no health reaches 0, because the loss of health is linear in the risk.
 
 #include <cstdint>
 #include <vector>
@@ -22,7 +22,7 @@ namespace aquafarm::agents {
 struct RiskLayers {
   Grid<float> risk;  ///< risk at each cell; 0 or negative
   /// Reward of a step that ends in the cell and has no pickup, drop-off, crash or illegal action:
-  /// the risk if it is negative, else the step reward.
+  /// the risk if it is negative, else the step reward. For an ensemble, the mean of these rewards.
   Grid<float> quiet;
   /// By kind of device: the risk that damages it (Farm::DamagingRiskAt). If a layer is empty,
   /// `risk` applies.
@@ -51,7 +51,7 @@ class RiskSource {
   /// next call.
   /// @param step after the farm's present step, at most last_step()
   virtual const RiskLayers& At(std::int32_t step) = 0;
-  /// Returns the last step that a plan may have. The episode ends with this step at the latest.
+  /// Returns the last step of every plan. The episode ends at this step, or earlier.
   virtual std::int32_t last_step() const = 0;
   /// Returns an upper bound of RiskLayers::quiet over all cells and steps.
   virtual float best_quiet() const = 0;

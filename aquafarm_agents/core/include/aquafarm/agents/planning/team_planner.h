@@ -3,8 +3,8 @@
 
 /// Cooperative planning for several agents: an assignment step, then cooperative A* (Silver 2005).
 ///
-///   1. Assign the devices to ships, so that the last ship is estimated to finish as early as
-///      possible.
+///   1. Assign the devices to ships. A local search minimizes the estimated time at which the last
+///      ship finishes.
 ///   2. For one ship after the other, compute the best plan for its devices (planner.h) that avoids
 ///      the ships planned before.
 ///   3. Repeat both steps if a disaster differs from the assumed future, if a ship deviates from
@@ -51,9 +51,9 @@ class TeamPlanner {
   void Act(const Farm& farm, PlanState& course, std::uint8_t* actions);
 
   /// Assigns the undelivered devices to agents. A ship gets the devices that it carries and those
-  /// that it fetches next, at most the average number per ship plus two. A self-propelled device
-  /// gets itself.
-  /// @returns ids of devices, by agent; a device that no ship has room for is missing
+  /// that it fetches next. Their max number is the average per ship, rounded up, plus two. A
+  /// self-propelled device gets itself.
+  /// @returns ids of devices, by agent. Devices are missing if each ship has its max number
   std::vector<std::vector<std::int32_t>> Assign(const Farm& farm) const;
 
  private:

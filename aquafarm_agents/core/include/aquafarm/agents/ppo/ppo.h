@@ -15,7 +15,7 @@
 ///
 /// MAPPO (Yu et al. 2022, arXiv:2103.01955) is PPO for several agents. One policy chooses the
 /// actions of every agent from the agent's own observation. V depends on the observations of all
-/// agents of the farm. V is needed only for learning, so a trained ship acts on its own
+/// agents of the farm. V is needed only for learning, so a trained ship needs only its own
 /// observation.
 ///
 /// With the option `teacher` the policy also imitates a teacher (kickstarting).
@@ -55,8 +55,7 @@ std::unique_ptr<ShardedLearner> MakeMappoOfRanks(const EnvironmentSpec& spec, st
                                                  const std::string& options, ProcessGroup& group,
                                                  PlannerMaker make_planner = nullptr);
 /// Makes the policy of a checkpoint of PPO or MAPPO.
-/// @throws InputError if the policy does not fit farms of `spec`, with the difference, or if the
-///   checkpoint is damaged
+/// @throws InputError if the policy does not fit farms of `spec`, or if the checkpoint is damaged
 std::unique_ptr<Policy> MakePpoPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 
 }  // namespace aquafarm::agents

@@ -46,7 +46,7 @@ struct PpoOptions {
   double value_coef{0.5};           ///< weight of the value loss
   double max_grad_norm{0.5};        ///< max norm of the gradient; 0: not limited
   double reward_scale{0.05};        ///< factor of all rewards that the learner receives
-  bool normalize_advantages{true};  ///< to mean 0 and deviation 1 in each minibatch
+  bool normalize_advantages{true};  ///< scale to mean 0 and deviation 1 in each minibatch
   bool mask_illegal{true};          ///< probability 0 for illegal pickups and drop-offs
   /// Probability 0 for moves onto a rock or an island or off the map, unless all moves lead there.
   bool mask_blocked{true};
@@ -54,25 +54,25 @@ struct PpoOptions {
   /// intrinsic reward.
   ExplorationOptions exploration{
       ExplorationKind::kEntropy, {ScheduleKind::kLinear, 0.02, 0.0, 1.0}, {}};
-  /// Weight in the loss of the cross-entropy with a teacher's actions (kickstarting,
+  /// Weight of the cross-entropy with a teacher's actions, which is part of the loss (kickstarting,
   /// src/ppo/ppo_loss.h). The cross-entropy is averaged over all agent steps, labelled or not. A
   /// teacher that labels every n-th step therefore needs n times the weight. 0: no teacher.
   Schedule teacher{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
   TeacherPolicy teacher_policy{TeacherPolicy::kRule};  ///< which teacher the policy imitates
   std::int32_t teacher_interval{1};  ///< the teacher labels steps 0, n, 2n, … of each rollout
-  /// Data augmentation: the observations of an agent are rotated or reflected by one of the eight
-  /// symmetries of the grid, which is drawn at the start of each episode. Needs entity tokens.
+  /// Data augmentation: at the start of each episode, one of the eight symmetries of the grid is
+  /// drawn. The observations of the agent are rotated or reflected by it. Needs entity tokens.
   bool augment{false};
   PolicyMode policy{PolicyMode::kGreedy};  ///< how the trained policy acts
   /// The trained policy averages the outputs of its network over the eight symmetries. This makes
   /// it equivariant to rotations and reflections of the ranch. Needs entity tokens.
   bool symmetric{false};
-  /// In the trained greedy policy: subtracted from the logit of an action for each earlier use of
-  /// this action in the same situation (cell, load, remaining devices) of the episode.
+  /// The trained greedy policy subtracts this from the logit of an action for each earlier use of
+  /// the action in the same situation (cell, load, remaining devices) of the episode.
   double repetition_penalty{0.0};
-  /// The trained greedy policy counts how often each situation occurs. From the max_visits-th time
-  /// on it follows the route to the nearest target, if this route is safe (src/ppo/loop_guard.h).
-  /// Needs entity tokens. 0: never.
+  /// The trained greedy policy counts how often each situation occurs. When one occurs for the
+  /// max_visits-th time, the policy starts to follow the route of src/ppo/route_rule.h, while this
+  /// route is safe (src/ppo/loop_guard.h). Needs entity tokens. 0: never.
   std::int32_t max_visits{0};
   std::int32_t threads{1};  ///< CPU threads of libtorch and BLAS
   /// Number of groups of farms, a power of two up to 4096. Each group contributes its own part to

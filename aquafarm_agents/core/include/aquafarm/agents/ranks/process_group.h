@@ -33,9 +33,9 @@ class ProcessGroup {
   /// Time that this rank has spent in exchanges so far, including waits for other ranks [s].
   double exchange_s() const { return exchange_s_; }
 
-  /// On every rank, replaces `values` and `numbers` by their sums over all ranks. They are added as
-  /// a binary tree of ranks, ((0 + 1) + (2 + 3)) + …, so every rank receives the same bits. The
-  /// sizes of both vectors must be equal on all ranks.
+  /// On every rank, replaces `values` and `numbers` by their sums over all ranks. The vectors are
+  /// added as a binary tree of ranks, ((0 + 1) + (2 + 3)) + …, so all ranks receive the same bits.
+  /// Each vector must have the same size on all ranks.
   /// @throws RankLost
   virtual void Sum(std::vector<float>& values, std::vector<double>& numbers) = 0;
 
@@ -48,8 +48,9 @@ class ProcessGroup {
   /// @throws RankLost
   virtual std::string Broadcast(const std::string& bytes) = 0;
 
-  /// Calls `work` on rank 0. The other ranks wait until it returns, for at most GroupTimes::work_s,
-  /// since work on a disk may take longer than an exchange.
+  /// Calls `work` on rank 0. The other ranks wait until it has returned, for at most
+  /// GroupTimes::work_s. This limit is longer than that of an exchange, since access to a disk may
+  /// take longer.
   /// @param work ignored on the other ranks
   /// @throws RankLost; on rank 0 also every exception of `work`, after which the group must not be
   ///   used
@@ -71,8 +72,8 @@ struct GroupTimes {
 };
 
 /// Connects this process with the other ranks.
-/// @throws RankLost if ranks are missing after start_s, if rank 0 cannot open its port, or if it
-///   does not answer; the message names the ranks or the address
+/// @throws RankLost if ranks are missing after start_s, if rank 0 cannot open its port or does not
+///   answer, or if the ranks cannot connect
 /// @throws InputError if the number of ranks is not a power of two, or if the name of the host of
 ///   rank 0 cannot be resolved
 std::unique_ptr<ProcessGroup> JoinProcessGroup(const RankVariables& variables,
@@ -85,8 +86,8 @@ inline void RunOnce(ProcessGroup* group, const std::function<void()>& work) {
   group->RunOnRank0(work);
 }
 
-/// Replaces arrays[0] by the sum of all arrays, added as a binary tree. The other arrays then hold
-/// partial sums.
+/// Replaces arrays[0] by the sum of all arrays, added as a binary tree like ProcessGroup::Sum. The
+/// contents of the other arrays are then unspecified.
 /// @param arrays must have equal sizes; their number must be a power of two
 template <typename T>
 void AddAsTree(std::vector<std::vector<T>>& arrays) {

@@ -8,9 +8,8 @@
 
 namespace aquafarm::agents {
 
-/// Returns the processors of rank `rank`. Every rank gets the same number of the processors in
-/// `all`, and no two ranks share one, as with mpirun and srun. Returns `all` if there are more
-/// ranks than processors.
+/// Returns the processors of rank `rank`. Each rank gets the same number of processors of `all`.
+/// No two ranks share a processor. Returns `all` if there are more ranks than processors.
 /// @param rank [0, ranks)
 inline cpu_set_t ProcessorsOf(const cpu_set_t& all, int rank, int ranks) {
   const int share = CPU_COUNT(&all) / ranks;

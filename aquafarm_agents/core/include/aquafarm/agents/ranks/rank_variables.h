@@ -6,7 +6,7 @@
 
 namespace aquafarm::agents {
 
-/// Rank of this process among the processes of one training, as its launcher specifies it.
+/// Rank of this process among the processes of one training, as set by its launcher.
 struct RankVariables {
   int rank{};            ///< [0, world_size)
   int world_size{1};     ///< number of processes; 1: this process trains alone
@@ -22,11 +22,12 @@ using GetVariable = std::function<const char*(const char*)>;
 /// WORLD_SIZE), Open MPI's mpirun, MPICH's mpiexec, Slurm's srun. With several processes it also
 /// reads the address of rank 0:
 ///
-///   MASTER_ADDR   host of rank 0. If not set: the first host of a Slurm step, else 127.0.0.1
-///   MASTER_PORT   port that rank 0 opens. If not set: one of the 10,000 ports from 20000 on, which
-///                 a hash of the job's name selects, so that two jobs on one host rarely use the
-///                 same port. The name is in PMIX_NAMESPACE (Open MPI), PMI_JOBID (mpiexec), or
-///                 SLURM_JOB_ID and SLURM_STEP_ID (srun). Without a name the port is 29500
+///   MASTER_ADDR   host of rank 0. If not set: the first host of the Slurm step with srun, else
+///                 127.0.0.1
+///   MASTER_PORT   port that rank 0 opens. If not set: a hash of the job's name selects a port in
+///                 [20000, 29999], so that two jobs on one host rarely use the same one. The name
+///                 is in PMIX_NAMESPACE (Open MPI), PMI_JOBID (mpiexec), or SLURM_JOB_ID and
+///                 SLURM_STEP_ID (srun). Without a name the port is 29500
 ///
 /// @throws InputError if a variable has a wrong value, if only one of RANK and WORLD_SIZE is set,
 ///   or if MASTER_ADDR is not set although the ranks are on several hosts

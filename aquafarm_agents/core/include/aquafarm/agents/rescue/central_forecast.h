@@ -16,8 +16,8 @@ namespace aquafarm::agents {
 /// A storm as an authority forecasts it, or, in a hindcast, as it was recorded later.
 struct CentralForecast {
   StormPath path;              ///< in steps of the ensemble; step 0 is the start of the plan
-  std::vector<double> lead_h;  ///< lead time of each point; 0 or negative if it was observed
-  /// Lead time of the last report with radii; minus infinity if all radii are estimated.
+  std::vector<double> lead_h;  ///< lead time of each point [h]; 0 or negative for observed points
+  /// Lead time of the last report with radii [h]; minus infinity if all radii are estimated.
   double size_report_h{-std::numeric_limits<double>::infinity()};
   GradeRisks risks;  ///< risks of the rings for grades 1 to 4
 };
@@ -30,7 +30,7 @@ struct EnsembleOptions {
   std::int32_t width{};   ///< of the ranch [cells]
   std::int32_t height{};  ///< of the ranch [cells]
   double cell_size_km{};
-  double step_s{};       ///< duration of a step
+  double step_s{};       ///< duration of a step [s]
   std::int32_t steps{};  ///< number of steps; step i is at the time i · step_s
 };
 

@@ -22,8 +22,8 @@ namespace aquafarm::agents {
 
 /// Spread of the members about one point of the central forecast.
 struct EnsembleSpread {
-  double time_s{};                 ///< after the start of the plan
-  double lead_h{};                 ///< lead time of the point
+  double time_s{};                 ///< time of the point [s after the start of the plan]
+  double lead_h{};                 ///< lead time of the point [h]
   std::array<double, 2> center{};  ///< centre of the storm in the central forecast [cells]
   double along_km{};               ///< standard deviation of the position along the track
   double across_km{};              ///< standard deviation of the position across the track
@@ -35,12 +35,12 @@ struct EnsembleSpread {
 /// The members. The constructor computes all arrays.
 class Ensemble {
  public:
-  /// Arrival of a ring that does not arrive within the known time.
+  /// Value of Arrival for a ring that does not reach the cell in the steps of the ensemble.
   static constexpr std::int16_t kNoArrival = std::numeric_limits<std::int16_t>::max();
 
   /// @param sites cells of the map for which Exposure is computed
-  /// @throws InputError if the number of members, steps or rings, or the memory for them, is out of
-  ///   range
+  /// @throws InputError if the number of members, steps or rings is out of range, or if they would
+  ///   need too much memory
   Ensemble(const CentralForecast& forecast, const EnsembleOptions& options,
            const std::vector<Cell>& sites);
 
@@ -49,7 +49,7 @@ class Ensemble {
   std::int32_t steps() const { return options_.steps; }
   std::int32_t rings() const { return rings_; }
 
-  /// First step at which a ring covers a cell, [members]; kNoArrival if it never does.
+  /// First step at which a ring covers a cell, [members]; kNoArrival if it never covers the cell.
   const std::int16_t* Arrival(std::int32_t ring, Cell cell) const {
     const auto cells = static_cast<std::size_t>(options_.width * options_.height);
     const auto index = static_cast<std::size_t>(cell.y * options_.width + cell.x);
@@ -74,8 +74,8 @@ class Ensemble {
   /// Spread at the points of the central forecast.
   const std::vector<EnsembleSpread>& spread() const { return spread_; }
 
-  /// Returns the mean layers of all members for the planner (risk_source.h), without layers by kind
-  /// of device. Layer i belongs to step first_step + i.
+  /// Returns the mean of the members' risk layers for the planner (risk_source.h), for the steps
+  /// from first_step on. It has no layers by kind of device.
   /// @param first_step [0, steps())
   /// @param step_reward reward of a step without risk
   RiskField MeanRisk(std::int32_t first_step, float step_reward) const;

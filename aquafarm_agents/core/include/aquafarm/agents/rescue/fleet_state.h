@@ -25,7 +25,7 @@ struct ShipNow {
 /// A device of a running ranch.
 struct DeviceNow {
   bool is_deployed{true};  ///< false: aboard a ship, or in port
-  bool self_propelled{};   ///< true: the device moves by itself, and plans leave it out
+  bool self_propelled{};   ///< true: the device moves by itself and is not part of plans
   double health{1.0};      ///< [0, 1]
   bool operator==(const DeviceNow& other) const {
     const bool same_health =
@@ -50,9 +50,10 @@ struct FleetState {
 /// Replaces the layout, the ships and the devices of a case by those of a running ranch.
 ///
 /// Devices keep their names F0, F1, … by id. Devices that are in port or self-propelled are left
-/// out; a note (RescueWarning) names them. A device aboard gets the cell of its ship, and the ship
-/// may leave at once, whatever `request.depart_s` is. `damage_before` is 1 minus the device's
-/// health.
+/// out; a note (RescueWarning) names them. A device aboard gets the cell of its ship. A ship with
+/// devices aboard may leave at the start of the plan, even before `request.depart_s`. A note or
+/// warning states whether this ship reaches an open port. `damage_before` is 1 minus the health of
+/// the device.
 ///
 /// @param request request of the case; must not name files of devices or ships
 /// @throws InputError if the state does not fit the scenario, or if the request names such files

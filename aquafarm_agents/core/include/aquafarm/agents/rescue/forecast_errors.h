@@ -15,15 +15,15 @@
 /// 2021 (Verification on typhoon forecasts … in 2022, Meteorological Monthly 50(5), 2024,
 /// abstract). Errors are linear between these lead times, and continue linearly after the last one.
 ///
-/// The sources contain only mean errors. The following is assumed: errors are normal, have the same
-/// size along and across the track, and are correlated by exp(-difference of lead times / 48 h). An
+/// The sources contain only mean errors. It is assumed that errors are normal, have the same size
+/// along and across the track, and are correlated by exp(-difference of lead times / 48 h). An
 /// error along the track is an error of the time of arrival.
 ///
 /// **Radii.** All radii of a storm are multiplied by one log-normal factor. Without reported radii,
-/// its spread is that of recorded radii about EstimateRadius (tracks/wind_radii.h), by the storm's
-/// strength at each time: 0.45 below 48 kt, 0.41 below 64 kt, 0.35 above. After a report with
-/// radii, the spread grows from the error of the report to this value: the logarithm of a storm's
-/// size, relative to EstimateRadius and in units of this spread, decays with exp(-time / 165 h).
+/// the spread of the factor is that of recorded radii about EstimateRadius (tracks/wind_radii.h).
+/// It depends on the storm's strength at each time: 0.45 below 48 kt, 0.41 below 64 kt, 0.35 above.
+/// After a report with radii, the spread grows from the error of the report to this value: the
+/// logarithm of radius / EstimateRadius, in units of this spread, decays with exp(-time / 165 h).
 /// The 165 h are fitted to the JMA's best tracks of 2015 to 2021. The correlation of the 30 kt
 /// radii of one storm is 0.87 after 24 h (2,864 pairs), 0.76 after 48 h, 0.64 after 72 h, 0.55
 /// after 96 h and 0.48 after 120 h (798 pairs).
@@ -50,13 +50,14 @@ struct ForecastErrors {
 
 /// Standard deviations of the errors at one lead time.
 struct ForecastSpread {
-  double position_km{};  ///< of the position along the track; across the track it is the same
+  double position_km{};  ///< of the position along the track, and also of that across the track
   double wind_mps{};     ///< of the wind
 };
 
-/// Returns the standard deviations at a lead time. They follow from the mean errors: a normal error
-/// with standard deviation s in each of two directions has the mean distance s · sqrt(pi / 2), and
-/// a normal error in one direction has the mean absolute value s · sqrt(2 / pi).
+/// Returns the standard deviations at a lead time, multiplied by errors.scale. They follow from the
+/// mean errors. A normal error with standard deviation s in each of two directions has the mean
+/// distance s · sqrt(pi / 2). A normal error in one direction has the mean absolute value
+/// s · sqrt(2 / pi).
 /// @param lead_h hours after the issue of the forecast; a negative value counts as 0
 ForecastSpread SpreadAt(const ForecastErrors& errors, double lead_h);
 

@@ -17,9 +17,10 @@ enum class PlanResult : std::uint8_t {
   kPlan = 0,             ///< the plan saves something
   kNothingSaved = 10,    ///< winds come, and no trip saves more than it costs
   kStormStaysAway = 11,  ///< no winds reach a device or a route in the known time in any member
-  kStormUnknown = 12,    ///< wind and radii are unknown while the storm is near, or no winds are
-                         ///< expected and the forecast of an old bulletin has ended
-  kBulletinOld = 13,     ///< the bulletin is 12 hours old or older, and the result is not 12
+  kStormUnknown = 12,    ///< wind and radii are unknown while the storm is near; or no winds are
+                         ///< expected, but the forecast of an old bulletin has ended
+  kBulletinOld = 13,     ///< exit code only: the bulletin is at least 12 hours old. Replaces every
+                         ///< result except kStormUnknown
 };
 
 /// How and from which files a plan was made.
@@ -33,7 +34,7 @@ struct PlanProvenance {
 /// The plan of a case, with its result, deadlines and comparisons.
 struct PlanReport {
   PlanResult result{};  ///< never kBulletinOld
-  bool is_old{};        ///< the bulletin is 12 hours old or older
+  bool is_old{};        ///< the bulletin is at least 12 hours old
   std::string text;     ///< the result in one or two sentences
   RescuePlan plan;
   std::vector<std::vector<Deadline>> deadlines;  ///< by device and by kDeadlineShares
@@ -47,16 +48,16 @@ struct PlanReport {
 /// Chances for which a report has deadlines.
 inline constexpr std::array<double, 3> kDeadlineShares{0.95, 0.8, 0.5};
 
-/// Makes the plan of a case and its report. May add warnings to the case and sorts them by
-/// severity.
+/// Makes the plan of a case and its report. May add or remove warnings of the case, and sorts them
+/// by severity.
 /// @param ensemble made from the case
 PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble);
 
-/// Time until which ships may leave, after the start of the plan. At most one member is set.
+/// Time until which ships may leave [s after the start of the plan]. At most one member is set.
 struct LastDeparture {
   std::optional<double> none_after_s;        ///< no ship should leave after this time
-  std::optional<double> not_known_beyond_s;  ///< ships may leave until this time; for later trips
-                                             ///< the known time is too short
+  std::optional<double> not_known_beyond_s;  ///< ships may leave until this time; later trips would
+                                             ///< end after the known time
 };
 /// Returns the latest of the devices' deadlines with a chance of 50 %. It is set as
 /// not_known_beyond_s if one of these deadlines is open (Deadline::is_open), else as none_after_s.
@@ -64,7 +65,7 @@ struct LastDeparture {
 /// set if there is no such deadline, if no winds come, or if the winds are unknown.
 LastDeparture LastDepartureOf(const RescueProblem& problem, const PlanReport& report);
 
-/// Returns the plan as about a page of text. Times are in local time and UTC.
+/// Returns the plan as a text of about one page. Times are in local time and UTC.
 std::string ToText(const RescueCase& rescue, const PlanReport& report);
 /// Returns the plan as JSON (aquafarm_bringup/python/aquafarm_plan/plan.schema.json).
 /// @throws InputError if an input file, whose hash is part of the JSON, cannot be read

@@ -26,13 +26,13 @@ struct RescueRequest {
   std::optional<std::int64_t> now;  ///< present time, UTC [s since 1970]; unset for a past storm
   std::string devices;              ///< CSV file; empty: the devices of the scenario
   std::string ships_file;           ///< CSV file; empty: ships in the ports of the scenario
-  std::optional<std::int32_t> ships;     ///< number of ships; unset: that of the scenario
-  std::optional<double> speed_kn;        ///< speed of ships whose row contains none
-  std::optional<std::int32_t> capacity;  ///< capacity of ships whose row contains none
-  double depart_s{};                     ///< earliest departure, after the start of the plan
-  double abort_wind_kt{34.0};          ///< wind that stops a ship: the ring at or below it is used
-  double risk_averse{};                ///< see RescueProblem
-  std::string currency;                ///< currency of the devices' values; may be empty
+  std::optional<std::int32_t> ships;     ///< number of ships; unset: as in ships_file or scenario
+  std::optional<double> speed_kn;        ///< speed of ships without a speed in ships_file
+  std::optional<std::int32_t> capacity;  ///< capacity of ships without a capacity in ships_file
+  double depart_s{};                     ///< earliest departure [s after the start of the plan]
+  double abort_wind_kt{34.0};  ///< wind that stops a ship; the strongest ring up to it is used
+  double risk_averse{};        ///< see RescueProblem
+  std::string currency;        ///< currency of the devices' values; may be empty
   std::optional<double> utc_offset_h;  ///< local time minus UTC; unset: from the longitude
   std::int32_t members{1000};          ///< members of the ensemble
   std::uint64_t seed{1};               ///< seed of the ensemble
@@ -45,7 +45,7 @@ struct RescueWarning {
   std::string severity;      ///< stop, warning or note
   std::string text;          ///< one or more sentences
   std::string advice;        ///< what the operator should do; may be empty
-  std::int32_t ship{kNone};  ///< index in RescueProblem::ships; kNone: concerns all ships
+  std::int32_t ship{kNone};  ///< index in RescueProblem::ships; kNone: not about a single ship
 };
 
 /// An assumption of the plan, with its basis.
@@ -68,7 +68,9 @@ struct StormRecord {
   std::optional<std::int64_t> known_until;  ///< end of the forecast, UTC [s since 1970]
   bool is_hindcast{};                       ///< the forecast is the storm as recorded later
   bool is_persistence{};  ///< no forecast: the storm is assumed to keep its motion for 24 h
-  double age_h{};   ///< age of the last report at the present time, or at the start of the plan
+  /// Age of the last report [h]: at RescueRequest::now, or at the start of the plan if `now` is
+  /// unset or `at` is set. 0 in a hindcast.
+  double age_h{};
   Passage passage;  ///< of the central forecast near the ranch, after the start of the plan
 };
 
@@ -78,7 +80,7 @@ struct RescueCase {
   Layout layout;
   GeoFrame frame{{}, 1.0};
   std::int64_t start{};           ///< start of the plan, which is step 0, UTC [s since 1970]
-  std::int32_t utc_offset_min{};  ///< local time minus UTC
+  std::int32_t utc_offset_min{};  ///< local time minus UTC [min]
   RescueProblem problem;
   CentralForecast forecast;
   EnsembleOptions ensemble;

@@ -20,7 +20,7 @@ std::string_view ToString(OrderKind value);
 /// An order to a ship.
 struct RescueOrder {
   OrderKind kind{};
-  double time_s{};             ///< departure, or end of handling; after the start of the plan
+  double time_s{};             ///< departure, or end of handling [s after the start of the plan]
   Cell cell{};                 ///< where the order is carried out
   std::int32_t device{kNone};  ///< fetch: index of the device
   std::int32_t port{kNone};    ///< deliver, or leave from a port: index of the port; else kNone
@@ -33,7 +33,7 @@ struct RescueOrder {
 /// A cell on the route of a ship.
 struct TimedCell {
   Cell cell{};
-  double time_s{};  ///< time at which the ship enters the cell, after the start of the plan
+  double time_s{};  ///< time at which the ship enters the cell [s after the start of the plan]
 };
 
 }  // namespace aquafarm::agents

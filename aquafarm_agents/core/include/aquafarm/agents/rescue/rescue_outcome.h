@@ -20,11 +20,11 @@ struct ShipRoute {
   std::vector<TimedCell> path;
 };
 
-/// Outcome of a plan for one device. Times are after the start of the plan.
+/// Outcome of a plan for one device. Times are in seconds after the start of the plan.
 struct DeviceOutcome {
-  std::int32_t ship{kNone};  ///< ship that delivers the device; kNone: it is left behind
+  std::int32_t ship{kNone};  ///< ship that delivers the device; kNone: no ship delivers it
   std::int32_t port{kNone};  ///< port of the delivery
-  double fetch_s{};          ///< end of the pickup
+  double fetch_s{};          ///< end of the pickup; if aboard at the start: when the ship is ready
   double deliver_s{};        ///< end of the delivery
   double home{};             ///< probability that the device reaches a port
   /// By ring: probability that the device is in port before the ring reaches its site, or that it
@@ -44,9 +44,9 @@ struct RescuePlan {
   double saved{};                        ///< mean loss if no ship leaves minus mean loss
   double bound{};                        ///< upper bound of `saved` over all plans
   double cost{};                         ///< cost of energy and ship-hours
-  /// With risk_averse: max amount by which another sequence of direct trips may have a smaller
-  /// objective (mean loss of the worst members plus cost). Infinity if the search was not
-  /// exhaustive.
+  /// With risk_averse, the objective is the mean loss of the worst members plus cost. This is the
+  /// max amount by which the objective of another sequence of direct trips may be smaller. Infinity
+  /// if the search was not exhaustive; 0 without risk_averse.
   double averse_gap{};
   bool is_exhaustive{};  ///< whether the search considered all plans (rescue_plan.h)
 };

@@ -6,24 +6,24 @@
 ///
 /// A plan is a sequence of trips for each ship. A ship leaves as soon as it is ready, takes the
 /// shortest routes and fetches up to its capacity. It delivers at the nearest open port, or at the
-/// port with the shortest way to another device. A later departure is never better: in each member
-/// winds stop a ship in a cell from a fixed time on, and a ship that leaves earlier is there
-/// earlier.
+/// open port on the shortest way to another device. A later departure is never better: in each
+/// member, winds stop a ship in a cell from a fixed time on, and a ship that departs earlier also
+/// leaves each cell earlier.
 ///
 ///   for each ship: sequences of trips, extended device by device, each with the members in which
 ///   the ship still works ──> best value per set of devices ──> best disjoint sets of all ships
 ///
 /// If energy or ship-hours have prices (RescueEnergy), their cost is subtracted from the value
 /// saved. A trip that costs more than it saves is left out. With risk_averse, the search is
-/// repeated with higher weights of the worst members of the plans found so far; `averse_gap` states
-/// how much better another plan may be.
+/// repeated with higher weights of the worst members of the plans found so far. `averse_gap` bounds
+/// the advantage of other plans.
 ///
 /// The value of a plan is the sum of the values of its devices, so combining the ships adds no
-/// error. The search keeps a limited number of partial sequences and of combinations, the best
-/// ones. If no limit is reached, it is exhaustive (`is_exhaustive`), and the plan is the best plan
-/// of this kind. `bound` is an upper bound of the value of every plan. It assumes that the fastest
-/// ship fetches each device alone, and that it fails only in members whose winds reach the device's
-/// site before that ship can have fetched the device.
+/// error. The search keeps only the best partial sequences and combinations, up to a max number. If
+/// this number is not exceeded, the search is exhaustive (`is_exhaustive`), and the plan is the
+/// best plan of this kind. `bound` is an upper bound of the value of every plan. For each device it
+/// assumes the earliest pickup and the earliest delivery by any ship. It assumes failure only in
+/// members whose winds reach the device's site before the end of this pickup.
 
 #include <cstdint>
 #include <optional>
@@ -45,8 +45,8 @@ struct LossSummary {
 };
 /// Summarizes losses. @param losses by member, at least one
 LossSummary Summarize(std::vector<float> losses);
-/// Returns the mean of the largest values whose number is share · losses.size(). If this is not a
-/// whole number, the last value counts in part.
+/// Returns the mean of the share · losses.size() largest values. If this number is not whole, the
+/// smallest of these values counts in part.
 /// @param losses at least one
 /// @param share in (0, 1]
 double MeanOfWorst(std::vector<float> losses, double share);

@@ -5,8 +5,8 @@
 /// an ensemble of storms.
 ///
 /// A ship moves at its own speed from cell to cell. A diagonal move is √2 cells long and takes √2
-/// times as long as a straight move, unlike in the farm, where each takes one step. A pickup and a
-/// drop-off take `handling_s` each.
+/// times as long as a straight move. (In the farm, both take one step.) A pickup and a drop-off
+/// take `handling_s` each.
 ///
 /// **When a ship fails.** A ship stops all work of its plan as soon as it is in a cell, at sea or
 /// in port, that winds of `abort_ring` have reached at any time since the start of the plan. From
@@ -60,7 +60,7 @@ struct RescueShip {
   Cell cell{};                         ///< cell at the start of the plan
   double speed_kn{};                   ///< speed with and without devices aboard
   std::int32_t capacity{1};            ///< max number of devices aboard
-  double ready_s{};                    ///< earliest departure, after the start of the plan
+  double ready_s{};                    ///< earliest departure [s after the start of the plan]
   std::vector<std::int32_t> aboard{};  ///< indices of the devices aboard at the start
 };
 
@@ -86,12 +86,12 @@ struct RescueProblem {
   std::vector<RescueDevice> devices;  ///< device i is site i of the ensemble
   std::vector<RescuePort> ports;      ///< at least one
   std::vector<RescueShip> ships;
-  double handling_s{};        ///< duration of a pickup or drop-off
-  double depart_s{};          ///< earliest departure of a ship that CompareChanges adds
+  double handling_s{};        ///< duration of a pickup or drop-off [s]
+  double depart_s{};          ///< earliest departure of a ship that CompareChanges adds [s]
   std::int32_t abort_ring{};  ///< ring of the ensemble whose winds stop a ship
   double exposure_damage{};   ///< share of the value per step of the ensemble and unit of |risk|
-  /// 0: the plan maximizes the mean value saved. Else in (0, 1]: it minimizes the mean loss of this
-  /// share of the members, the worst ones.
+  /// Share of the members, the worst ones, whose mean loss the plan minimizes, in (0, 1]. 0: the
+  /// plan maximizes the mean value saved over all members.
   double risk_averse{};
   std::optional<RescueEnergy> energy{};  ///< nullopt: energy and costs are unknown
 

@@ -16,11 +16,11 @@ struct WhatIf {
   /// Identifier for programs: none, ships+1, ships-1, depart+3h, port_closed:2, capacity+1.
   std::string change;
   std::string text;         ///< the change in words
-  bool is_possible{true};   ///< false: there is no such plan, and no number is set
+  bool is_possible{true};   ///< false: there is no such plan, and the numbers are not set
   LossSummary loss;         ///< loss of the changed plan
   double devices_home{};    ///< mean number of devices that come home
   double all_home{};        ///< probability that all devices come home
-  double difference{};      ///< mean loss minus that of the original plan, over the same members
+  double difference{};      ///< mean loss minus the mean loss of the original plan
   double difference_low{};  ///< bounds of the 95 % interval of `difference`
   double difference_high{};
 };

@@ -8,9 +8,9 @@
 
 namespace aquafarm::agents {
 
-/// All algorithms in the order in which users see them: the algorithms of this package, then those
-/// of other packages (register_learner.h). The first call loads the other packages.
-/// @throws InputError if a learner of another package cannot be loaded, or if two algorithms have
+/// Returns all algorithms in the order in which users see them: the algorithms of this package,
+/// then those of other libraries. The first call loads these libraries (register_learner.h).
+/// @throws InputError if a learner of another library cannot be loaded, or if two algorithms have
 ///   the same name
 const std::vector<Algorithm>& Algorithms();
 
@@ -18,14 +18,14 @@ const std::vector<Algorithm>& Algorithms();
 /// @throws InputError "algorithm: got 'dqm', expected one of: random, …"
 const Algorithm& FindAlgorithm(const std::string& name);
 
-/// Returns the farm steps of a training without a limit: Algorithm::default_steps. An algorithm
+/// Returns the default limit of a training [farm steps]: Algorithm::default_steps. An algorithm
 /// with a table gets at least eight steps per state, rounded up to whole millions. (Measured for
 /// Q-learning, see docs/real_ranches.md; also used for SARSA.)
 std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options);
 
-/// Returns a line for users about a table that needs at least 256 MB, with its size and an
-/// alternative. Returns an empty text for smaller tables and for networks.
+/// Returns a line for users if the algorithm needs a table of at least 256 MB. It contains the size
+/// and an alternative. Returns an empty text for smaller tables and for networks.
 std::string LargeTableNote(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options);
 
@@ -38,8 +38,8 @@ struct Choice {
   std::string reason;  ///< one line for users
 };
 
-/// Selects an algorithm by the intelligence of devices, their network and the number of squads
-/// (rescue ships), as in Fig. 6 of the paper:
+/// Selects an algorithm as in Fig. 6 of the paper, by the number of squads (rescue ships) and by
+/// whether the devices are intelligent and networked:
 ///
 ///   one agent                                          a single-agent learner (lstm_dqn)
 ///   several squads, or networked intelligent devices   a multi-agent learner (vdn)

@@ -2,7 +2,7 @@
 #pragma once
 
 /// Policies in Python: a function such as act(observations, masks) in a file, or a model of
-/// Stable-Baselines3. Each runs in a separate process, so that it may use any Python and any
+/// Stable-Baselines3. Each policy runs in a separate process, so that it may use any Python and any
 /// package. The process runs aquafarm_agents/scripts/serve_policy.py, which describes the messages.
 
 #include <chrono>
@@ -27,8 +27,8 @@ class PolicyProcess {
 
   /// Starts the process and waits for up to 180 s until the policy is loaded.
   /// @param where FILE.py, FILE.py:FUNCTION or FILE.zip
-  /// @param answer_limit_s max time of each exchange with the process in Act: of sending an array,
-  ///   and of receiving one [s]
+  /// @param answer_limit_s max time in which Act sends one array to the process, and in which it
+  ///   receives one [s]
   /// @throws InputError if the process cannot start or load the policy
   explicit PolicyProcess(const std::string& where, int answer_limit_s = kAnswerLimit_s);
   ~PolicyProcess();
@@ -40,9 +40,9 @@ class PolicyProcess {
 
   /// Chooses the actions of all agents.
   /// @param actions is resized to [N, S]
-  /// @throws InputError if the policy fails or returns no valid actions. If the process did not
-  ///   report the error itself, for example because it did not answer in time, the connection is
-  ///   closed, and each later call throws the same error.
+  /// @throws InputError if the policy fails or returns invalid actions. If the process does not
+  ///   report the error itself, for example because it does not answer in time, the connection is
+  ///   closed, and each later call throws the same error
   void Act(const EnvironmentSpec& spec, const StepResults& results,
            std::vector<std::uint8_t>& actions);
 

@@ -29,8 +29,8 @@ struct RunOptions {
   std::string init;           ///< policy whose weights the learner starts with; may be empty
   std::string credit{"own"};  ///< one of kCredits
   std::uint64_t seed{1};      ///< below 2^63
-  std::uint64_t episodes{};   ///< limit; 0: no limit. If `steps` is 0, too: DefaultSteps
-  std::uint64_t steps{};      ///< limit in farm steps; 0: no limit
+  std::uint64_t episodes{};   ///< limit; 0: no limit
+  std::uint64_t steps{};      ///< limit in farm steps; 0: no limit. If both are 0: DefaultSteps
   std::string run_dir;        ///< run folder (run_folder.h)
   bool resume{};              ///< true: resumes the run in run_dir
   double checkpoint_period_s{30.0};
@@ -50,7 +50,7 @@ struct RunStatus {
   TrainingProgress progress;
   Evaluation evaluation;  ///< of the greedy policy; valid if has_evaluation is true
   bool has_evaluation{};
-  std::string message;       ///< one readable line; empty if there is no message
+  std::string message;       ///< one readable line; may be empty
   const Learner* learner{};  ///< set in phase kTraining; valid only during the call of the observer
 };
 
@@ -78,7 +78,8 @@ struct RankedRun {
   MakeEnvironment make_share;  ///< makes the environment with the farms of this rank
 };
 
-/// Default number of shards of a training with several ranks, if there are not more ranks.
+/// Default number of shards of a training with several ranks. If there are more ranks than this,
+/// the default is the number of ranks.
 inline constexpr int kDefaultShards = 8;
 
 /// Trains, saves the policy, and evaluates it and the policy RANDOM. Errors are returned in the
@@ -93,7 +94,7 @@ RunReport Train(const RunOptions& options, const MakeEnvironment& make_environme
 
 /// Checks that an algorithm can be trained by several ranks.
 /// @param source name of the variable with the number of ranks, such as WORLD_SIZE
-/// @throws InputError if it cannot; the message lists the algorithms that can
+/// @throws InputError if it cannot. The message lists the algorithms that several ranks can train
 void CheckRanks(const std::string& algorithm, int ranks, const std::string& source);
 
 /// Returns a line such as "steps 812,000 / 3,000,000  episodes 1,240  return 81.2  …  left 1.2 s".

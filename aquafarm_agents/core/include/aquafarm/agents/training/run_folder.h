@@ -41,7 +41,7 @@ class RunFolder {
   void Write(const std::string& name, const std::string& bytes) const;
 
   /// Writes checkpoints/step_<steps>.ckpt and removes all but the last two checkpoints.
-  /// @throws StorageError if it cannot be written; the older checkpoints are then kept
+  /// @throws StorageError if the checkpoint cannot be written; the older ones are then kept
   void SaveCheckpoint(const Checkpoint& checkpoint) const;
   /// Paths of all checkpoints, newest first.
   std::vector<std::string> Checkpoints() const;

@@ -44,7 +44,7 @@ struct TrainingProgress {
   std::uint64_t step_limit{};     ///< 0: no limit
   float last_return{};            ///< NaN before the first episode has ended
   float mean_return{};            ///< of the last kWindow episodes; NaN before the first has ended
-  float best_mean_return{};  ///< max mean of kWindow consecutive episodes; NaN before the first
+  float best_mean_return{};  ///< max mean of kWindow consecutive episodes; NaN if fewer have ended
   float success_rate{};      ///< of the last kWindow episodes; NaN before the first has ended
   LearnerStatus learner;
   double steps_per_second{};  ///< since the previous report
@@ -65,9 +65,9 @@ enum class TrainingEnd : std::uint8_t {
   kBadInput      ///< with several ranks: an InputError, for example no valid ranch of a family
 };
 
-/// Trains a learner on an environment: limits, progress, metrics, checkpoints, interruption. The
-/// same options give bit-identical results, even if the training is stopped and resumed, unless
-/// farms are lost.
+/// Trains a learner on an environment. Checks the limits, reports progress, and writes metrics and
+/// checkpoints. The same options give bit-identical results, even if the training is stopped and
+/// resumed, unless farms are lost.
 class Trainer {
  public:
   /// @param environment, learner, folder must outlive the trainer
@@ -86,8 +86,8 @@ class Trainer {
 
   /// Trains until a limit is reached or `stop` is set, then saves a checkpoint. Failures of the
   /// farms, the disk, the learner or the ranks are not thrown: the returned value and message()
-  /// report them. A training that lost its farms is saved, too, if this process trains alone. A
-  /// rank that failed exchanges nothing more, so its caller must close the group.
+  /// report them. If this process trains alone, a checkpoint is saved even if the farms are lost. A
+  /// rank that failed no longer exchanges data, so its caller must close the group.
   /// @param stop may be set by a signal handler; null if the training cannot be stopped
   /// @param on_progress called at the start, about every progress_period_s, and at the end
   TrainingEnd Run(const std::atomic<bool>* stop = nullptr, const OnProgress& on_progress = {});
@@ -97,7 +97,7 @@ class Trainer {
   const std::string& message() const { return message_; }
   /// Returns and clears the latest notice, one readable line; empty if there is none.
   std::string TakeNotice() { return std::exchange(notice_, {}); }
-  /// Fraction of the run that is done, [0, 1].
+  /// Returns the fraction of the run that is done, [0, 1].
   double Done() const;
 
  private:

@@ -38,7 +38,7 @@ class PlanFiguresTest(unittest.TestCase):
         clock = document.Clock(plan["clock"])
         rows = figures.timeline(plan)["rows"]
         end = rows[0]["bars"][-1]["x"] + rows[0]["bars"][-1]["w"]
-        for right, expected in ((end + 2000.0, "{}; dark: to a device, light: to a port"),
+        for right, expected in ((end + 2000.0, "{}; dark: out, light: home"),
                                 (end + 200.0, "{}"), (end, "")):
             figures._name_ends(plan, rows, clock, right)
             at = f"in port {clock.time(plan['plan']['routes'][0]['orders'][-1]['time'])}"

@@ -13,7 +13,7 @@ import matplotlib
 matplotlib.use("Agg")  # needs no display
 from matplotlib import pyplot as plt  # noqa: E402
 
-DPI = 110
+DPI = 160
 KINDS = {"home": "The device comes home", "gales": "Gales reach the device"}
 
 
@@ -45,7 +45,12 @@ def draw_reliability(data, path):
         one.fill_between([0, 100], [-5, 95], [5, 105], color="0.85", label="within 5 points")
         one.errorbar(x, y, yerr=[low, high], fmt="o", color="#0b5394", markersize=5, capsize=3,
                      label="group of promises,\n95 % interval", clip_on=False, zorder=3)
-        one.set_title(title, fontsize=11.5)
+        sizes = one.inset_axes([0.0, -0.34, 1.0, 0.14], sharex=one)
+        sizes.bar(x, [b["count"] for b in bins], width=3.0, color="#0b5394")
+        sizes.set_yscale("log")
+        sizes.set_ylabel("cases", fontsize=9.5)
+        sizes.tick_params(labelsize=9)
+        one.set_title(f"{title} (n = {sum(b['count'] for b in bins):,})", fontsize=11.5)
         one.set_xlabel("promised chance [%]", fontsize=11)
         one.set_xlim(0, 100)
         one.set_ylim(0, 100)
@@ -55,7 +60,7 @@ def draw_reliability(data, path):
     axes[0].legend(loc="upper left", fontsize=10)
     for words, x, y in (("more often\nthan promised", 20, 56), ("less often\nthan promised", 80, 30)):
         axes[1].text(x, y, words, ha="center", fontsize=10, color="0.3")
-    figure.suptitle(reliability(data), fontsize=12.5, y=1.0)
+    figure.suptitle(reliability(data), fontsize=12.5, weight="bold", x=0.07, y=1.0, ha="left")
     figure.savefig(path, dpi=DPI, bbox_inches="tight")
     plt.close(figure)
 
@@ -106,7 +111,7 @@ def draw_back_test(data, path):
     order = [words.index(word) for word in sorted(words)]
     axes.legend([handles[i] for i in order], [words[i] for i in order], fontsize=10, ncol=1,
                 loc="lower left", bbox_to_anchor=(-0.01, 1.0), frameon=False, borderpad=0.2)
-    figure.suptitle(finding(storms), fontsize=12, y=1.10)
+    figure.suptitle(finding(storms), fontsize=12, weight="bold", x=-0.05, y=1.10, ha="left")
     figure.savefig(path, dpi=DPI, bbox_inches="tight")
     plt.close(figure)
 

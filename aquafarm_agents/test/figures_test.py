@@ -212,10 +212,32 @@ class FiguresTest(unittest.TestCase):
         figure = self.drawn(figures.draw_mean_score, self.contestants, self.runs,
                             {"clairvoyant": 5.1})
         self.assertEqual(1, len({axes.get_ylim() for axes in figure.axes}), "one scale")
-        self.assertEqual([set(), set(), {"SARSA", "LSTM-DQN", "clairvoyant 5.10"}],
+        self.assertEqual([{"clairvoyant"}, {"clairvoyant"},
+                          {"SARSA", "LSTM-DQN", "clairvoyant 5.10"}],
                          [self.names_of(axes) for axes in figure.axes])
         panels = [set(self.lines(axes)) for axes in figure.axes]
         self.assertEqual([{"LSTM-DQN"}, {"SARSA"}, {"SARSA", "LSTM-DQN"}], panels)
+
+    def test_the_headline_of_fig_12a_has_the_steps_until_90_percent_of_the_reference(self):
+        learnt = {"return": np.array([-100.0] * 50 + [100.0] * 100), "steps": np.full(150, 10)}
+        # The mean of 50 episodes is 90 or more from the 48th good episode on, the 98th of all.
+        self.runs["sarsa"] = [{"curve": learnt}]
+        self.runs["lstm_dqn"] = [{"curve": {**learnt, "return": np.zeros(150)}}]
+        found = figures._learning_times(self.contestants, self.runs, {"clairvoyant": 100.0})
+        self.assertEqual("Time steps until 90 % of the return of the clairvoyant: SARSA 980, "
+                         "LSTM-DQN never", found.replace(figures._NBSP, " "))
+        self.assertEqual("", figures._learning_times(self.contestants, self.runs, {}))
+
+    def test_the_headline_of_fig_12c_has_the_change_of_each_error(self):
+        for name, last in (("sarsa", 30.0), ("lstm_dqn", 5.0)):
+            for run in self.runs[name]:
+                run["curve"]["loss"] = np.array([10.0] * 60 + [last] * 60)
+        figure = self.drawn(figures.draw_square_error, self.contestants, self.runs)
+        headline = " ".join(figure._suptitle.get_text().split())
+        self.assertTrue(headline.endswith(
+            "LSTM-DQN ×0.5, SARSA ×3.0"), headline)
+        self.assertEqual({"SARSA: 10 → 30", "LSTM-DQN: 10 → 5"},
+                         {axes.get_title("left") for axes in figure.axes} - {""})
 
     def test_a_row_with_printed_settings_has_the_colour_of_its_learner_dashed(self):
         printed = next(one for one in PROFILES["paper"].contestants if one.name == "sarsa_printed")

@@ -295,8 +295,8 @@ class ReportTest(unittest.TestCase):
         two = [player("a", 88, 92, 88, 92, is_run=True), player("b", 80, 80, 80, 80, is_run=True)]
         self.assertEqual("a: it reaches 90.0% of the optimum, 8.0 points [5.7, 10.3] below planner.",
                          references.verdict([two[0], *others]))
-        self.assertIn("a has the highest return: it reaches 90.0% of the optimum, 10 points [8, 12] "
-                      "above b, 8.0 points [5.7, 10.3] below planner. One training each does not "
+        self.assertIn("a has the highest return of the 2 runs: it reaches 90.0% of the optimum, "
+                      "10 points [8, 12] above b, 8.0 points [5.7, 10.3] below planner. One training each does not "
                       "rank their algorithms.", references.verdict([*two, *others]))
         self.assertEqual("a: its returns sum up to less than 0, 103 points below planner.",
                          references.verdict([player("a", -5, is_run=True), *others]))

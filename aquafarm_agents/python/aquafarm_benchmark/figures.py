@@ -121,6 +121,15 @@ def _plot_one_run(axes, one, curve, x):
     return x[episodes[-1] - 1], means[-1], one.colour, one.label
 
 
+def _mark_reached(axes, references):
+    """Draws a dotted line at the return of the headline of Fig. 12a."""
+    if references and max(references.values()) > 0.0:
+        axes.axhline(_REACHED * max(references.values()), color="black", linestyle=":",
+                     linewidth=1.2, label="_reached")
+        axes.text(0.99, _REACHED * max(references.values()), f"{100 * _REACHED:.0f} %", fontsize=9.5,
+                  transform=axes.get_yaxis_transform(), va="top", ha="right")
+
+
 def plot_rewards_by_steps(axes, contestants, runs, references):
     """Plots Fig. 12a: the 50-episode mean return of the first run by time steps taken so far."""
     ends = []
@@ -128,7 +137,16 @@ def plot_rewards_by_steps(axes, contestants, runs, references):
         curve = runs[one.name][0]["curve"]
         ends.append(_plot_one_run(axes, one, curve, np.cumsum(curve["steps"])))
     axes.set_xscale("log")
+    axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(lambda value, _: _steps_text(value))
+    axes.xaxis.set_minor_formatter(ticker.NullFormatter())
+    _mark_reached(axes, references)
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
+
+
+def _steps_text(value):
+    """Returns a number of steps as text: "200k", "1M"."""
+    return f"{value / 1e6:g}M" if value >= 1e6 else f"{value / 1e3:g}k" if value >= 1e3 else f"{value:g}"
 
 
 def plot_rewards_by_episodes(axes, contestants, runs, references):
@@ -201,7 +219,7 @@ def draw_square_error(path, contestants, runs):
     rows = max(1, -(-len(learners) // columns))
     figure, all_axes = plt.subplots(rows, columns, figsize=(3.3 * columns, 1.2 + 2.5 * rows),
                                     squeeze=False, sharex=True, layout="constrained")
-    trends = {"falls": [], "stays": [], "rises": []}
+    changes = []
     for axes, one in zip(all_axes.flat, learners):
         ends = plot_square_error(axes, [one], runs)
         label_axes(axes, "", "", "episode")
@@ -210,14 +228,13 @@ def draw_square_error(path, contestants, runs):
             first, last = axes.lines[0].get_ydata()[[0, -1]]
             axes.set_title(f"{one.label}: {_significant(first)} → {_significant(last)}", fontsize=11,
                            color=legible(one.colour))
-            trend = "falls" if last < 0.8 * first else "rises" if last > 1.25 * first else "stays"
-            trends[trend].append(one.label)
+            changes.append((last / first, one.label))
     for axes in all_axes.flat[len(learners):]:
         axes.axis("off")
     for axes in all_axes[:, 0]:
         axes.set_ylabel("error [reward²]")
-    found = "; ".join(f"{trend} for {', '.join(names)}" for trend, names in trends.items() if names)
-    explain(figure, f"The error of the value estimates {found or 'is unknown'}",
+    found = ", ".join(f"{name}{_NBSP}×{ratio:.1f}" for ratio, name in sorted(changes))
+    explain(figure, f"Error of the value estimates at the end, relative to the start: {found}",
              f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic; the titles "
              f"give the first and the last value. {_shading(contestants, runs)} The error is relative to each learner's own targets and "
              "cannot be compared between learners. A policy that fails can have a low error too.")
@@ -276,6 +293,11 @@ def draw_mean_score(path, contestants, runs, references):
             explain(figure, f"Return per step at the end: {_listed(contestants, ends, digits=1)}",
                      f"Fig. 13: means of {measures.WINDOW} episodes. {_shading(contestants, runs)}")
             name_ends(all_axes[letter], ends)
+        for name, value in references.items():
+            if letter != "c":
+                all_axes[letter].annotate(name, (0.99, value), xytext=(0, -3), va="top", ha="right",
+                                          xycoords=all_axes[letter].get_yaxis_transform(),
+                                          textcoords="offset points", fontsize=9.5)
     save(figure, path)
 
 

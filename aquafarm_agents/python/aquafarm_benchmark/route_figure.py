@@ -20,7 +20,7 @@ _LANE = 0.14  # offset of a leg from the centres of its cells [cells]; legs alte
 # Style of a leg by whether a device is aboard; colours of Okabe and Ito (2008).
 _LEGS = {False: ("#0072b2", (0, (4, 1.5)), "route with nothing aboard"),
          True: ("#d55e00", "solid", "route with a device aboard")}
-_REPEATED = 0.35  # opacity of a path that may overlap itself
+_REPEATED = 0.55  # opacity of a path that may overlap itself
 _DEVICE = "#c2185b"
 _SEA = "#eaf3f9"
 _LAND = "#c9b98a"
@@ -44,7 +44,7 @@ def draw_route(path, label, route_file):
     for axes, (key, words) in zip(all_axes, panels):
         _chart(axes, route["chart"])
         plot_moves(axes, route[key], route["chart"])
-        axes.set_title(f"{label}: best move {words}")
+        axes.set_title(f"best move {words}")
     axes = all_axes[len(panels)]
     for empty in all_axes[len(panels) + 1:]:
         empty.axis("off")
@@ -54,8 +54,10 @@ def draw_route(path, label, route_file):
     for shown in all_axes[:len(panels) + 1]:
         shown.set_xlabel("cells to the east")
         shown.set_ylabel("cells to the north")
-    axes.set_title(f"Its route in this episode: {route['reason'].replace('_', ' ')}, "
-                   f"return {route['return']:.1f}", fontsize=11)
+    axes.set_title("the route in this episode")
+    figure.suptitle(f"{label}: {route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} "
+                    f"steps, return {route['return']:.1f}", fontsize=13.5, weight="bold", x=0.01,
+                    ha="left")
     _explain(all_axes[-1], [*all_axes[:len(panels)], axes], stops, bool(panels))
     save(figure, path)
 
@@ -118,7 +120,7 @@ def plot_unfinished(axes, name, route, size):
     colour, kind = _LEGS[loaded][0], f"{'a device' if loaded else 'nothing'} aboard"
     axes.add_collection(LineCollection(  # one segment per step: repeated segments look darker
         [np.array(pair, dtype=float) for pair in zip(last_leg, last_leg[1:])], color=colour,
-        linewidth=1.4, zorder=5, alpha=_REPEATED, label=f"last leg, {kind}; darker: repeated"))
+        linewidth=2.8, zorder=5, alpha=_REPEATED, label=f"last leg, {kind}; darker: repeated"))
     axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black",
                  linewidth=2.2, zorder=8, label="device that was not fetched")
     axes.scatter(*last["cell"], s=150, marker="*", color="#f0e442", edgecolor="black", zorder=9,
@@ -166,7 +168,7 @@ def _chart(axes, chart, size=None, left=None):
     devices = [device["cell"] for device in chart["devices"]]
     fetched = [] if left is None else [cell for cell in devices if cell not in left]
     for cells, style, share, label in (
-            (chart["rocks"], {"color": "#aab4bc", "marker": "^"}, 0.3, "rock"),
+            (chart["rocks"], {"color": "#c6cdd3", "marker": "^"}, 0.22, "rock"),
             (chart["ports"], {"color": "#1a7f37", "marker": "s"}, 0.6, "port"),
             (fetched, {"facecolor": "white", "edgecolor": _DEVICE, "marker": "D"}, 0.5,
              "device that was fetched"),

@@ -89,6 +89,9 @@ def success_text(player):
     return f"{rate:.0%} [{low:.0%}, {high:.0%}]"
 
 
+_NO_SHARE = "a return below 0 has no share"
+
+
 def share_text(player, optimum):
     """Returns the share of the clairvoyant's return on the same episodes as text; "–" if that
     return is unknown or not above 0."""
@@ -101,7 +104,7 @@ def share_text(player, optimum):
     if not pairs or total <= 0.0:
         return "–"
     share = sum(one for one, _ in pairs) / total
-    return "a return below 0 has no share" if share < 0.0 else f"{share:.1%} of the optimum"
+    return _NO_SHARE if share < 0.0 else f"{share:.1%} of the optimum"
 
 
 def difference(one, other):
@@ -129,8 +132,8 @@ def verdict(players):
         return ""
     best = runs[0]
     share = share_text(best, optimum_of(players))
-    facts = [] if share == "–" else ["its returns sum up to less than 0" if share.startswith("below") else
-                                     f"it reaches {share}"]
+    facts = [] if share == "–" else [
+        "its returns sum up to less than 0" if share == _NO_SHARE else f"it reaches {share}"]
     planner = next((one for one in players if one.label == "planner" and one.rows
                     and not one.is_run), None)
     for other in [*runs[1:2], *([planner] if planner else [])]:
@@ -147,8 +150,8 @@ def verdict(players):
         return ""
     if len(runs) == 1:
         return f"{best.label}: {', '.join(facts)}."
-    return (f"{best.label} has the highest return: {', '.join(facts)}. One training each does not rank their "
-            "algorithms.")
+    return (f"{best.label} has the highest return of the {len(runs)} runs: {', '.join(facts)}. One "
+            "training each does not rank their algorithms.")
 
 
 def optimum_of(players):

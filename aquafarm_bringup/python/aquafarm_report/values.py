@@ -149,7 +149,7 @@ def unit_text(units):
     return {"degC": "°C", "degF": "°F"}.get(units, units)
 
 
-def draw_map(axis, field, km, colours, label, lowest=0.0):
+def draw_map(axis, field, km, colours, unit, lowest=0.0):
     """Draws a map with north at the top. Cells without a value, such as land, are hatched.
 
     km: side of a cell
@@ -162,8 +162,9 @@ def draw_map(axis, field, km, colours, label, lowest=0.0):
     low, high = np.quantile(known, (lowest, 1.0)) if len(known) else (0.0, 1.0)
     image = axis.imshow(field, origin="lower", cmap=colours, vmin=low, vmax=high,
                         extent=(0, width * km, 0, height * km))
-    axis.figure.colorbar(image, cax=axis.inset_axes([1.03, 0.0, 0.05, 1.0]), label=label,
-                         extend="min" if lowest > 0.0 else "neither")
+    bar = axis.figure.colorbar(image, cax=axis.inset_axes([1.03, 0.0, 0.05, 1.0]),
+                               extend="min" if lowest > 0.0 else "neither")
+    bar.ax.set_title(unit, fontsize=9.5)
     axis.set_xlabel("east [km]")
 
 
@@ -211,7 +212,7 @@ def draw(text, values, layers, results, path):
     km = text["cell_size_m"] / 1000.0
     height, width = values.shape
     tall = min(1.6, max(0.5, height / width))
-    heights = [_COLUMN * tall, 2.4, 0.2] if layers else [_COLUMN * tall, 0.8]
+    heights = [_COLUMN * tall, 2.4, 0.05] if layers else [_COLUMN * tall, 0.8]
     columns = 1 + len(layers)
     width_in = _GAP * (columns + 0.6) + _COLUMN * columns
     height_in = sum(heights) + _TOP + _GAP * (len(heights) - 0.6)
@@ -221,7 +222,7 @@ def draw(text, values, layers, results, path):
         left=0.7 * _GAP / width_in, right=1.0 - 0.9 * _GAP / width_in, wspace=_GAP / _COLUMN,
         top=1.0 - _TOP / height_in, bottom=0.3 * _GAP / height_in,
         hspace=0.95 * _GAP / (sum(heights) / len(heights)))
-    draw_map(axes[0][0], values, km, _VALUE_COLOURS, "return [points]", _LOWEST)
+    draw_map(axes[0][0], values, km, _VALUE_COLOURS, "points", _LOWEST)
     letters = iter("abcdefghijklmnopqrstuvwxyz")
     axes[0][0].set_title(f"({next(letters)}) Return if the ship starts here", fontsize=11)
     draw_places(axes[0][0], text, km)
@@ -229,7 +230,7 @@ def draw(text, values, layers, results, path):
     for column, (layer, result) in enumerate(zip(layers, results), start=1):
         name, units, field = layer
         draw_map(axes[0][column], np.where(np.isfinite(values), field, np.nan), km,
-                 _SEA_COLOURS.get(name, "cividis"), f"{sea_words(name)} [{unit_text(units)}]")
+                 _SEA_COLOURS.get(name, "cividis"), unit_text(units))
         words = sea_words(name)
         axes[0][column].set_title(f"({next(letters)}) {words[:1].upper()}{words[1:]} of the sea",
                                   fontsize=11)

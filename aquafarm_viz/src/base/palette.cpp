@@ -97,6 +97,13 @@ const std::vector<cv::Point2f>& HullOutline() {
   return kHull;
 }
 
+const std::vector<cv::Point2f>& PointerOutline() {
+  // Long and notched, so that its direction is clear.
+  static const std::vector<cv::Point2f> kPointer{
+      {0.0F, 1.25F}, {-0.65F, -0.85F}, {0.0F, -0.4F}, {0.65F, -0.85F}};
+  return kPointer;
+}
+
 double Severity(double risk) { return std::clamp((-risk - 5.0) / 15.0, 0.0, 1.0); }
 
 Rgb SeverityColor(double severity) {

@@ -76,13 +76,12 @@ void DrawCentre(cv::Mat& map, const DisasterState& disaster, const SignPlace& si
 // Draws a pointer at the border towards a centre outside the map.
 void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, const SignPlace& sign,
                        const Layout& layout) {
-  static const std::vector<cv::Point2f> kPointer{{0.0F, 1.0F}, {0.75F, -0.7F}, {-0.75F, -0.7F}};
   const cv::Point2d away = layout.view.ToPixel(disaster.x, disaster.y) - sign.at;
   const double bearing = std::atan2(away.x, -away.y) * 180.0 / CV_PI;
-  const Pose2 placing{sign.at, 9.0 * layout.unit, bearing};
-  StrokeShape(map, kPointer, placing, Bgr(layout.style->halo), layout.Px(5));
-  StrokeShape(map, kPointer, placing, Bgr(layout.style->label), layout.Px(3));
-  FillShape(map, kPointer, placing, Bgr(GradeColor(disaster.grade)));
+  const Pose2 placing{sign.at, 10.0 * layout.unit, bearing};
+  StrokeShape(map, PointerOutline(), placing, Bgr(layout.style->halo), layout.Px(5));
+  StrokeShape(map, PointerOutline(), placing, Bgr(layout.style->label), layout.Px(3));
+  FillShape(map, PointerOutline(), placing, Bgr(GradeColor(disaster.grade)));
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ constexpr double kBetweenHeads = 50.0;  // min distance of two arrowheads on a p
 // age.
 // @param age  0: now, 1: the oldest part
 Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
-  const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.6) : style.good;
+  const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.5) : style.good;
   return Mix(fresh, style.sea_south, 0.4 * age);
 }
 
@@ -157,7 +157,9 @@ void DrawDirection(cv::Mat& map, cv::Point2d from, cv::Point2d to, const cv::Sca
 
 void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, bool is_dashed,
                     const FarmState& state, const Layout& layout) {
-  const cv::Scalar color = Bgr(PathColor(state, 0, 0.3, *layout.style));
+  const Style& style = *layout.style;
+  const cv::Scalar color =
+      Bgr(state.ships.size() > 1 ? style.words : PathColor(state, 0, 0.3, style));
   const cv::Point2d middle = (from + to) * 0.5;
   DrawMoved(image, from, middle, is_dashed, color, layout);
   DrawMoved(image, middle, to, is_dashed, color, layout);

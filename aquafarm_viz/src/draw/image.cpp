@@ -142,7 +142,9 @@ struct FarmPainter::Parts {
       LabelDevices(map, spec, state, labelled, space, layout, fonts);
       LabelFetched(map, spec, state, overlays.trail, space, layout, fonts);
     }
-    if (layers.risk) LabelRings(map, state, forecasts.courses, space, layout, fonts);
+    // The best moves need the space. The key explains the colours of the rings.
+    if (layers.risk && !layers.moves)
+      LabelRings(map, state, forecasts.courses, space, layout, fonts);
   }
 };
 

@@ -271,16 +271,15 @@ void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
   const double unit = layout.unit;
   const Style& style = *layout.style;
   const cv::Point2d half(7.0 * unit, 0.0);
-  static const std::vector<cv::Point2f> kPointer{{0.0F, 1.0F}, {0.75F, -0.7F}, {-0.75F, -0.7F}};
   switch (sign) {
     case Sign::kAtRisk:
       DrawRiskSamples(image, at, state, layout);
       break;
     case Sign::kFirstReached:
-      StrokeCircle(image, at, 3.0 * unit, Bgr(style.Risk(0.0)), layout.Px(1.4));
+      StrokeCircle(image, at, 3.0 * unit, Bgr(style.words), layout.Px(1.4));
       [[fallthrough]];
     case Sign::kInDanger:
-      StrokeCircle(image, at, 6.0 * unit, Bgr(style.Risk(0.0)), layout.Px(1.4));
+      StrokeCircle(image, at, 6.0 * unit, Bgr(style.words), layout.Px(1.4));
       break;
     case Sign::kDelivered:
       DrawDeviceSymbol(image, 0, {at, 4.5 * unit, 0.0}, 0.35);
@@ -295,8 +294,8 @@ void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
       break;
     case Sign::kPointer: {
       const Pose2 placing{at, 6.0 * unit, 225.0};
-      StrokeShape(image, kPointer, placing, Bgr(kInk), layout.Px(3));
-      StrokeShape(image, kPointer, placing, Bgr(style.words), layout.Px(1.5));
+      StrokeShape(image, PointerOutline(), placing, Bgr(kInk), layout.Px(3));
+      StrokeShape(image, PointerOutline(), placing, Bgr(style.words), layout.Px(1.5));
       break;
     }
     case Sign::kHeading:

@@ -363,6 +363,21 @@ void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
   }
 }
 
+namespace {
+
+// Returns the number of a fetched device in order of time, as "1. "; "" if there are several ships.
+std::string OrderText(const FarmSpec& spec, const FarmState& state, const Trail& trail,
+                      std::int64_t at_s) {
+  if (state.ships.size() > 1) return "";
+  const auto before = std::count_if(spec.devices.begin(), spec.devices.end(), [&](const auto& one) {
+    const auto other_s = trail.FetchedAt(one.id);
+    return other_s && *other_s < at_s;
+  });
+  return std::to_string(before + 1) + ". ";
+}
+
+}  // namespace
+
 void LabelFetched(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                   LabelSpace& space, const Layout& layout, const Fonts& fonts) {
   for (const DeviceState& device : spec.devices) {
@@ -370,14 +385,18 @@ void LabelFetched(cv::Mat& map, const FarmSpec& spec, const FarmState& state, co
     const bool was_fetched = now != nullptr && now->status != DeviceState::DEPLOYED;
     if (!was_fetched || device.self_propelled || !InGrid(spec, device.x, device.y)) continue;
     const auto at_s = trail == nullptr ? std::nullopt : trail->FetchedAt(device.id);
-    const std::string text =
-        DeviceLabel(device.id) + (at_s ? " " + TimeOfDay(spec, *at_s) : std::string());
+    const std::string text = at_s ? OrderText(spec, state, *trail, *at_s) + DeviceLabel(device.id) +
+                                        " " + TimeOfDay(spec, *at_s)
+                                  : DeviceLabel(device.id);
     const cv::Size size(fonts.small.Width(text), fonts.small.cap_height());
     const double radius = layout.device_radius_px();
     const cv::Point2d at = layout.view.ToPixel(device.x, device.y);
-    const auto place =
-        space.Take(Cover::kNothing, size, at + cv::Point2d(radius + size.width / 2.0, 0.0),
-                   3.0 * radius + size.width);
+    const cv::Point2d aside(1.2 * radius + size.width / 2.0, 0.0);
+    const cv::Point2d above(0.0, -1.4 * radius - size.height / 2.0);
+    std::optional<cv::Rect> place;  // next to the outline, or none
+    for (const cv::Point2d& offset : {aside, -aside, above, -above}) {
+      if (!place) place = space.Take(Cover::kNothing, size, at + offset, 12.0 * layout.unit);
+    }
     if (!place) continue;
     DrawLabel(map, fonts.small, text, place->tl(), layout,
               Mix(layout.style->label, layout.style->sea_south, 0.25));

@@ -255,7 +255,6 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
 // these disasters.
 std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                                      const FarmState& state, Labels& labels) {
-  static const std::vector<cv::Point2f> kPointer{{0.0F, 0.75F}, {-0.4F, -0.5F}, {0.4F, -0.5F}};
   const double middle_x = (spec.width - 1) / 2.0;
   const double middle_y = (spec.height - 1) / 2.0;
   const double inset = std::min(0.5 + 0.95 * maker.thing_m() / maker.cell_m(),
@@ -280,8 +279,8 @@ std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, con
     }
     const cv::Point2d at = labels.FirstFree(places, 0.55 * maker.thing_m() / maker.cell_m());
     const double bearing = std::atan2(east, north) * 180.0 / CV_PI;
-    Marker pointer = maker.Shape("pointer", disaster.id, kSignLayer, at.x, at.y, kPointer,
-                                 1.25 * maker.thing_m(), GradeColor(disaster.grade));
+    Marker pointer = maker.Shape("pointer", disaster.id, kSignLayer, at.x, at.y, PointerOutline(),
+                                 0.75 * maker.thing_m(), GradeColor(disaster.grade));
     pointer.pose.orientation = Turned(bearing, 0.0);
     array.markers.push_back(pointer);
     labels.Block(at.x, at.y, 0.8 * maker.thing_m() / maker.cell_m());

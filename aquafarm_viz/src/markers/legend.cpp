@@ -90,8 +90,12 @@ class Row {
   // Adds the pointer towards a centre outside the farm.
   void Pointer() {
     Marker pointer = MakeList();
-    for (const auto& [x, y] : {std::pair(0.0, 0.6), {-0.35, -0.45}, {0.35, -0.45}}) {
-      pointer.points.push_back(Point(x * size_m_, y * size_m_));
+    const auto& outline = PointerOutline();
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const cv::Point2d a = cv::Point2d(outline[i]) * (0.5 * size_m_);
+      const cv::Point2d b = cv::Point2d(outline[(i + 1) % outline.size()]) * (0.5 * size_m_);
+      pointer.points.insert(pointer.points.end(),
+                            {Point(0.0, 0.0), Point(a.x, a.y), Point(b.x, b.y)});
     }
     pointer.color = Color(GradeColor(3));
     Put(pointer);

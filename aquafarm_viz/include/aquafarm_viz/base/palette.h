@@ -37,8 +37,8 @@ inline constexpr Rgb kUnknown{0xb4, 0xbd, 0xc4};
 /// Colour of the choice of a compared policy: cyan, which neither risks nor values have.
 inline constexpr Rgb kChoiceColor{0x4d, 0xe3, 0xff};
 
-/// Colour of legal moves at ports and of labels of devices.
-inline constexpr Rgb kDirectionColor{0xff, 0xd1, 0x66};
+/// Colour of legal moves at ports and of labels of devices: pale, and no risk has it.
+inline constexpr Rgb kDirectionColor{0xdd, 0xf4, 0xff};
 
 /// Returns the colour of a device kind (DeviceState.kind); grey for an unknown kind. No risk has
 /// one of these colours.
@@ -59,6 +59,10 @@ Rgb ShipColor(std::int32_t id);
 
 /// Returns the outline of a ship's hull around the origin: bow at (0, 1), y up, counter-clockwise.
 const std::vector<cv::Point2f>& HullOutline();
+
+/// Returns the outline of the pointer to a centre outside the farm: tip up, y up, the origin
+/// inside, counter-clockwise.
+const std::vector<cv::Point2f>& PointerOutline();
 
 /// Returns the severity of a risk: 0 at -5 and above, 1 at -20 and below, linear in between.
 double Severity(double risk);

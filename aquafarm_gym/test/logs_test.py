@@ -13,6 +13,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 
 from aquafarm_gym import logs
 
@@ -78,12 +79,17 @@ class TensorBoardTest(unittest.TestCase):
         self.assertFalse(follower.is_alive())
         self.assertEqual(read(run)["episode/return"], [(20, 1.5), (40, 3.5), (60, 5.5)])
 
+    def test_ctrl_c_before_all_runs_have_begun_logs_those_that_have(self):
+        run = write_run(self.home / "run", range(1, 5))
+        with unittest.mock.patch.object(logs.time, "sleep", side_effect=KeyboardInterrupt):
+            self.assertEqual([2, 0], logs.log_runs([run, self.home / "later"], window=2, follow=True))
+
     def test_what_is_wrong_is_said_in_one_line(self):
         run = write_run(self.home / "run", range(1, 3))
         with open(run / "metrics.csv", "a", encoding="utf-8") as file:
             file.write("3,30,x\n")
         for given, words in ((self.home, "got no metrics.csv, expected a run folder"),
-                             (run, "metrics.csv: got line '3,30,x', expected 6 numbers")):
+                             (run, "metrics.csv: got line '3,30,x', expected 6 cells")):
             sys.argv = ["logs", str(given)]
             with contextlib.redirect_stderr(io.StringIO()) as said:
                 self.assertEqual(logs.main(), 2)

@@ -16,7 +16,7 @@ KINDS = {DeviceState.TEMPORARY_BREEDING: "temporary", DeviceState.MONITORING: "m
 class Outcome:
     """A device at the end of an episode."""
     label: str
-    picked_up: int  # step of the pickup; None: it was not picked up
+    picked_up: int  # step of the pickup, or of the arrival of a self-propelled device; None: neither
     home: int  # step of the delivery; None: it was not delivered
     health: float
 
@@ -52,8 +52,8 @@ def read_outcomes(bag):
 
 def episodes_table(captions, results):
     """Returns the table of the outcomes in some episodes: a row for each id, a column for each
-    episode. If the device with an id differs in kind between the episodes, each cell names its
-    kind.
+    episode. If an id belongs to devices of different kinds in these episodes, each cell of its row
+    also contains the kind.
 
     results: for each episode, the outcomes of read_outcomes
     """
@@ -73,8 +73,8 @@ NAMES = {"temporary_breeding": "temporary", "monitoring": "monitoring",
 
 
 def _share(count, episodes, distinct):
-    """Returns a share and its interval as "98% [94%, 99%]". The interval counts each distinct start
-    once."""
+    """Returns a share and its 95 % interval (Wilson) as "98% [94%, 99%]". The sample size of the
+    interval is the number of distinct initial states, because equal episodes are not independent."""
     rate = count / episodes
     evidence = max(1, min(distinct or episodes, episodes))
     low, high = wilson_interval(round(rate * evidence), evidence)
@@ -83,7 +83,7 @@ def _share(count, episodes, distinct):
 
 def summary_table(summary):
     """Returns the table of the outcomes over all episodes of an evaluation: by device, or by kind
-    if the episodes have different devices. Empty if the evaluation does not contain them."""
+    if the episodes have different devices. Empty if the evaluation contains no outcomes."""
     by_kind = summary.get("devices_by_kind", ())
     rows = []
     for one in by_kind or summary.get("devices", ()):

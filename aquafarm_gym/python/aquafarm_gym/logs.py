@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Shows the curves of runs in TensorBoard or Weights & Biases.
+"""Exports the curves of runs to TensorBoard or Weights & Biases.
 
     python -m aquafarm_gym.logs RUN … [--to tensorboard | wandb] [--follow] [--window 50]
 
 RUN is a run folder of ./aquafarm train or aquafarm_train; its metrics.csv has one line per episode.
-Each point of a curve is the mean of --window episodes, at the farm steps of the last of them.
+Each point is the mean over --window episodes. Its x value is the run's total number of farm steps
+after the last of them.
 TensorBoard reads RUN/tensorboard (tensorboard --logdir runs). Weights & Biases receives one run per
 folder, offline unless WANDB_MODE is online. --follow waits until all runs have begun, and logs them
-until they have ended or Ctrl-C is pressed. Only --to wandb needs a package from PyPI. This file can
+until they have ended or Ctrl-C is pressed. A run has ended once its policy.ckpt exists, also if it
+is resumed later; --endless also follows such a run. Only --to wandb needs a package from PyPI. This file can
 also run without the package aquafarm_gym: python3 logs.py.
 """
 from __future__ import annotations
@@ -159,8 +161,9 @@ class Metrics:
         self._names: list[str] = []
 
     def new_rows(self) -> Iterator[dict[str, float]]:
-        """Yields the complete lines since the last call, as numbers by column, without `reason`.
-        Raises ValueError if a line has another number of cells or a cell is not a number."""
+        """Yields the complete lines since the last call, as numbers by column. The column `reason`,
+        a text, is left out. Raises ValueError if a line has another number of cells than the first
+        line, or if a cell is not a number."""
         try:
             with open(self._path, "rb") as file:
                 file.seek(self._offset)
@@ -179,10 +182,12 @@ class Metrics:
                 yield {name: float(value) for name, value in row.items()}
             except ValueError as error:
                 raise ValueError(f"{self._path}: got line {','.join(cells)[:60]!r}, expected "
-                                 f"{len(self._names)} numbers as in its first line") from error
+                                 f"{len(self._names)} cells as in its first line, all except reason "
+                                 "numbers") from error
 
     def is_shorter(self) -> bool:
-        """Returns whether the file was truncated, for example because a run was resumed."""
+        """Returns whether the file is shorter than the part that was read, for example because a
+        run was resumed. Does not notice a file that has meanwhile grown beyond that part."""
         return self._path.is_file() and self._path.stat().st_size < self._offset
 
 
@@ -223,7 +228,8 @@ class Curves:
         self.points += 1
 
     def has_ended(self) -> bool:
-        """Returns whether the run has written its policy, which it does after all episodes."""
+        """Returns whether the run has written its policy, which it does after all episodes. True
+        also for a finished run that was resumed and still trains."""
         return (self._run / "policy.ckpt").is_file()
 
     def close(self) -> None:
@@ -235,19 +241,22 @@ class Curves:
 
 def log_runs(runs: list[pathlib.Path], kind: str = "tensorboard", window: int = 50,
              follow: bool = False, endless: bool = False) -> list[int]:
-    """Logs run folders and returns the number of points of each. kind: tensorboard or wandb.
-    follow: whether to continue until all runs have ended or Ctrl-C is pressed. endless: with
+    """Logs run folders and returns the number of points of each, 0 for a run that had not begun
+    when Ctrl-C was pressed. kind: tensorboard or wandb. follow: whether to wait until all runs have
+    begun, and to continue until all have ended or Ctrl-C is pressed. endless: with
     follow, whether to continue even after all runs have ended. Raises ValueError if a folder
     contains no run, and ImportError if the package wandb is needed but missing."""
+    begun = runs
     try:
         while follow and not all((run / "metrics.csv").is_file() for run in runs):
             time.sleep(PERIOD_S)
     except KeyboardInterrupt:
-        follow = False  # log the runs that have begun
-    for run in runs:
+        follow = False
+        begun = [run for run in runs if (run / "metrics.csv").is_file()]
+    for run in begun:
         if not (run / "metrics.csv").is_file() and not (run / "run.json").is_file():
             raise ValueError(f"{run}: got no metrics.csv, expected a run folder of ./aquafarm train")
-    curves = [Curves(run, kind, window) for run in runs]
+    curves = [Curves(run, kind, window) for run in begun]
     try:
         while True:
             ended = follow and not endless and all(one.has_ended() for one in curves)
@@ -262,7 +271,8 @@ def log_runs(runs: list[pathlib.Path], kind: str = "tensorboard", window: int = 
     finally:
         for one in curves:
             one.close()
-    return [one.points for one in curves]
+    points = dict(zip(begun, (one.points for one in curves)))
+    return [points.get(run, 0) for run in runs]
 
 
 def main() -> int:

@@ -18,7 +18,7 @@ struct Style {
   Rgb rule;         ///< thin lines between the parts of the picture
   Rgb words;        ///< text
   Rgb faint;        ///< secondary text
-  Rgb good;         ///< a reward above 0
+  Rgb good;         ///< a reward of 0 or more, a delivered device, the path of the only ship
   Rgb bad;          ///< a reward below 0
   Rgb alarm;        ///< text about devices in danger
   Rgb sea_north;    ///< water away from the coast, at the upper end of the map
@@ -32,7 +32,7 @@ struct Style {
   Rgb halo;                   ///< outline of `label`
   std::array<Rgb, 4> risks;   ///< colours of the risks -5, -10, -15 and -20
   std::array<Rgb, 4> grades;  ///< text colours of the grades blue, yellow, orange and red
-  double ring_tint{1.0};      ///< factor of the tint between the pattern lines of rings, [0, 1]
+  double ring_tint{1.0};      ///< opacity factor of the tint that fills a ring, [0, 1]
 
   /// Returns the colour of a severity, interpolated between `risks`; values outside [0, 1] are
   /// clamped.

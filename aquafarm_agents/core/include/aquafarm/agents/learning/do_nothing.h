@@ -8,8 +8,8 @@
 
 namespace aquafarm::agents {
 
-/// Policy with which every ship holds its cell in every step. Its losses are the reference for what
-/// a rescue saves.
+/// Policy with which every ship holds its cell in every step. What a rescue saves is measured
+/// against the value that this policy loses.
 class DoNothingPolicy final : public Policy {
  public:
   explicit DoNothingPolicy(const EnvironmentSpec& spec)

@@ -32,10 +32,11 @@ namespace aquafarm::agents {
 /// @throws InputError if an option is wrong
 std::uint8_t PpoObservationTypes(const std::string& options);
 std::uint8_t MappoObservationTypes(const std::string& options);
-/// Makes the policy that teacher_policy=planner imitates.
+/// Makes the policy that the learner imitates with teacher_policy=planner.
 using PlannerMaker = std::unique_ptr<Policy> (*)(const EnvironmentSpec&);
 /// Makes an untrained learner.
-/// @param make_planner may be null unless the options select teacher_policy=planner
+/// @param make_planner may be null unless the options select teacher_policy=planner and a teacher
+///   above 0
 /// @throws InputError if an option is wrong, if the options do not fit the features of `spec`, if
 ///   the number of farms is not a multiple of the shards, or if the planner does not support the
 ///   farms

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The stages of ./aquafarm test, the end of a launch, and child processes of tools/verbs."""
 import contextlib
+import importlib.machinery
 import io
 import os
 import pathlib
@@ -11,6 +12,7 @@ import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
 import unittest.mock
 from unittest import mock
@@ -226,6 +228,22 @@ class CiRunTest(unittest.TestCase):
         for word in ("--halp", "test", ""):
             self.assertEqual((2, "", f"ci: got '{word}', expected no argument or --help\n"),
                              self.run_with(word))
+
+
+class TimeLeftTest(unittest.TestCase):
+    """The estimate of tools/run_ros_tests."""
+
+    def test_slow_tests_weigh_more_and_running_ones_are_half_done(self):
+        path = ROOT / "tools/run_ros_tests"
+        loader = importlib.machinery.SourceFileLoader("run_ros_tests", str(path))
+        runner = types.ModuleType(loader.name)
+        loader.exec_module(runner)
+        short = [f"_run_tests_p_gtest_{letter}" for letter in "abc"]
+        slow = "_run_tests_p_rostest_test_benchmark.test"
+        self.assertEqual(0.0, runner.left_s(short, set(short), 2, 60.0))
+        self.assertAlmostEqual(60.0 * 9 / 9, runner.left_s(short, {short[0]}, 1, 60.0))
+        self.assertGreater(runner.left_s([slow, *short], {short[0]}, 0, 60.0), 600.0)
+        self.assertLess(runner.left_s([slow, *short], {slow}, 0, 60.0), 60.0)
 
 
 if __name__ == "__main__":

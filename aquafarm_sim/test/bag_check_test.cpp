@@ -7,6 +7,7 @@
 #include <aquafarm_msgs/FarmState.h>
 #include <aquafarm_msgs/SavedState.h>
 #include <gtest/gtest.h>
+#include <nav_msgs/OccupancyGrid.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <sys/resource.h>
@@ -140,7 +141,30 @@ TEST_F(EpisodeBag, ASecondSpecThatDiffersIsFound) {
   EXPECT_EQ("episode 0 of seed 5: two specs that differ", CheckBag(path, "").difference);
 }
 
-// The log of an episode in which all ships hold.
+TEST_F(EpisodeBag, AnEditedChartIsFoundAlthoughItPrecedesTheStates) {
+  const std::string whole = OneBag();
+  const std::string path = folder_ + "/chart.bag";
+  int charts = 0;
+  {
+    rosbag::Bag from(whole);
+    rosbag::Bag to(path, rosbag::bagmode::Write);
+    for (const auto& message : rosbag::View(from)) {
+      const auto grid = message.instantiate<nav_msgs::OccupancyGrid>();
+      if (grid == nullptr || message.getTopic() != "/ranch/chart") {
+        to.write(message.getTopic(), message.getTime(), message);
+        continue;
+      }
+      ++charts;
+      grid->data[3] = static_cast<std::int8_t>(grid->data[3] == 0 ? 100 : 0);
+      to.write(message.getTopic(), message.getTime(), *grid);
+    }
+  }
+  ASSERT_EQ(charts, 1);
+  EXPECT_EQ("", CheckBag(whole, "").difference);
+  const std::string difference = CheckBag(path, "").difference;
+  EXPECT_EQ(0U, difference.find("episode 0 step 0: chart.data[3]: got ")) << difference;
+}
+
 TEST_F(EpisodeBag, AMissingStepIsNamed) {
   const std::string whole = OneBag();
   const std::string bag = Changed(whole, true, [](FarmSpec*, FarmState* state, auto*) {

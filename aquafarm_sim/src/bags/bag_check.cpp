@@ -238,8 +238,9 @@ class Checker {
              Compared(saved->step, simulation_->Load(*saved)) && NoteChange(saved->step);
     }
     const auto grid = Instantiate<OccupancyGrid>(message);
-    if (!grid || !simulation_) return true;
-    return Compared(Step(), simulation_->Check(*grid, is_chart));
+    if (!grid) return true;
+    if (is_chart) early_chart_ = *grid;
+    return !simulation_ || Compared(Step(), simulation_->Check(*grid, is_chart));
   }
 
   /// @returns false if there is a difference
@@ -304,7 +305,8 @@ class Checker {
     const auto spec = specs_.find(key);
     if (spec == specs_.end()) return Compared(step, "the bag contains no spec of this episode");
     NamingBag(path_, [&] { simulation_.emplace(spec->second, definitions_); });
-    return Compared(0, simulation_->Check(spec->second));
+    if (!Compared(0, simulation_->Check(spec->second))) return false;
+    return !early_chart_ || Compared(0, simulation_->Check(*early_chart_, /*is_chart=*/true));
   }
 
   bool Compared(std::uint64_t step, const std::string& difference) {
@@ -320,6 +322,8 @@ class Checker {
   const std::string path_;
   Key key_;  // key of the simulated episode
   std::optional<Simulation> simulation_;
+  std::optional<OccupancyGrid>
+      early_chart_;  // the last chart: it precedes the states of its episode
   BagCheck check_;
 };
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures the training speed of other PPO implementations and prints the ratio of ours to each.
+"""Measures the training speed of other PPO implementations. Prints the ratio of aquafarm's speed to
+each of them.
 
 usage: bench_ppo.py BENCH_OUTPUT, a file with the lines 'metric value unit' of bench_ppo
 
@@ -113,7 +114,7 @@ class ActorCritic(nn.Module):
 
 
 class TorchPpo:
-    """Implements the same algorithm as ours with PyTorch's automatic differentiation."""
+    """Implements the algorithm of aquafarm's PPO with PyTorch's automatic differentiation."""
 
     def __init__(self):
         torch.manual_seed(1)

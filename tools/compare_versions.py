@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Compares the speed of two versions, each in a workspace that ./aquafarm bench has built. Runs
-their benchmarks in turn. Prints for each figure the geometric mean of the ratios new / old with its
-95 % interval; for costs, such as seconds or bytes, old / new. So 1.1 always means 10 % better."""
+their benchmarks alternately. Prints for each figure the geometric mean of the ratios new / old and
+its 95 % interval. For costs, such as seconds or bytes, the ratio is old / new: a ratio above 1
+means that the new version is better."""
 import argparse
 import pathlib
 import re

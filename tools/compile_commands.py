@@ -19,10 +19,10 @@ def split(entry):
 
 def read(build, by_folder=False):
     """Returns the entries of a build folder, one for each source; each has directory, command and
-    file. With `by_folder`, returns one for each compilation, which may be that of all sources of a
-    folder.
+    file. With `by_folder`, returns one for each compilation, which may compile all sources of a
+    folder together.
 
-    Raises ValueError with one line if there is none.
+    Raises ValueError with one line if compile_commands.json cannot be read.
     """
     path = pathlib.Path(build) / "compile_commands.json"
     try:

@@ -34,7 +34,8 @@ def energy_block(text, weight):
 
 
 def measure(text, policy, episodes, weight):
-    """Returns the mean return without energy, energy, distance, success and steps."""
+    """Returns a row with the means of energy, distance, success, steps, and the return without the
+    term of energy."""
     with tempfile.TemporaryDirectory() as folder:
         scenario = pathlib.Path(folder) / "scenario.yaml"
         scenario.write_text(energy_block(text, weight), encoding="utf-8")

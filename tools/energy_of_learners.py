@@ -7,11 +7,13 @@ usage: energy_of_learners.py SCENARIO.yaml ALGORITHM OUT.csv [--seeds N] [--weig
 
 There is one training for each weight and seed. With --from-first, trainings of later weights start
 with the policy of the first weight. This weight must be above 0, as the features contain the energy
-only then. The return excludes the term of energy. OUT.csv has a row per training; an interrupted
-run continues. The printed table has the mean over seeds, and the change of return and energy
-relative to the first weight, each with a 95 % interval (bootstrap over seeds, pairs of the same
-seed). aquafarm_train and aquafarm_evaluate must be on the PATH. The run folders are next to
-OUT.csv.
+only then. The return excludes the term of energy. OUT.csv has a row per training. The same command
+resumes an interrupted run.
+
+The printed table has the means over the seeds. It also has the change of return and energy relative
+to the first weight, with 95 % intervals (bootstrap over seeds, pairs of the same seed). The run
+folders are in a folder with the name of OUT.csv without .csv. aquafarm_train and aquafarm_evaluate
+must be on the PATH.
 """
 import argparse
 import csv

@@ -6,10 +6,11 @@ usage: evaluate_coasts.py CHART ARCHIVE OUTPUT [--ranches N] [--episodes N] [--s
 
 `aquafarm_scenario` cuts each ranch from the chart: place, size (12 to 60 cells a side), cell (300
 to 1,200 m), 1 to 10 devices and 1 to 6 ports are drawn from the seed. A place without enough water
-or without a shore is replaced by the next. Episodes draw the archive's storms since 2010. The
-ranches and ranches.csv are written to OUTPUT; an interrupted run continues. The last line is the
-share of the clairvoyant optimum over the episodes whose plan has at most 400,000 states, with a
-95 % interval (bootstrap over ranches). Both programs must be on the PATH.
+or without a shore is replaced by the next random place. Episodes draw the archive's storms since
+2010. The ranches and ranches.csv are written to OUTPUT. The same command resumes an interrupted
+run. The last line is the share of the clairvoyant optimum over the episodes whose plan has at most
+400,000 states, with a 95 % interval (bootstrap over ranches). aquafarm_scenario and
+aquafarm_evaluate must be on the PATH.
 """
 import argparse
 import csv
@@ -68,7 +69,7 @@ def cut(random, box, arguments, path):
 
 
 def evaluate(policy, path, episodes):
-    """Returns the results of a ranch."""
+    """Plays the episodes of a ranch; returns the last columns of its row."""
     written = path.with_suffix("")
     played = subprocess.run(
         ["aquafarm_evaluate", policy, path, "--episodes", str(episodes), "--optimum", str(STATES),

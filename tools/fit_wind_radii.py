@@ -5,9 +5,9 @@
   tools/fit_wind_radii.py ../shared/data
 
 The relation is ln r = a + b sqrt(V / w - 1) + c (|latitude| - 25), where r is the radius of a
-circle with the area of the ring. b and c are fitted to rings of the JMA (30 and 50 kt), a to those
-of each authority with these b and c. a of the CMA comes from the median errors of the former
-estimate over 24,494 bulletin rings (see docs/data.md).
+circle with the area of the ring. b and c are fitted to rings of the JMA (30 and 50 kt). With these
+slopes, a is fitted to the rings of each authority. For the CMA, a is also computed from the median
+errors of the former estimate over 24,494 bulletin rings (see docs/data.md).
 """
 import csv
 import json
@@ -21,8 +21,8 @@ import numpy as np
 NM_KM = 1.852
 KT_MPS = 0.514444
 CLASSES = ((0, 48), (48, 64), (64, 200))  # wind of the storm [kt]
-# Median of estimated / recorded radius of the former estimate over all bulletin rings: of storms
-# below 48 kt and of all at 34 kt, of all at 50 kt and 64 kt (issue 21).
+# Medians of (former estimate / recorded radius) over the bulletin rings (issue 21): of 34 kt in
+# storms below 48 kt, and of 34, 50 and 64 kt in all storms.
 FORMER_34_TS, FORMER_34, FORMER_50, FORMER_64 = 0.47, 0.68, 1.27, 1.79
 
 
@@ -41,7 +41,7 @@ def jma(path):
         if len(line) < 62 or wind == 0:
             continue
         for w, far, near in ((50, line[42:46], line[47:51]), (30, line[53:57], line[58:62])):
-            if int(far.strip() or 0) > 0:  # a circle about a point next to the centre
+            if int(far.strip() or 0) > 0:  # a circle whose centre is next to the storm's centre
                 radius = (int(far) + int(near)) / 2 * NM_KM
                 yield "JMA", storm, w, wind, int(line[15:18]) / 10, radius, float(line[24:28])
 
@@ -110,7 +110,8 @@ def predictors(rows):
 
 
 def left_out(rows):
-    """Returns the standard deviation of ln r of all rings from the fit to the other storms."""
+    """Returns the standard deviation of the residuals of ln r. The fit for each ring uses all
+    storms except that of the ring."""
     x, y = predictors(rows), np.log([row[5] for row in rows])
     storms = np.array([row[1] for row in rows])
     rest = np.zeros(len(rows))

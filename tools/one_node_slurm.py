@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs a command in a Slurm cluster of one node, which Debian's packages munge, slurmctld, slurmd
-and slurm-client provide.
+"""Runs a command in a Slurm cluster of one node. Needs Debian's packages munge, slurmctld, slurmd
+and slurm-client.
 
 Usage, as root: one_node_slurm.py COMMAND [ARGUMENT…]
 The command has SLURM_CONF, so that its sbatch, srun and squeue use the cluster. The cluster ends
@@ -19,7 +19,7 @@ import time
 
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "squeue", "sinfo")
 START_S = 120.0
-LIMIT_S = 600.0  # of a command in the cluster
+LIMIT_S = 600.0  # max time of a command that `call` runs [s]
 CPUS = 8  # number that Slurm assigns; the machine may have fewer
 
 CONFIGURATION = """ClusterName=aquafarm_test
@@ -113,7 +113,7 @@ class OneNodeSlurm:
         (self.folder / "slurm.conf").write_text(CONFIGURATION.format(
             host=socket.gethostname().split(".")[0], folder=self.folder, controller_port=ports[0],
             node_port=ports[1], cpus=CPUS))
-        # --force: munged otherwise refuses folders that others may write, such as those of /tmp.
+        # Without --force, munged refuses folders that other users can write to, such as /tmp.
         self._daemon("munged", "--foreground", "--force", "--key-file", key,
                      "--socket", self.folder / "munge.socket", "--pid-file",
                      self.folder / "munge.pid", "--log-file", self.folder / "munge.log",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Means, and ratios of two quantities that are measured in turn, with their intervals."""
+"""Means, and ratios of two quantities that are measured alternately, with 95 % intervals."""
 import math
 import statistics
 
@@ -24,5 +24,5 @@ def paired_ratio(numerators, denominators):
 
 
 def describe(result):
-    """Returns '1.86 (1.80 to 1.92)' for (value, low, high)."""
+    """Returns '1.860 (1.800 to 1.920)' for (value, low, high)."""
     return "{:.3f} ({:.3f} to {:.3f})".format(*result)

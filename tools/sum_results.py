@@ -27,14 +27,14 @@ def last_lines(case):
     """Returns the last lines of what a failed <testcase> reports."""
     texts = [(one.text or "").strip() or one.get("message") or ""
              for kind in ("failure", "error") for one in case.iter(kind)]
-    if texts == ["Failed"] or texts == [""]:  # of ctest, which reports the output in addition
+    if texts == ["Failed"] or texts == [""]:  # ctest reports the output in another element
         texts = [case.findtext("system-out") or ""]
     return [line for line in "\n".join(texts).splitlines() if line.strip()][-LAST_LINES:]
 
 
 def cases_of(path, stems):
-    """Returns (outcome, name, lines) of each case in a result file; lines are empty unless it failed.
-    An unreadable file is a failure."""
+    """Returns (outcome, name, lines) of each case in a result file. lines are empty unless the case
+    failed. An unreadable file is a failure."""
     try:
         root = ElementTree.parse(path).getroot()
     except ElementTree.ParseError as error:

@@ -5,8 +5,9 @@
 tools/time_plan.py page --coast COAST.json [--runs 5] [--core 0]   # from chart and bulletin to page
 tools/time_plan.py node --coast COAST.json [--runs 10] [--core 0]  # a new bulletin in plan_node
 
-Prints wall and processor seconds of each run. Build first; `node` needs a sourced setup.bash. The
-forecast is In-Fa (2021) as recorded, each point moved by up to 0.4 degrees.
+Prints median, min and max of wall and processor seconds. Build first; `node` needs a sourced
+setup.bash. The forecast is In-Fa (2021) as recorded, with the latitude and longitude of each
+forecast point moved by up to 0.4 degrees.
 """
 import argparse
 import json
@@ -36,8 +37,8 @@ MOST_S = 120
 
 
 def infa():
-    """Returns the fixes of In-Fa in the archive: (hours after 2021-07-24 00:00 UTC, latitude,
-    longitude, wind)."""
+    """Returns the fixes of In-Fa in the archive from 0 to 72 hours after 2021-07-24 00:00 UTC:
+    (hours, latitude, longitude, wind)."""
     inside, points = False, []
     for line in ARCHIVE.read_text(encoding="utf-8").splitlines():
         if line.startswith("storm "):
@@ -118,7 +119,7 @@ def measure_node(folder, options, pid):
         at, plan = plans[-1]
         if plan.fault:
             sys.exit(f"plan_node: got the fault {plan.fault!r}, expected a plan")
-        if run:  # the first plan has the start of the node
+        if run:  # the first plan includes the start of the node
             rows.append((at - began, processor_s(pid) - before, plan.compute_s))
     return rows
 

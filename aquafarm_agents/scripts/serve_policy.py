@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plays a policy in Python for a program of aquafarm, which starts this process.
+"""Plays a policy in Python for an aquafarm program, which starts this process.
 
     serve_policy.py SOCKET POLICY
 
@@ -12,15 +12,16 @@ Stable-Baselines3 or sb3-contrib:
     def act(observations, masks):       # [n, …] and int8 [n, 10]; 1: legal
         return actions                  # [n], each in [0, 9]
 
-The function is called once per step with the observations of all n agents of all farms. It must not
-keep a state, because several threads of the program may play different farms at the same time.
+The function is called once per step with the observations of all n agents of the farms that step
+together. It must not keep a state, because several threads of the program may play different farms
+at the same time.
 
 SOCKET is the descriptor of a socket. Numbers have the byte order of the machine. First this process
 writes one line: the kind of observations, or an error. Then it reads, for each request,
 
     u32 n, shape[3] | n observations (float32, uint8 or uint32) | n masks (u16, bit a: action a)
 
-where shape is that of an observation, and writes as response
+where shape is the shape of an observation, followed by ones. It responds with
 
     u32 0 | n actions (u8)          or an error:   u32 length in bytes | text
 

@@ -12,7 +12,7 @@ from sb3_contrib import MaskablePPO
 
 
 class Learner:
-    """MaskablePPO for unscaled rewards, which are in the tens, so that the entropy bonus is
+    """MaskablePPO with unscaled rewards. They are in the tens, so the entropy bonus must be
     large."""
 
     def __init__(self, env, seed):

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""PPO with an action mask in one file, in the style of CleanRL (Huang et al. 2022): copy and
-change.
+"""PPO with an action mask in one file, to copy and change, in the style of CleanRL (Huang et al.
+2022).
 
     python3 cleanrl_ppo.py [--scenario paper] [--steps 1500000] [--farms 64] [--seed 1]
 
-after: pip install './aquafarm_gym[sb3]' (torch). The farms step together in C++ and write into the
-arrays that torch reads, without copies.
+Install first: pip install './aquafarm_gym[sb3]' (includes torch). The farms step together in C++.
+The tensor of features shares the memory that they write.
 """
 import argparse
 import time
@@ -42,8 +42,8 @@ class Farms:
 
     def step(self, actions):
         """Takes one step. Returns (rewards [N], features after the step [N, F], last [N],
-        terminated [N]). last: whether the episode has ended. terminated: whether it ended before
-        the step limit."""
+        terminated [N]). last: whether the episode has ended. terminated: whether it has ended
+        for another reason than the step limit."""
         self.batch.step(actions.numpy().astype(np.uint8)[:, None])
         rewards, after = torch.from_numpy(self.rewards.copy()), self.features.clone()
         last = self.end_reasons != 0

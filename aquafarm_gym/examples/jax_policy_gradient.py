@@ -4,7 +4,7 @@
 
     python3 jax_policy_gradient.py [--scenario paper] [--updates 300] [--farms 256]
 
-Install the packages first: pip install ./aquafarm_gym jax optax. A jitted lax.scan steps the farms through
+Install first: pip install ./aquafarm_gym jax optax. A jitted lax.scan steps the farms through
 jax.experimental.io_callback, with one call for each step of all farms.
 """
 import argparse
@@ -55,9 +55,9 @@ class Farms:
         return features, mask, rewards, over
 
     def step(self, actions):
-        """Takes one step. Returns (features, mask, rewards, over) as JAX arrays: rewards and over
-        (whether the episode ended) are of this step, features and mask are for the next action. A
-        farm whose episode ended has already started the next one."""
+        """Takes one step. Returns (features, mask, rewards, over) as JAX arrays. rewards and over
+        (whether the episode ended) belong to this step. features and mask belong to the next
+        action: a farm whose episode ended has already started the next one."""
         return io_callback(self._step, self.shapes, actions, ordered=True)
 
 

@@ -4,9 +4,10 @@
 
     python3 masked_ppo.py [--scenario paper] [--steps 3000000] [--seed 1] [--save model.zip]
 
-after: pip install './aquafarm_gym[sb3]'. The action mask excludes illegal pickups and drop-offs.
-Without it PPO, A2C and DQN with their default options learn to wait: most random pickups and
-drop-offs cost 10, so holding still for -1 a step looks better than any attempt (docs/python.md).
+Install first: pip install './aquafarm_gym[sb3]'. The action mask excludes illegal pickups and
+drop-offs. Without it, PPO, A2C and DQN with their default options learn to wait. Most random
+pickups and drop-offs cost 10, so waiting at -1 per step looks better than any attempt
+(docs/python.md).
 """
 import argparse
 import time
@@ -57,8 +58,8 @@ def evaluate(model, scenario, episodes):
 
 
 def main(scenario="paper", steps=3_000_000, seed=1, save=None, farms=64, episodes=100, **options):
-    """Trains and evaluates; returns (mean return, success rate, steps per second). options: of
-    make_model."""
+    """Trains and evaluates; returns (mean return, success rate, steps per second). options:
+    arguments of make_model."""
     torch.set_num_threads(1)
     # Rewards are in the tens: VecNormalize scales them for the value network.
     envs = VecNormalize(aquafarm_gym.FarmVecEnv(farms, scenario), norm_obs=False, gamma=GAMMA)

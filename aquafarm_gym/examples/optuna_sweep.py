@@ -4,8 +4,8 @@
 
     python3 optuna_sweep.py [--scenario paper] [--trials 20] [--steps 200000] [--storage FILE.db]
 
-after: pip install './aquafarm_gym[sb3]' optuna. With --storage, several processes can share one
-study.
+Install first: pip install './aquafarm_gym[sb3]' optuna. With --storage, several processes can share
+one study.
 """
 import argparse
 

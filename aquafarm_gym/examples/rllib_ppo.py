@@ -4,8 +4,8 @@
 
     python3 rllib_ppo.py [--scenario paper] [--steps 1000000] [--workers 0] [--seed 1]
 
-after: pip install ./aquafarm_gym 'ray[rllib]' torch. The wrapper ActionMaskInObservation adds the
-mask to the observation. MaskedModule gives forbidden actions the probability 0.
+Install first: pip install ./aquafarm_gym 'ray[rllib]' torch. The wrapper ActionMaskInObservation
+adds the mask to the observation. MaskedModule gives illegal actions the probability 0.
 """
 import argparse
 import time

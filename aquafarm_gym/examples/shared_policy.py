@@ -4,9 +4,9 @@
 
     python3 shared_policy.py [--scenario two_squads] [--steps 2000000] [--seed 1]
 
-after: pip install './aquafarm_gym[sb3,pettingzoo]'. In training, each ship of each farm is a
-separate environment for MaskablePPO, as with the vector environments of SuperSuit. Here, however,
-the farms step in C++ and provide action masks. Gupta et al. 2017 and Terry et al. 2020 describe
+Install first: pip install './aquafarm_gym[sb3,pettingzoo]'. In training, each ship of each farm is
+a separate environment for MaskablePPO, as with the vector environments of SuperSuit. Unlike those,
+these farms step in C++ and provide action masks. Gupta et al. 2017 and Terry et al. 2020 describe
 such parameter sharing.
 """
 import argparse
@@ -31,7 +31,8 @@ def play(model, env, seed):
 
 
 def main(scenario="two_squads", steps=2_000_000, seed=1, farms=32, episodes=20, **options):
-    """Trains and evaluates; returns (mean return, success rate). options: of make_model."""
+    """Trains and evaluates; returns (mean return, success rate). options: arguments of
+    make_model."""
     torch.set_num_threads(1)
     envs = VecNormalize(aquafarm_gym.FarmVecEnv(farms, scenario), norm_obs=False, gamma=GAMMA)
     model = make_model(envs, seed, **options)

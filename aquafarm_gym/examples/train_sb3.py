@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Trains PPO of Stable-Baselines3 to retrieve one device, then evaluates the greedy policy.
 
-    python3 train_sb3.py [STEPS]       after: pip install gymnasium stable-baselines3
+    python3 train_sb3.py [STEPS]       (first: pip install gymnasium stable-baselines3)
 """
 import sys
 

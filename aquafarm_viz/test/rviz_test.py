@@ -32,10 +32,10 @@ SIDE = 25
 WHY_NOT = "" if shutil.which("Xvfb") and shutil.which("rviz") else "rviz or Xvfb is not installed"
 # Colours of palette.cpp in the view, as R, G, B.
 WANTED = {
-    "temporary breeding": (0xff, 0xa9, 0x4d),
-    "monitoring": (0xff, 0xe0, 0x3d),
-    "breeding release": (0xf7, 0x83, 0xc9),
-    "deep water breeding": (0xb5, 0x9c, 0xff),
+    "temporary breeding": (0xe8, 0xdc, 0xc8),
+    "monitoring": (0xa8, 0xe6, 0xa0),
+    "breeding release": (0xc4, 0xc4, 0xff),
+    "deep water breeding": (0x7f, 0xd4, 0xd4),
     "deck of ship 0": (0xd5, 0x5e, 0x00),
     "full health": (0x3d, 0xdc, 0x6f),
     "outer ring": (0xff, 0xd4, 0x3b),

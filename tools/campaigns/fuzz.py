@@ -77,7 +77,8 @@ def run_target(campaign, name, seed, place):
 
 
 def bulletin(points):
-    """Returns a bulletin with a storm of `points` points, which all have the same, invalid time."""
+    """Returns a bulletin with a storm of `points` points. All have the same time: it is
+    invalid."""
     point = json.dumps({"time": "2021-07-25T14:00:00", "lat": 30, "lng": 122, "pressure": 50})
     return ('[{"tfbh": "202106", "points": [' + ",\n".join([point] * points) + "]}]").encode()
 

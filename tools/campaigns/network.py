@@ -25,7 +25,7 @@ from campaigns import ros
 
 STEPS = 96_000       # of a training; each call steps 16 farms
 LIMIT_S = 1200
-DEADLOCK = "roscpp is in a deadlock"  # part of the message of train_node
+DEADLOCK = "roscpp is in a deadlock"  # part of an error message of train_node
 DELAY_S = 0.2
 # One in this many calls is disturbed in this way:
 DELAY, REPEAT, REPEAT_LATE, CUT_BEFORE, CUT_AFTER = 60, 20, 40, 60, 60
@@ -45,8 +45,7 @@ class Proxy(socketserver.ThreadingTCPServer):
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
     def one_in(self, number, what):
-        """Draws whether to disturb this call, which it is with probability 1 / `number`, and counts
-        it as `what`."""
+        """Returns True with probability 1 / `number`; it then counts a disturbed call as `what`."""
         with self.lock:
             chosen = self.campaign.rng.randrange(number) == 0
             self.campaign.attempt(what, int(chosen))

@@ -22,8 +22,8 @@ TRAINING = ("-a", "q_learning", "-n", "300000", "--checkpoint-period", "0.05", "
 
 
 def limits(**values):
-    """Returns options of Popen that set limits. A file that grows too large gives an error, no
-    signal."""
+    """Returns options of Popen that set limits. A write beyond the max file size then returns an
+    error and sends no signal."""
     def apply():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         for name, value in values.items():
@@ -67,8 +67,8 @@ def of_memory_group():
 
 @contextlib.contextmanager
 def memory_group(megabytes):
-    """Makes a control group of this size. Yields the options of Popen for a process in it; None if
-    this process may not make one."""
+    """Makes a control group with this memory limit. Yields the options of Popen for a process in
+    it; None if this process may not make one."""
     parent = of_memory_group()
     group = parent / f"aquafarm_{os.getpid()}" if parent else None
     try:
@@ -105,8 +105,8 @@ def judge(campaign, what, folder, code, words):
 
 
 def train(campaign, what, folder, **options):
-    """Trains under a limit and judges the training. If it failed and has a checkpoint, this must be
-    playable."""
+    """Trains under a limit and judges the training. If it failed but wrote a checkpoint, the
+    checkpoint must be playable."""
     trainer = campaign.program("aquafarm_train")
     code, words = common.execute(trainer, "paper", *TRAINING, "-d", folder, seconds=LIMIT_S, **options)
     judge(campaign, what, folder, code, words)
@@ -118,7 +118,7 @@ def train(campaign, what, folder, **options):
 
 
 def build_ranch(campaign, what, folder, output, **options):
-    """Runs the program that writes a scenario and judges this; returns its exit code."""
+    """Runs aquafarm_scenario and judges the run; returns its exit code."""
     program = campaign.program("aquafarm_scenario")
     code, words = common.execute(program, "--center", "30,122", "-o", output, seconds=LIMIT_S,
                                  **options)

@@ -107,8 +107,8 @@ class Ros:
         return process
 
     def answers(self, name):
-        """Returns whether the master knows a service. Raises OSError if no process listens at its
-        address: the master keeps the address of a killed process."""
+        """Returns whether a service is registered and its address accepts connections. Raises
+        OSError if no process listens there: the master keeps the address of a killed process."""
         place = urllib.parse.urlparse(self.service(name))
         if not place.port:
             return False
@@ -131,7 +131,7 @@ class Ros:
 
 
 def memory(process):
-    """Returns the resident memory of a process [bytes]; 0 if it has ended."""
+    """Returns the resident memory of a process [bytes]; 0 if it has ended but is not reaped."""
     words = pathlib.Path(f"/proc/{process.pid}/status").read_text()
     found = re.search(r"VmRSS:\s+(\d+) kB", words)
     return int(found.group(1)) << 10 if found else 0

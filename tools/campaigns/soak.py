@@ -3,8 +3,8 @@
 
 random    random, legal random and homing actions in every shipped scenario (farm_soak)
 planner   actions of the planners in these scenarios, with some random ones (planner_soak)
-ros       a training through ROS in lockstep; the memory of the sim node and of the trainer must
-          grow by at most 1 % after the first fifth
+ros       a training through ROS in lockstep, only with --only; the memory of the sim node and of
+          the trainer must grow by at most 1 % after the first fifth
 """
 import pathlib
 import re
@@ -41,8 +41,8 @@ def soak(campaign, kind, seed):
 
 
 def check_flat(campaign, name, samples):
-    """Checks that the memory in the last fifth of the samples is at most 1 % above that in the
-    second."""
+    """Checks that the median memory in the last fifth of the samples is at most 1 % above that in
+    the second fifth."""
     fifth = len(samples) // 5
     early = statistics.median(samples[fifth:2 * fifth])
     late = statistics.median(samples[-fifth:])
@@ -80,8 +80,8 @@ def lockstep(campaign, steps):
 
 
 def run(campaign):
-    """Runs the kinds with one seed after another. campaign.count is the number of million steps;
-    only those of kind random count if it takes part."""
+    """Runs the kinds with one seed after another. campaign.count is the number of steps in
+    millions. If the kind random takes part, only its steps count."""
     kinds = campaign.kinds([*KINDS, "ros"]) if campaign.only else list(KINDS)
     steps, seed = 0, campaign.seed
     while campaign.more(steps // MILLION):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests every id as Gymnasium's own tests/envs/test_envs.py tests its environments: check_env gives
-no warning, rollouts are equal, every render mode gives pictures, pickles continue. Then tests specs
-and wrappers."""
+no warning, two rollouts with one seed are equal, pickles continue, and the render modes rgb_array
+and ansi return a picture and a text. Also tests specs and wrappers."""
 import pickle
 import warnings
 
@@ -29,7 +29,7 @@ def check_rollout(make):
 
 
 def check_pictures(name):
-    """Tests that each render mode returns its kind of picture at the start and after a step."""
+    """Tests that rgb_array and ansi return a picture and a text, at the start and after a step."""
     modes = gymnasium.make(name).metadata["render_modes"]
     assert {"rgb_array", "ansi", "human"} == set(modes), modes
     for mode in ("rgb_array", "ansi"):
@@ -45,7 +45,7 @@ def check_pictures(name):
 
 
 def check_pickle(env):
-    """Tests that an environment and its pickle continue alike."""
+    """Tests that an environment and its unpickled copy give the same results."""
     env.reset(seed=3)
     other = pickle.loads(pickle.dumps(env))
     for _ in range(STEPS):

@@ -3,8 +3,9 @@
 
     python gymnasium_own_tests.py CHECKOUT [PYTEST_OPTION …]
 
-tests/envs/test_envs.py and the tests of vectors run with each id, and those of autoreset modes as
-they are. The checkout must have the version of the installed Gymnasium; pytest is needed.
+tests/envs/test_envs.py runs with each id. The tests in tests/vector (test_vector_env.py and
+test_autoreset_mode.py) use aquafarm/Paper-v1 instead of CartPole-v1. The checkout must have the
+version of the installed Gymnasium; pytest is needed.
 """
 import pathlib
 import re

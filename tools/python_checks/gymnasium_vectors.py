@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests vectors as Gymnasium's own tests of vectors and autoreset modes do: Sync and Async vectors
-of single environments give the same results in each mode; masked resets start only the selected
-farms and refuse wrong masks. Then tests vector wrappers, and vectors without a seed after episodes
-end."""
+"""Tests vector environments as Gymnasium's own tests of vectors and autoreset modes do. Sync and
+Async vectors of single environments give the same results in the modes NEXT_STEP and SAME_STEP.
+Masked resets start only the selected farms and refuse wrong masks. Then tests vector wrappers, and
+vectors that were reset without a seed."""
 import aquafarm_gym
 import gymnasium
 import numpy as np

@@ -18,7 +18,8 @@ import serve_policy  # noqa: E402
 
 
 def check_served(trained, is_masked=False):
-    """Tests that the process that plays a saved model for the programs chooses its actions."""
+    """Tests that serve_policy.py, which plays saved models for the programs, chooses the actions of
+    the model."""
     with tempfile.TemporaryDirectory() as folder:
         trained.save(f"{folder}/model.zip")
         kind, act = serve_policy.load(f"{folder}/model.zip")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Each campaign in a short form. ./aquafarm test names the workspace; without one they are skipped."""
+"""Each campaign in a short form. They are skipped unless AQUAFARM_CAMPAIGNS names a workspace."""
 import os
 import pathlib
 import subprocess

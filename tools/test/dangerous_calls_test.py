@@ -11,13 +11,13 @@ DANGEROUS = re.compile(
     r"|shell=True|os\.system\(|os\.popen\(|std::system\(|[^\w:.]popen\(|dlopen\("
     r"|(?<![\w.])eval\(|(?<![\w.])exec\(")
 
-# Sources that execute a program because their user named it as one, or read what they have written.
+# Sources that load a library that the user names, or read what they have written themselves.
 ALLOWED = {"aquafarm_agents/core/src/training/register_learner.cpp": "dlopen(",
            "tools/python_checks/gymnasium_envs.py": "pickle.loads(pickle.dumps(env))"}
 
 
 def sources():
-    """Returns the tracked programs and libraries, without tests and checks with other packages."""
+    """Yields (name, text) of the tracked programs outside the folders test, docs and bench."""
     names = subprocess.run(["git", "-C", ROOT, "ls-files", "-z"], capture_output=True, check=True,
                            text=True).stdout.split("\0")
     for name in names:

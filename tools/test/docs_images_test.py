@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/draw_docs_images knows every picture of docs/images, and pages show each of them."""
+"""tools/draw_docs_images lists every picture of docs/images, and pages show each of them."""
 import importlib.machinery
 import importlib.util
 import pathlib

@@ -9,8 +9,8 @@ import sys
 
 from .workspace import Refused, say
 
-# Arguments whose value is a path. It is made absolute, as nodes run in ROS_HOME. Values of
-# PATHS_OR_NAMES are paths only if they look like one; otherwise they are names of shipped files.
+# Arguments whose value is a path. It is made absolute, because nodes run in ROS_HOME. Values of
+# PATHS_OR_NAMES are either paths or names of shipped scenarios and policies.
 PATHS = ("run_dir", "record_dir", "report", "bag", "output", "human")
 PATHS_OR_NAMES = ("policy", "init", "scenario")
 FLAG = re.compile(r"[Tt]rue|[Ff]alse|0|1")
@@ -76,8 +76,8 @@ def check_values(launch, words):
 
 
 def policy_of(ranch):
-    """Returns the policy that plays a ranch without a training: generalist for one ship, planner
-    for several. A file that cannot be read is refused later."""
+    """Returns the policy that plays a ranch without a training: generalist for one agent (ship or
+    self-propelled device), planner for several. An unreadable file is refused later."""
     import yaml  # missing until setup has run
 
     try:
@@ -91,12 +91,12 @@ def policy_of(ranch):
 
 def name_the_ranch(launch, words):
     """Returns the arguments with RANCH.yaml of evaluate and sim as scenario:=RANCH.yaml, and a run
-    folder of evaluate as policy:=FOLDER. If RANCH.yaml is given without a policy, adds that of
-    policy_of."""
+    folder of evaluate as policy:=FOLDER. If RANCH.yaml is given without a policy, adds the policy
+    that policy_of returns."""
     named, ranch = [], None
     for word in words:
         if launch == "evaluate" and os.path.isfile(os.path.join(word, "run.json")):
-            word = f"policy:={os.path.join('.', word)}"  # with / it is a path
+            word = f"policy:={os.path.join('.', word)}"  # a value with / is a path
         if (launch in ("evaluate", "sim") and word.endswith(".yaml") and ":=" not in word
                 and not word.startswith("-")):
             ranch = word
@@ -108,7 +108,8 @@ def name_the_ranch(launch, words):
 
 
 def arguments_of_run(run):
-    """Returns what a run was trained with, as arguments of train.launch by name."""
+    """Returns the arguments of train.launch with which a run was trained, by name. Leaves out what
+    the run folder does not record."""
     folder, values = pathlib.Path(run), {}
     if (folder / "scenario.yaml").is_file():
         values["scenario"] = f"{os.path.realpath(run)}/scenario.yaml"
@@ -142,7 +143,7 @@ def newest_run():
 
 
 def defaults_of_training(launch, given, newest, now):
-    """Returns the folders of a training and, if it resumes, what the run was trained with."""
+    """Returns the folders of a training and, if it resumes, the arguments of the run."""
     taken = {}
     resumes = bool(TRUE.fullmatch(given.get("resume") or "false"))
     run = given.get("run_dir") or (resumes and newest) or f"{os.getcwd()}/runs/{now}"
@@ -150,8 +151,8 @@ def defaults_of_training(launch, given, newest, now):
         taken["run_dir"] = run
     if launch == "train" and resumes:
         of_run = arguments_of_run(run)
-        # Another algorithm is refused later. If the options of the run were added, the message
-        # would name these instead.
+        # Another algorithm than that of the run is refused later. The options of the run are not
+        # added then, because the message would name them instead.
         is_other = given.get("algorithm") not in (None, "", of_run.get("algorithm"))
         for name, value in of_run.items():
             if given.get(name) or (is_other and name in ("options", "exploration")):
@@ -199,7 +200,8 @@ def default_arguments(launch, words):
 
 
 def with_defaults(launch, words, given_words):
-    """Returns `words` with the defaults of arguments that `given_words` lacks, and prints these."""
+    """Adds the defaults of arguments that `given_words` lacks to `words`, and prints them. Returns
+    all words."""
     taken = [f"{name}:={value}" for name, value in default_arguments(launch, given_words).items()]
     for word in taken:
         say(f"taking {word}")

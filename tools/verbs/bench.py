@@ -67,7 +67,7 @@ def of_core(core, name, *options, reference=None):
 
 
 def ppo():
-    """Runs the benchmark of PPO, then references that play the same farm through aquafarm_gym."""
+    """Runs the benchmark of PPO, then references that train on this farm through aquafarm_gym."""
     build_core("aquafarm_agents")
     build_core("aquafarm_gym")
     out = WS / "bench_ppo.txt"

@@ -25,7 +25,8 @@ planner steers the ships; policy:=none: they wait for commands. In ./aquafarm si
 policy generalist steers a single ship, and planner steers several.""",
     "play": """Drives ship 0 from this terminal; the keys are shown at the start. Finished episodes are kept as
 bags in ./played, which ./aquafarm benchmark human:=played compares with the learners.""",
-    "record": """Records the ranch's topics to a bag while it is run, trained on or played by a policy.""",
+    "record": """Records the topics of a ranch to a bag, while a policy drives it (of:=sim), is
+trained (of:=train) or is evaluated (of:=evaluate).""",
     "replay": """Shows a recorded bag: only the player, viz and rviz run. policy:=… shows its choices as well.""",
 }
 

@@ -17,7 +17,7 @@ from .workspace import (PYTHON, ROOT, WS, bootstrap, build_core, enter_ros, run_
 
 RESULTS = WS / "results"
 CORES = ("aquafarm_sim", "aquafarm_agents")
-# Packages that only some tests need. The key says what happens without them.
+# Packages that only some tests need. The key states what happens without them.
 EXTRAS = {"the tests of HTML pages are skipped": ("chromium", "chromium-driver", "python3-selenium"),
           "the check of locks is skipped, and the isolated workspace is built with g++":
           ("clang-14",),
@@ -27,12 +27,12 @@ BROKEN = """<testsuite tests="1" failures="1"><testcase classname="stage" name="
 </testcase></testsuite>
 """
 LAST_LINES = 20
-# CI ends the test command after 90 minutes. Checks of the wheel that begin later than this after the
-# start are skipped. A check that has begun may take a quarter of an hour more.
+# CI ends the test command after 90 minutes. Checks of the wheel that have not begun this long after
+# the start are skipped. A check that has begun may take a quarter of an hour more.
 WHEEL_END_S = 55 * 60
 # Command prefix of a step that gets only the processor time that others leave.
 IDLE = ["chrt", "--idle", "0"]
-END_S = 20  # time for such a step to end after each of SIGTERM and SIGKILL
+END_S = 20  # time for such a step to end after SIGTERM, and again after SIGKILL
 
 
 @dataclasses.dataclass
@@ -42,7 +42,7 @@ class Step:
     command: list
     log: pathlib.Path
     xml: pathlib.Path | None = None  # results that it writes; None: only its exit code counts
-    is_shown: bool = False  # otherwise its output goes to the log
+    is_shown: bool = False  # False: its output goes to the log
     variables: dict = dataclasses.field(default_factory=dict)  # of the environment
 
 
@@ -121,7 +121,7 @@ def lower_weight(session):
     """Gives the processes of a session the lowest weight among sessions. Linux first divides the
     processor time among sessions ("autogroup", sched(7)), then within each session by class. With
     the idle class alone, a step would therefore get a quarter of a busy core. Without privileges,
-    ten changes a second succeed."""
+    Linux refuses changes that follow too closely (EAGAIN), so a refused change is tried again."""
     for _ in range(10):
         try:
             pathlib.Path(f"/proc/{session}/autogroup").write_text("19", encoding="ascii")

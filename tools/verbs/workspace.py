@@ -35,9 +35,9 @@ def run_children(commands, goes_on=False):
     """Runs commands at the same time, waits for them and returns their exit codes; 128 + N for a
     command that signal N ended.
 
-    commands: pairs of a command and the options of Popen. A signal to this process ends each command
-    by SIGTERM; it may need time to save. Then this process ends with 128 + the signal's number,
-    unless it `goes_on` to report the end.
+    commands: pairs of a command and the options of Popen. After SIGINT, SIGTERM or SIGHUP, this
+    process sends SIGTERM to each command and waits, because a command may need time to save. It
+    then exits with 128 + the signal's number; with `goes_on` it returns the exit codes instead.
     """
     received, children = [], []
 
@@ -142,7 +142,7 @@ def enter_ros():
 
 
 def replace_by(*command):
-    """Runs a command in place of this process."""
+    """Replaces this process by a command."""
     sys.stdout.flush()
     try:
         os.execvp(command[0], [str(word) for word in command])

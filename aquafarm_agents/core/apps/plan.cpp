@@ -193,7 +193,7 @@ int Main(int argc, char** argv) {
       "exit codes: 0 ships leave, 2 bad argument or file, 3 cannot write, 10 nothing can be "
       "saved,\n"
       "11 the storm reaches no device in the known time, 12 unknown whether it does,\n"
-      "13 the bulletin is older than 12 hours");
+      "13 the bulletin is 12 hours old or older");
   AddOptions(app, arguments);
   return RunWithExitCodes(app, [&] {
     app.parse(argc, argv);

@@ -52,8 +52,8 @@ def _parser():
                         help="full: the whole protocol; quick: minutes; paper: learners as "
                         "printed, tuned ones and an ablation, days (default: full)")
     parser.add_argument("--algorithms", default="all",
-                        help="rows of the table, separated by commas (default: all rows of the "
-                        f"profile; full has {','.join(_default_names(PROFILES['full']))})")
+                        help="rows of the table, separated by commas (default: those of the "
+                        f"profile; full: {','.join(_default_names(PROFILES['full']))})")
     parser.add_argument("--runs", type=int, default=0,
                         help="trainings of each learner, with seeds 1, 2, … (default: the "
                         "profile's)")
@@ -86,7 +86,8 @@ def _parser():
 
 
 def parse(arguments):
-    """Parses the arguments. Numbers that are 0 or absent come from the profile. Raises BadInput."""
+    """Parses the arguments. If runs, episodes, evaluation_episodes or max_steps is 0 or absent, the
+    profile sets it. Raises BadInput."""
     options = _parser().parse_args(arguments)
     if options.profile not in PROFILES:
         raise BadInput(f"profile: got '{options.profile}', expected one of: "
@@ -152,9 +153,9 @@ def _load_in_programs(contestants):
 
 
 def _own_packages(program):
-    """Returns the words to put before the command of a program. If the program belongs to a virtual
-    environment that contains aquafarm_core, they remove the workspace from PYTHONPATH, where it
-    would hide packages of the environment."""
+    """Returns the words to put before the command of a program. They are empty unless the program
+    belongs to a virtual environment that contains aquafarm_core. There they remove the workspace
+    from PYTHONPATH, because it would hide packages of the environment."""
     home = pathlib.Path(shutil.which(program) or program).parent.parent
     if not (home / "pyvenv.cfg").is_file() or not any(
             home.glob("lib/python*/site-packages/aquafarm_core")):
@@ -237,7 +238,7 @@ def make_jobs(options, contestants, folder):
 
 def settings_of(options, contestants, farm):
     """Returns the settings that affect the results. All results in a folder must have the same
-    settings."""
+    settings, except that runs and learners may be added (see claim)."""
     return {**farm, "runs": options.runs, "episodes": options.episodes,
             "evaluation_episodes": options.evaluation_episodes, "max_steps": options.max_steps,
             "evaluation_seed": options.evaluation_seed, "farms": FARMS,
@@ -321,8 +322,8 @@ _FARM_KEYS = ("scenario", "scenario_hash", "version")
 
 
 def look_at_farm(options):
-    """Returns name, hash and version of the farm, and whether it has money; raises BadInput if the
-    scenario is invalid."""
+    """Returns the name and hash of the scenario with the version of the programs, and whether the
+    scenario has money. Raises BadInput if the scenario is invalid."""
     evaluate = find_program("aquafarm_evaluate", options.programs)
     with tempfile.TemporaryDirectory(prefix="aquafarm_") as folder:
         one = subprocess.run([evaluate, "random", options.scenario, "--episodes", "1",
@@ -392,7 +393,7 @@ def _run_jobs(jobs, options, folder):
 
 
 def _summarise(one, of_one, best, settings, people):
-    """Returns the row of a contestant. best: run of the optimum; None if there is none"""
+    """Returns the row of a contestant. best: run of the optimum; None if there is no such run"""
     is_human = one.name == human.HUMAN.name
     yardstick = None
     if best is not None:

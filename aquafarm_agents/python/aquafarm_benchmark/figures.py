@@ -14,8 +14,8 @@ _REACHED = 0.9  # a learner has learnt once it reaches this fraction of the best
 
 
 def _listed(contestants, ends, digits=0):
-    """Returns the learners and the last values of their lines, the highest first: "DQN 271, PPO
-    259"."""
+    """Returns the learners except RANDOM with the last values of their lines, the highest first:
+    "DQN 271, PPO 259"."""
     learners = {one.label for one in contestants if one.name != "random"}
     last = sorted(((y, name) for _, y, _, name in ends if name in learners), reverse=True)
     return ", ".join(f"{name}{_NBSP}{number(y, digits)}" for y, name in last)
@@ -29,7 +29,8 @@ def _shading(contestants, runs):
 
 
 def _smooth(values):
-    """Returns the moving means over 50 episodes, and the last episode of each, counted from 1."""
+    """Returns (episodes, means): the moving means over 50 episodes, and the last episode of each,
+    counted from 1."""
     window = min(measures.WINDOW, len(values))
     return np.arange(window, len(values) + 1), measures.moving_mean(values, window)
 
@@ -65,7 +66,7 @@ def _draw_returns(path, find, note, ylabel, plots):
     """Draws charts of returns, one below the other, on the scale of _scale_returns. Lines are named
     at their right end.
 
-    find: function of the ends of the lines of the last chart that returns the headline
+    find: function that returns the headline, given the ends of the lines of the last chart
     note: how the data were computed
     plots: for each chart, from top to bottom: (function, xlabel). The function plots on axes and
         returns the ends of the lines, as name_ends expects them
@@ -122,7 +123,7 @@ def _plot_one_run(axes, one, curve, x):
 
 
 def _mark_reached(axes, references):
-    """Draws a dotted line at the return of the headline of Fig. 12a."""
+    """Draws a dotted line at the return to which the headline of Fig. 12a refers."""
     if references and max(references.values()) > 0.0:
         axes.axhline(_REACHED * max(references.values()), color="black", linestyle=":",
                      linewidth=1.2, label="_reached")
@@ -131,7 +132,8 @@ def _mark_reached(axes, references):
 
 
 def plot_rewards_by_steps(axes, contestants, runs, references):
-    """Plots Fig. 12a: the 50-episode mean return of the first run by time steps taken so far."""
+    """Plots Fig. 12a: the 50-episode mean return of the first run by time steps taken so far.
+    Returns the ends of the lines."""
     ends = []
     for one in contestants:
         curve = runs[one.name][0]["curve"]
@@ -150,7 +152,8 @@ def _steps_text(value):
 
 
 def plot_rewards_by_episodes(axes, contestants, runs, references):
-    """Plots the 50-episode mean return of the first run by episodes."""
+    """Plots the 50-episode mean return of the first run by episodes. Returns the ends of the
+    lines."""
     ends = []
     for one in contestants:
         curve = runs[one.name][0]["curve"]
@@ -201,7 +204,7 @@ def draw_average_rewards(path, contestants, runs, references):
 
 def plot_average_rewards(axes, contestants, runs, references):
     """Plots the mean return of all episodes so far: the median of the runs, shaded between their
-    lowest and highest value."""
+    lowest and highest value. Returns the ends of the lines."""
     ends = []
     for one in contestants:
         curves = _curves(runs[one.name], "return")
@@ -373,8 +376,8 @@ def _with_money(contestants, rows):
 
 
 def plot_exceedance(axes, contestants, rows):
-    """Plots P(loss > x) by x as a step curve that starts at x = 0, and a mark at the CVaR, on the
-    line of 5 %."""
+    """Plots P(loss > x) by x for each contestant, as a step curve from x = 0. A mark on the 5 %
+    line shows the CVaR."""
     for one, money in _with_money(contestants, rows):
         x, probability = money["exceedance"]
         axes.step([0.0, *x], [1.0 if x[0] > 0.0 else probability[0], *probability], where="post",

@@ -74,8 +74,8 @@ def _start_of(spec, state):
 
 
 def read(people, scenario_hash):
-    """Reads the finished episodes of farm 0. Returns the people who have some. Raises BadBag if no
-    person has any, or if a bag has another scenario."""
+    """Reads the finished episodes of farm 0. Returns the people with at least one episode. Raises
+    BadBag if there are no such people, or if a bag has another scenario."""
     import rosbag  # imported here, because the benchmark of learners needs no ROS
 
     for person in people:
@@ -165,8 +165,8 @@ def contestant(people):
 
 
 def optimum_of_the_same(people, evaluation_seed, evaluation_csv):
-    """Returns the optimum's mean return over the episodes that the people played: the mean over the
-    people of their means. None if one of the episodes is not an evaluation episode."""
+    """Returns the optimum's mean return over the episodes that the people played. Each person's
+    episodes have the same total weight. None if an episode is not an evaluation episode."""
     with open(evaluation_csv, newline="") as file:
         best = {int(row["episode"]): float(row["return"]) for row in csv.DictReader(file)}
     seed = evaluation_seed | _EVALUATION_SEED_BIT

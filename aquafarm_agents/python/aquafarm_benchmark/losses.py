@@ -22,8 +22,8 @@ def _cents(text):
 
 
 def read(evaluation_csv):
-    """Returns the money columns as arrays of whole cents, and the column "start", a number that is
-    equal for equal starts; None without money."""
+    """Returns the money columns as arrays of whole cents, and the column "start": episodes with
+    equal starts have the same number in it. Returns None if there are no money columns."""
     with open(evaluation_csv, newline="") as file:
         rows = list(csv.DictReader(file))
     if not rows or "insured" not in rows[0]:

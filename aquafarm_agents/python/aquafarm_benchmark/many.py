@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plans a rescue for many ranches, or evaluates policies on them, on the cores of this machine or
-of a cluster, and writes one table.
+"""Plans rescues for many ranches, or evaluates policies on them, and writes one table. Runs on the
+cores of this machine or of a cluster.
 
     aquafarm_many plan RANCH.yaml… --output FOLDER -- --bulletin FILE --ships 2
     aquafarm_many evaluate RANCH.yaml… --policy generalist --policy runs/x --output FOLDER -- --episodes 200
 
-Arguments after -- go to aquafarm_plan or aquafarm_evaluate. FOLDER/table.md and table.csv have a row
-for each ranch (and policy); FOLDER/runs has the result files and logs. After Ctrl-C the same command
-resumes. Exit codes: 0 all results exist, 2 wrong argument, 3 storage, 4 some ranches failed,
-130 interrupted.
+Arguments after -- go to aquafarm_plan or aquafarm_evaluate. FOLDER/table.md and table.csv have a
+row for each ranch (and policy) with a result. FOLDER/runs has the result files and logs. After
+Ctrl-C the same command resumes. Exit codes: 0 all results exist, 2 wrong argument, 3 storage,
+4 some ranches failed, 130 interrupted.
 """
 import argparse
 import csv
@@ -107,8 +107,8 @@ def write_tables(folder, columns, rows):
 
 
 def _files(words):
-    """Returns size and time of change of those words that are files. They are part of the task, so
-    that a changed file makes it a different task."""
+    """Returns the size and the modification time of each word that names a file. They are part of
+    the task: with a changed file, the task is a different one."""
     return {word: [os.stat(word).st_size, os.stat(word).st_mtime_ns]
             for word in words if os.path.isfile(word)}
 

@@ -6,23 +6,23 @@ import numpy as np
 
 WINDOW = 50  # episodes in a moving mean
 BAND = 0.05  # half-width of the band of a converged learner, as a fraction of the plateau's level
-PLATEAU_SHARE = 0.25  # fraction of a training, at its end, that is the plateau
-NOISE = 3.0  # half-width of the wider band in standard errors
+PLATEAU_SHARE = 0.25  # the plateau is this last fraction of a training
+NOISE = 3.0  # half-width of the second band, in standard errors; see convergence
 PLATEAU_SUCCESS = 0.95  # min success rate of a plateau
 WEIGHTS = {"return": 0.1, "success": 0.3, "convergence": 0.2, "stability": 0.4}  # Eq. 16
 BEST_RANK, FAILED_RANK = 4, 1  # ranks of convergence in Table 1
 
 
 def moving_mean(values, window=WINDOW):
-    """Returns the means of all `window` successive values, [n - window + 1]. The first one is the
+    """Returns the mean of each `window` successive values, [n - window + 1]. The first one is the
     mean of the values 0 to window - 1."""
     sums = np.cumsum(np.concatenate(([0.0], np.asarray(values, dtype=float))))
     return (sums[window:] - sums[:-window]) / window
 
 
 def known_moving_mean(values, window=WINDOW):
-    """Returns moving means as moving_mean, but only over finite values; NaN for a window without
-    one."""
+    """Like moving_mean, but ignores values that are not finite. The mean of a window without finite
+    values is NaN."""
     values = np.asarray(values, dtype=float)
     known = np.isfinite(values)
     counts = np.convolve(known.astype(float), np.ones(window), mode="valid")
@@ -79,8 +79,8 @@ def interquartile_mean(values):
 
 
 def bootstrap_interval(values, statistic=interquartile_mean, level=0.95, draws=2000, seed=1):
-    """Returns the interval of a statistic over runs by percentile bootstrap (Efron 1979):
-    (low, high). NaN for fewer than two values."""
+    """Returns (low, high): the interval of a statistic over runs by percentile bootstrap (Efron
+    1979). Both are NaN for fewer than two values."""
     if len(values) < 2:
         return (math.nan, math.nan)
     from scipy import stats  # takes a third of a second to load
@@ -92,7 +92,7 @@ def bootstrap_interval(values, statistic=interquartile_mean, level=0.95, draws=2
 
 
 def wilson_interval(hits, count, level=0.95):
-    """Returns the interval of the proportion hits / count (Wilson 1927): (low, high)."""
+    """Returns (low, high): the interval of the proportion hits / count (Wilson 1927)."""
     from scipy import stats
 
     found = stats.binomtest(int(hits), count).proportion_ci(level, method="wilson")
@@ -136,8 +136,8 @@ def ea_paper(return_per_step, success, rank, stability):
 def ea_normalised(share_of_optimum, success, converged_at, stability, episodes):
     """Returns Eq. 16 with every term normalised to [0, 1], so that no unit dominates.
 
-    The return is divided by the clairvoyant optimum. Convergence is the fraction of the training
-    after the converged episode.
+    The return is divided by the clairvoyant optimum and limited to [0, 1]. Convergence is the
+    fraction of the training after the converged episode; 0 if the learner does not converge.
     """
     left = 0.0 if converged_at is None else 1.0 - converged_at / episodes
     return (WEIGHTS["return"] * min(1.0, max(0.0, share_of_optimum)) +

@@ -76,8 +76,8 @@ class Contestant:
 FARMS = 1
 
 # Trainings run in parallel, one per core, so they use device=cpu. docs/decisions/settling_early.md
-# gives the reasons for these numbers. They depend on numbers of episodes, not on the length of the
-# training, so that shorter and longer trainings start in the same way.
+# gives the reasons for these numbers. For DQN and LSTM-DQN, temperature and learning rate depend on
+# the number of episodes, not on the length of the training: short and long trainings start alike.
 _EXPLORED = 100  # episodes until the temperature is one unit of reward
 _COOLING = "boltzmann:harmonic:20:1:{explored}"
 _FIRST_RATE = 5e-4

@@ -17,7 +17,7 @@ _ADDED = ("energy_kwh_per_episode", "distance_km_per_episode")
 
 
 def write_atomically(path, text):
-    """Writes a file: first a temporary one in the same folder, which is then renamed."""
+    """Writes a temporary file in the same folder, then renames it to `path`."""
     temporary = path.with_name(path.name + ".part")
     temporary.write_text(text)
     os.replace(temporary, path)
@@ -34,8 +34,8 @@ def read_curve(metrics):
 
 
 def read_run(folder):
-    """Returns the results of one run of a contestant. If it was not trained, 'curve' is None and
-    'training' (the content of run.json) is empty."""
+    """Returns the results of one run of a contestant. 'training' is the content of run.json. If the
+    contestant was not trained, 'curve' is None and 'training' is empty."""
     evaluation = json.loads((folder / "evaluation.json").read_text())
     metrics = folder / "metrics.csv"
     curve = read_curve(metrics) if metrics.exists() else None
@@ -93,7 +93,7 @@ def summarise(contestant, runs, optimum, training_episodes):
     row["return_per_step_interval"] = _interval(column("return_per_step"))
     row["success_interval"] = _interval(column("success_rate"))
     row["share_of_optimum"] = None
-    if optimum is not None and optimum > 0.0:  # for an optimum of 0 or less it is undefined
+    if optimum is not None and optimum > 0.0:  # the share of an optimum of 0 or less is undefined
         row["share_of_optimum"] = row["return_per_episode"] / optimum
     row["stability"] = row["stability_settled"] = row["stability_interval"] = None
     for name, stability in (("convergence", "stability"), ("settled", "stability_settled")):

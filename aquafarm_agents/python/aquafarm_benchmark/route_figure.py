@@ -16,7 +16,7 @@ _EVERY = 2  # arrows are drawn in every second column and row, so that they can 
 _SHOWN_STEPS = 4  # number of steps whose rings are drawn
 _ARROW = 0.48  # length of an arrow, as a fraction of the distance to the next one
 _RIM = 0.7  # distance from the centres of the outermost cells to the edge of the axes [cells]
-_LANE = 0.14  # offset of a leg from the centres of its cells [cells]; legs alternate in sign
+_LANE = 0.14  # offset of a leg from the centres of its cells [cells]; its sign alternates
 # Style of a leg by whether a device is aboard; colours of Okabe and Ito (2008).
 _LEGS = {False: ("#0072b2", (0, (4, 1.5)), "route with nothing aboard"),
          True: ("#d55e00", "solid", "route with a device aboard")}
@@ -59,7 +59,7 @@ def draw_route(path, label, route_file):
                     f"steps, return {route['return']:.1f}", fontsize=13.5, weight="bold", x=0.01,
                     ha="left")
     _explain(all_axes[-1], [*all_axes[:len(panels)], axes], stops, bool(panels))
-    save(figure, path)
+    save(figure, path, dpi=110)  # reports show it at full size, on 1280 pixels
 
 
 def devices_left(route):
@@ -99,8 +99,8 @@ def draw_unfinished(path, routes, title):
 
 
 def plot_unfinished(axes, name, route, size):
-    """Draws the route of an episode that did not succeed. size: columns and rows of the largest
-    ranch, which fills the axes"""
+    """Draws the route of an episode that did not succeed. size: columns and rows of the axes, which
+    are those of the largest ranch"""
     chart, last = route["chart"], route["steps"][-1]
     left = devices_left(route)
     sea = _chart(axes, chart, size, left)
@@ -181,8 +181,8 @@ def _chart(axes, chart, size=None, left=None):
 
 
 def plot_moves(axes, moves, chart):
-    """Draws the preferred action of cells: a move as an arrow, in every second column and row
-    except at ports and devices; a pickup or drop-off as a mark."""
+    """Draws the preferred actions. A move is an arrow, in every second column and row except at
+    ports and devices. A pickup or drop-off is a mark."""
     taken = [*chart["ports"], *(device["cell"] for device in chart["devices"])]
     pointed = [(x, y, *_DIRECTIONS[action]) for x, y, action in moves
                if action in _DIRECTIONS and x % _EVERY == 0 and y % _EVERY == 0

@@ -18,7 +18,7 @@ from aquafarm_benchmark.cluster import Lost
 from aquafarm_benchmark.worker import has_begun, last_line
 
 _REFUSED = 2  # exit code of a program for invalid input
-_LINGER_S = 12.0  # time for programs to save after Ctrl-C; roslaunch allows 15
+_LINGER_S = 12.0  # time for programs to save after Ctrl-C; roslaunch allows 15 by default
 _PERIOD_S = 5.0  # between two checks of the scheduler
 _LOSSES = 5  # max number of times that a run is submitted again after Dask gave it up
 _RECOVERIES = 20  # max number of losses of the scheduler without a completed run in between
@@ -95,8 +95,9 @@ def run_all(jobs, cluster, report, period_s=10.0, complete=is_complete):
     Returns {contestant: reason} for the contestants that are not suitable: their first command
     exits with code 2 (invalid input), for example a table on a farm with too many states. Exit code
     2 is a failure if it comes from a later command, or if the contestant has a complete run. Raises
-    RunFailed if some runs failed, after all others have ended; Interrupted on Ctrl-C, after every
-    program has saved and exited; cluster.Lost if the scheduler does not return.
+    RunFailed if some runs failed, after all others have ended. Raises Interrupted on Ctrl-C, once
+    the programs have saved and exited or _LINGER_S have passed. Raises cluster.Lost if the
+    scheduler does not return.
     """
     return _Runs(jobs, cluster, report, complete).run(period_s)
 
@@ -253,7 +254,7 @@ class _Runs:
                     raise
 
     def _end(self):
-        """Ends all programs and waits until they have saved."""
+        """Ends all programs, and waits for at most _LINGER_S until they have saved."""
         numbers = (signal.SIGINT, signal.SIGTERM)
         # Repeated interrupts are ignored, because this function ends soon.
         before = [signal.signal(number, signal.SIG_IGN) for number in numbers]
@@ -267,7 +268,7 @@ class _Runs:
 
 
 def is_written(log):
-    """Returns whether a program of a run is still running. It keeps its log locked."""
+    """Returns whether a program of a run is still running. Such a program keeps the log locked."""
     try:
         with open(log, "rb") as file:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)

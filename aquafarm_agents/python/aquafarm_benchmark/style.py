@@ -11,20 +11,20 @@ from matplotlib import colors, pyplot as plt  # noqa: E402
 _DPI = 150
 _LETTERS = 78  # max length of a line of a headline
 _NAME_PT = 15.0  # height of a name [pt]
-_NEAR = 0.15  # ends of lines whose distance along x is less [widths of the axes] are named together
+_NEAR = 0.15  # max distance along x of ends that are named in one column [widths of the axes]
 _TEXT = 4.5  # min contrast ratio of names on white (WCAG 2.1, 1.4.3)
 plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False,
                      "axes.titlelocation": "left"})
 
 
-def save(figure, path):
+def save(figure, path, dpi=_DPI):
     """Writes a figure as PNG and closes it."""
-    figure.savefig(path, dpi=_DPI, bbox_inches="tight")
+    figure.savefig(path, dpi=dpi, bbox_inches="tight")
     plt.close(figure)
 
 
 def explain(figure, finding, note):
-    """Writes what a figure shows above it, in bold, and how it was computed below it."""
+    """Writes the finding above a figure, in bold, and the note below it."""
     figure.suptitle("\n".join(textwrap.wrap(finding, _LETTERS, break_on_hyphens=False)), fontsize=12.5, weight="bold",
                     x=0.01, ha="left")
     figure.supxlabel("\n".join(textwrap.wrap(note, 1.25 * _LETTERS)), fontsize=9.5, color="0.35",
@@ -45,8 +45,9 @@ def number(value, digits=0):
 
 
 def spread(places, gap, low=0.0, high=1.0):
-    """Moves places apart to distances of at least `gap`, each as little as possible (least
-    squares), and into [low, high] if they fit. Expects and returns them in ascending order."""
+    """Moves places apart to distances of at least `gap`, with the least sum of squared movements.
+    Then limits the places to [low, high] if they fit. Expects and returns them in ascending
+    order."""
     groups = []  # of places that touch each other: (position of the first one, number of places)
     for i, place in enumerate(places):
         groups.append((place - i * gap, 1))

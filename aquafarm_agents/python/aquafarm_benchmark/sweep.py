@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trains one learner with every combination of options and seeds, and compares them in one table.
+"""Trains one learner with every combination of options and seeds. Compares the combinations of
+options in one table.
 
     aquafarm_sweep SCENARIO ALGORITHM --set gamma=0.95,0.98 --set hidden_size=64,128 --seeds 1-5
                    --output FOLDER [--steps N] [--jobs 2]
 
-Each combination of the values is a row of FOLDER/table.md and FOLDER/table.csv. It has the return
-and success rate of greedy evaluations on episodes that are not used for training, as means over the
-seeds of the trainings. The best row is first. FOLDER/runs has the run folders. After Ctrl-C the
-same command resumes.
+Each combination with a result is a row of FOLDER/table.md and FOLDER/table.csv. The row contains
+the return and success rate of greedy evaluations, as means over the seeds of the trainings. The
+evaluation episodes are not used for training. The row with the highest return is first. FOLDER/runs
+contains the run folders. After Ctrl-C the same command resumes.
 """
 import argparse
 import csv
@@ -23,7 +24,7 @@ from aquafarm_benchmark import cluster
 from aquafarm_benchmark.cli import exit_code, find_program
 from aquafarm_benchmark.runs import Job, RunFailed, run_all
 
-# 97.5 % quantiles of Student's t with 1 to 30 degrees of freedom. For more, 1.96 is used.
+# 97.5 % quantiles of Student's t with 1 to 30 degrees of freedom. Above 30 degrees, 1.96 is used.
 STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179,
            2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064,
            2.060, 2.056, 2.052, 2.048, 2.045, 2.042)

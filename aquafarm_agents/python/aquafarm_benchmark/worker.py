@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The part of a run that executes on a Dask worker: its commands, one after the other.
 
-The client sends this module to the workers by value. Workers need no workspace, but Debian's
+The client sends this module to the workers by value. Workers need no workspace. They need Debian's
 python3-distributed, and the programs and run folders under the same paths as on the client.
 """
 import ctypes
@@ -24,9 +24,9 @@ _POLL_S = 0.05
 # they would train in ranks.
 _OF_LAUNCHERS = re.compile(r"RANK|WORLD_SIZE|MASTER_\w+|OMPI_\w+|PMIX?_\w+|SLURM_PROCID|SLURM_STEP_\w+")
 _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
-# A run has one core. Without this, PyTorch would use several threads in a learner of another
-# package. They wait actively for each other, so that parallel runs would be slower by orders of
-# magnitude.
+# A run has one core. Without this variable, PyTorch would use several threads in a learner of
+# another package. Threads wait actively for each other, so parallel runs would be slower by orders
+# of magnitude.
 _ONE_CORE = {"OMP_NUM_THREADS": "1"}
 
 

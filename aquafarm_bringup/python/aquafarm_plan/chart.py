@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Computes the map of the ranch for SVG: coast, symbols, routes, labels, isolines of
-probability."""
+"""Computes the map of the ranch for SVG: coast, symbols, routes, labels, and isolines of the
+hazard's probability."""
 import math
 
 import contourpy
@@ -120,8 +120,8 @@ def _device(plan, frame, device):
 
 
 def _offset(points, distance):
-    """Returns a line parallel to a line [px], at a distance on its starboard side, so that the ways
-    out and home do not overlap."""
+    """Returns a line [px] that runs parallel to `points`, at a distance to starboard. The ways out
+    and home then do not overlap."""
     points = np.array(points)
     if len(points) < 2:
         return points
@@ -131,8 +131,8 @@ def _offset(points, distance):
 
 
 def _route(plan, frame, route):
-    """Returns the legs of a route between its orders. `late`, in [0, 1], is the start time of a
-    leg, which determines its shade."""
+    """Returns the legs of a route between its orders. `late`, in [0, 1], is the relative start time
+    of a leg, which determines its shade."""
     clock = Clock(plan["clock"])
     ends = [clock.seconds(order["time"]) for order in route["orders"]]
     last = max(route["path"][-1][2], 1) if route["path"] else 1
@@ -160,9 +160,9 @@ def _arrow(line):
 
 
 def _badges(plan):
-    """Returns {device: badge} of the fetched devices. A badge such as 1b is the number of the ship
-    and, as a lower-case letter, the position of the device in its order of fetching. (Ports have
-    capital letters.)"""
+    """Returns {device: badge} of the fetched devices. A badge such as 1b consists of the ship's
+    number and a letter, which states the position of the device in the ship's order of fetching.
+    The letter is lower-case, because ports have capital letters."""
     badges = {}
     for route in plan["plan"]["routes"]:
         fetched = [one["device"] for one in route["orders"] if one["action"] == "fetch"]
@@ -255,8 +255,8 @@ def _degrees(value, positive, negative):
 
 
 def isolines(plan, frame):
-    """Returns the isolines of each frame: its time, and for each ring the outlines of the areas
-    with at least 10, 50 and 90 %."""
+    """Returns the time of each frame [s after the start of the plan] and, for each ring, the
+    outlines of the areas with at least 10, 50 and 90 %."""
     ranch, clock, result = plan["ranch"], Clock(plan["clock"]), []
     for one in plan["hazard"]["frames"]:
         rings = []

@@ -20,15 +20,16 @@ exit codes: those of aquafarm_plan, also listed in docs/plan.md
 
 
 def main(arguments):
-    """Runs the command. Returns the exit code of aquafarm_plan, or 2 if the page cannot be made."""
+    """Runs the command. Returns the exit code of aquafarm_plan (0 with --from), or 2 if the page
+    cannot be made."""
     parser = argparse.ArgumentParser(
         prog="aquafarm plan",
         allow_abbrev=False,
         add_help=False,
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        description="Plans the rescue of a ranch's devices before a storm: who fetches what, when, "
-        "and how sure is it?",
+        description="Plans the rescue of a ranch's devices before a storm: which ship fetches "
+        "which device, when, and with what probability.",
         usage="./aquafarm plan RANCH.yaml [--bulletin FILE | --storm FILE --at TIME] [-o plan.html]"
     )
     parser.add_argument("-o",

@@ -12,14 +12,13 @@ UTC = datetime.timezone.utc
 
 
 class PlanError(Exception):
-    """The plan file cannot be used. The message contains the place, the value and what is
-    expected."""
+    """The plan file cannot be used. The message states where the fault is and what is expected."""
 
 
 def load(path):
     """Reads and checks a plan file (plan.schema.json).
 
-    @throws PlanError if it is missing, is not JSON, or does not fit the schema
+    @throws PlanError if the file is missing, is not JSON, or fails check()
     """
     try:
         document = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
@@ -35,8 +34,8 @@ def load(path):
 
 def check(document, path):
     """@throws PlanError if the document does not fit the schema or contradicts itself"""
-    # Without the grids: they contain about 100,000 numbers, for which the schema's validator needs
-    # seconds. _check_frames checks them.
+    # The schema is checked without the frames, whose grids contain about 100,000 numbers: the
+    # validator would need seconds. _check_frames checks the frames.
     lean = document
     if isinstance(document, dict) and isinstance(document.get("hazard"), dict):
         lean = {
@@ -76,8 +75,8 @@ def _check_frames(document, path):
 
 
 def _check_references(document, path):
-    """Checks that ids of ships, devices and ports are indices in their lists, that all ids in use
-    exist, and that lists with an entry per ring have their length."""
+    """Checks that the ids of ships, devices and ports are their positions in the lists. Checks
+    that all ids in use exist, and that lists by ring have one entry per ring."""
     for name in ("ships", "devices", "ports"):
         ids = [one["id"] for one in document[name]]
         if ids != list(range(len(ids))):
@@ -161,8 +160,8 @@ class Clock:
 
 
 def percent(share):
-    """Returns a probability as text for a table; a dash for None. It never returns "100 %" or "0
-    %", because a share of a sample is not certain."""
+    """Returns a probability as text for a table; a dash for None. Returns "> 99 %" and "< 1 %" at
+    the ends of the range, because a share of a sample is not certain."""
     if share is None:
         return "–"
     if share >= 0.995:

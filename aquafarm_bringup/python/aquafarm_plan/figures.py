@@ -18,8 +18,9 @@ CURVE = (520.0, 270.0, 58.0, 44.0)  # width, height, left and lower margin of th
 
 
 def region(plan):
-    """Returns the data of the drawing of the region: the storm's track, the forecast error and the
-    rings at the future position nearest to the ranch, in pixels. None if no position of the storm is known."""
+    """Returns the data of the drawing of the region, in pixels: the storm's track, the forecast
+    error, and the rings at the future position nearest to the ranch. None if no position of the
+    storm is known."""
     clock, ranch = Clock(plan["clock"]), plan["ranch"]
     cell_km = ranch["cell_size_m"] / 1000
     middle = [(ranch["width"] - 1) / 2, (ranch["height"] - 1) / 2]
@@ -161,8 +162,8 @@ def horizon_s(plan):
 
 
 def shown_hazard(plan):
-    """Returns the hazard over time. Empty if it is always 0, or if the winds are unknown, because
-    it then means nothing."""
+    """Returns the hazard over time. Empty if all probabilities are 0, or if the winds are unknown:
+    the probabilities then mean nothing."""
     times = plan["hazard"]["timeline"]
     shown = any(any(one["probability"]) for one in times) and not is_unknown(plan)
     return times if shown else []
@@ -217,9 +218,9 @@ def _nearest(plan, clock, end, x_of):
 
 
 def _name_ends(plan, rows, clock, right):
-    """Adds to each row the text "end" after its last bar: when the ship is in port for good, and in
-    the first row also what the two shades mean. The text is empty without space left of `right`
-    [px]."""
+    """Adds the text "end" to each row. It follows the last bar and states when the ship is back in
+    port; in the first row it also explains the two shades. It is empty if it would extend beyond
+    `right` [px]."""
     for i, (row, route) in enumerate(zip(rows, plan["plan"]["routes"])):
         at = f"in port {clock.time(route['orders'][-1]['time'])}" if row["bars"] else ""
         key = "dark: out, light: home"
@@ -283,7 +284,7 @@ def _dates(clock, end, x_of):
 
 
 def curve(plan):
-    """Returns the data of the exceedance curves of the loss: with the plan, and if no ship
+    """Returns the data of two exceedance curves of the loss: with the plan, and if no ship
     leaves."""
     width, height, left, lower = CURVE
     loss = plan["loss"]

@@ -25,14 +25,14 @@ class LocalPlane:
         return east, north
 
     def to_geo(self, east, north):
-        """Returns (latitude, longitude) of the point on the ellipsoid that to_plane maps to a
-        point.
+        """Returns (latitude, longitude) of the point on the ellipsoid that to_plane maps to (east,
+        north).
 
         GeoFrame::ToGeo of the C++ core instead projects the point along the ellipsoid's normal. At
         25 km from the origin the two results differ by 0.2 m.
         """
         up = 0.0
-        for _ in range(6):  # a round multiplies the height by about (distance / radius)²
+        for _ in range(6):  # each round multiplies the error by about (distance / radius)²
             point = [start + sum(a * b for a, b in zip((east, north, up), column))
                      for start, column in zip(self._origin, zip(*self._axes))]
             latitude, longitude, height = _from_ecef(*point)

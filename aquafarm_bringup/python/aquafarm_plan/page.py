@@ -71,7 +71,7 @@ def render(plan):
 
 
 def _data(plan, clock, drawing, line):
-    """Returns the data of the script of the time slider, as JSON that is safe inside a script
+    """Returns the data for the script of the time slider. It is JSON that is safe inside a script
     element."""
     routes = []
     for route in plan["plan"]["routes"]:

@@ -122,7 +122,7 @@ def order_text(plan, order):
 
 
 def no_rings(plan):
-    """Returns the sentence that replaces the curves of the timeline if it has none."""
+    """Returns the sentence that the timeline shows if it has no curves."""
     if is_unknown(plan):
         return f"Unknown: {unknown_cause(plan)}."
     end = Clock(plan["clock"]).day_time(plan["clock"]["end"])
@@ -185,13 +185,14 @@ def _leave(plan):
 
 
 def _horizon(plan, clock):
-    """Returns the sentence on the end of the time for which the storm is known."""
+    """Returns a sentence with the time until which the storm is known."""
     until = plan["storm"]["forecast_until"] or plan["storm"]["recorded_until"]
     return f"Nothing is known after {clock.day_time(until)}."
 
 
 def _latest(plan, clock):
-    """Returns a sentence with the 80 % deadlines of the devices that are fetched first."""
+    """Returns a sentence with the 80 % deadline of the device that each ship fetches first; empty
+    if no deadline is known."""
     parts = []
     for route in plan["plan"]["routes"]:
         first = next((one["device"] for one in route["orders"] if one["action"] == "fetch"), None)

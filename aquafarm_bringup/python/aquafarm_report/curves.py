@@ -19,8 +19,8 @@ CURVES = (("return", "return per episode"), ("success", "success rate"),
 
 
 def smooth(values):
-    """Returns the moving means over WINDOW episodes, and the last episode of each, counted from 1.
-    Means ignore NaN."""
+    """Returns (episodes, means): the moving means over WINDOW episodes, and the last episode of
+    each, counted from 1. Shorter trainings have one mean of all episodes. Means ignore NaN."""
     window = min(WINDOW, len(values))
     return np.arange(window, len(values) + 1), known_moving_mean(values, window)
 
@@ -69,9 +69,8 @@ def _library(name):
 
 
 def bend(rows, lines, marks):
-    """Returns the unit of a scale that is linear above 0 and logarithmic below, because returns of
-    the first episodes and of RANDOM are very low. None if no mean is above 0 or no value is below
-    0."""
+    """Returns the unit of a scale that is linear above 0 and logarithmic below: the first episodes
+    and RANDOM have very low returns. None if no mean is above 0 or no value is below 0."""
     means = [mean for row in rows for mean in row[1:] if mean is not None]
     shown = [*means, *(line["value"] for line in lines),
              *(value for mark in marks for value in mark if value is not None)]

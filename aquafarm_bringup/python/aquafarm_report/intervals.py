@@ -52,8 +52,8 @@ def table(rows):
 
 
 def _scale(rows):
-    """Returns the range of the chart: that of the contestants with a return above 0; that of all if
-    no return is above 0."""
+    """Returns (low, high) of the chart. It covers the contestants with a return above 0, or all
+    contestants if no return is above 0."""
     shown = [row for row in rows if row["return_iqm"] > 0.0] or rows
     ends = [end for row in shown for end in (_interval(row) or ()) + (row["return_iqm"],)]
     margin = 0.04 * (max(ends) - min(ends)) or 1.0
@@ -61,7 +61,7 @@ def _scale(rows):
 
 
 def _ticks(low, high):
-    """Returns three to seven round numbers in a range."""
+    """Returns three to eight round numbers in a range."""
     step = 10.0 ** math.floor(math.log10((high - low) / 3.0))
     step *= next(factor for factor in (5.0, 2.0, 1.0) if (high - low) / (factor * step) >= 3.0)
     return [i * step for i in range(math.ceil(low / step), math.floor(high / step) + 1)]
@@ -70,7 +70,7 @@ def _ticks(low, high):
 def chart(rows):
     """Returns a chart as SVG: a dot for each return and a line for its interval, the best first.
 
-    For a return below the range of the chart, it has an arrow to the left instead.
+    An arrow to the left stands for a return below the range of the chart.
     """
     rows = by_return(rows)
     low, high = _scale(rows)

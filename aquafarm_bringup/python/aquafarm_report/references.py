@@ -11,7 +11,7 @@ from aquafarm_benchmark.measures import wilson_interval
 from aquafarm_report import blocks, videos
 
 REFERENCES = (("random", "RANDOM (all actions)"), ("planner", "planner"), ("clairvoyant", "clairvoyant"))
-EPISODES = 100  # max number of episodes of each reference; they are the first ones of the runs
+EPISODES = 100  # max number of episodes of each reference: the first ones of the runs' evaluations
 LIMIT_S = 120  # max duration of the evaluation of each reference
 OPTIMUM = "clairvoyant"
 
@@ -93,8 +93,8 @@ _NO_SHARE = "a return below 0 has no share"
 
 
 def share_text(player, optimum):
-    """Returns the share of the clairvoyant's return on the same episodes as text; "–" if that
-    return is unknown or not above 0."""
+    """Returns the player's return as a share of the clairvoyant's return on the same episodes, as
+    text; "–" if the clairvoyant's return is unknown or not above 0."""
     if optimum is None or not optimum.rows or not player.rows:
         return "–"
     best = {row["episode"]: float(row["return"]) for row in optimum.rows}
@@ -124,8 +124,8 @@ def _points(interval):
 
 
 def verdict(players):
-    """Returns a sentence on the best run: its share of the optimum, and its differences from the
-    second run and from the planner. Empty if nothing is known."""
+    """Returns one or two sentences on the run with the highest return: its share of the optimum,
+    and its differences from the second run and from the planner. Empty if nothing is known."""
     runs = sorted((one for one in players if one.is_run and one.rows),
                   key=lambda one: -np.mean(column(one, "return")))
     if not runs:
@@ -171,7 +171,8 @@ def show_tiles(players):
                  share_text(one, optimum), f"{len(one.rows)} episodes, {one.distinct} distinct"]
         shown.append((one.label, mean, [line for line in lines if line], one.is_run))
     note = ("<p>Return per episode, success and their 95 % intervals in evaluation episodes of "
-            f"seed {videos.SEED}. The planner knows what ships know; "
-            "clairvoyant knows the storm's whole track, and its return is the optimum.</p>")
+            f"seed {videos.SEED}. The planner uses the issued forecast, or the present headings if "
+            "there is none; clairvoyant uses the storm's whole track, and its return is the "
+            "optimum.</p>")
     said = verdict(players)
     return (f"<p><b>{blocks.escape(said)}</b></p>" if said else "") + blocks.players(shown) + note

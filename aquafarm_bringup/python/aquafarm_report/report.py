@@ -117,8 +117,8 @@ def caption_of(stem):
 
 
 def best_run(benchmark):
-    """Returns the folder of seed 1 of the best learner that has such a folder, by return; None if
-    there is none."""
+    """Returns the run folder seed_1 of the learner with the highest return. Skips learners without
+    this run folder; None if all are skipped."""
     results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
     for row in sorted(results["table"], key=lambda row: -row["return_per_episode"]):
         run = benchmark / "runs" / row["name"] / "seed_1"

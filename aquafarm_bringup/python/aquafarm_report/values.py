@@ -25,7 +25,7 @@ _LOW_COLOUR = "#440154"  # the first colour of viridis
 # viridis without its yellow part, as in other pictures of values
 _VALUE_COLOURS = colors.ListedColormap(pyplot.get_cmap("viridis")(np.linspace(0.0, 0.8, 256)))
 _SEA_COLOURS = {"depth": "Blues", "warmth": "YlOrRd"}
-_LOWEST = 0.05  # fraction of the cells, those with the lowest returns, that have one colour
+_LOWEST = 0.05  # this fraction of the cells, with the lowest returns, has one colour
 
 NOTE = ("Spearman's rho compares the ranks of the cells in which both maps are known. Neighbouring "
         "cells are alike, so no significance is given. SSIM is the mean structural similarity "
@@ -70,7 +70,8 @@ def compare(values, field):
     """Returns the similarity of two maps over the cells where both are known: cells, spearman_rho,
     ssim, and ssim_turned, which is the SSIM with the second map inverted.
 
-    Measures are None if they are undefined: too few cells, or a constant map.
+    Measures are None if they are undefined: fewer than FEWEST_CELLS cells, or a constant map. The
+    SSIM is also None if a side of the maps is shorter than 3 cells.
     """
     known = np.isfinite(values) & np.isfinite(field)
     result = {"cells": int(known.sum()), "spearman_rho": None, "ssim": None, "ssim_turned": None}
@@ -108,8 +109,8 @@ def place_words(cells, text):
 
 
 def verdict(values, text):
-    """Returns a sentence on the best start, and on the largest area within the lowest twentieth of
-    the cells. Empty if all values are equal or unknown."""
+    """Returns the place of the best start, and the middle of the largest connected area among the
+    lowest twentieth of the cells, as text. Empty if all values are equal or unknown."""
     known = np.isfinite(values)
     if not known.any() or np.ptp(values[known]) == 0.0:
         return ""
@@ -153,7 +154,7 @@ def draw_map(axis, field, km, colours, unit, lowest=0.0):
     """Draws a map with north at the top. Cells without a value, such as land, are hatched.
 
     km: side of a cell
-    lowest: fraction of the cells, those with the lowest values, that have one colour
+    lowest: this fraction of the cells, with the lowest values, has one colour
     """
     height, width = field.shape
     axis.set_facecolor("0.82")
@@ -179,8 +180,8 @@ def draw_places(axis, text, km):
 
 
 def draw_relation(axis, values, layer, result, letter):
-    """Plots the return over the value of a sea layer: a dot for each cell, and a line of medians of
-    tenths of the cells."""
+    """Plots the return over the value of a layer: a dot for each cell, and a line through the
+    medians of ten groups of cells, which are ordered by the value."""
     name, units, field = layer
     known = np.isfinite(values) & np.isfinite(field)
     x, y = field[known], values[known]
@@ -207,8 +208,9 @@ def draw_relation(axis, values, layer, result, letter):
 
 
 def draw(text, values, layers, results, path):
-    """Draws the maps side by side. The chart below each sea shows the return against its value, and
-    the chart below the map of returns shows it against the distance to the nearest device."""
+    """Draws the maps side by side. The chart below each map of the sea shows the return against its
+    value. The chart below the map of returns shows the return against the distance to the nearest
+    device."""
     km = text["cell_size_m"] / 1000.0
     height, width = values.shape
     tall = min(1.6, max(0.5, height / width))
@@ -252,8 +254,8 @@ def draw(text, values, layers, results, path):
 
 
 def headline(values, text, layers, results):
-    """Returns the sentence above the figure, from the rank correlations of the return. Empty if none
-    is defined."""
+    """Returns the sentence above the figure, which states the rank correlations of the return.
+    Empty if no correlation is defined."""
     pairs = [(sea_words(name), result["spearman_rho"])
              for (name, _, _), result in zip(layers, results)]
     if devices := text.get("devices"):
@@ -295,8 +297,8 @@ def draw_key(figure, axes):
 
 
 def make(values_file, output):
-    """Writes <output>.png and <output>.json. Returns the summary, a line for each sea layer. Raises
-    ValuesError."""
+    """Writes <output>.png and <output>.json. Returns a list with a summary line for each sea layer.
+    Raises ValuesError."""
     text, values, layers = read(values_file)
     results = [compare(values, field) for _, _, field in layers]
     draw(text, values, layers, results, f"{output}.png")

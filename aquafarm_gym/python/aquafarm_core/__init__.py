@@ -39,7 +39,7 @@ for _type in (FarmBatch, Planner, Policy, Scenario):
 
 
 def _shipped(name, package, source):
-    """Returns a folder of shipped files: that in the wheel or install space, else `source`."""
+    """Returns the folder of shipped files in the wheel or install space, or else `source`."""
     native = pathlib.Path(_native.__file__).resolve().parent
     prefixes = list(native.parents)[3:4]  # empty if the path has fewer parents
     for folder in (native / name, *(one / "share" / package / name for one in prefixes)):

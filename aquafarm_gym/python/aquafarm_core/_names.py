@@ -31,7 +31,7 @@ class Buffers(dict):
         return self[NEW_NAMES[name]]
 
     def get(self, name, default=None):
-        """As dict.get, also for a former name."""
+        """Like dict.get. `name` may also be a former name."""
         if name in self and not dict.__contains__(self, name):
             _warn(name, stacklevel=2)
             name = NEW_NAMES[name]

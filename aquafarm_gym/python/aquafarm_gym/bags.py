@@ -3,10 +3,10 @@
 
     python -m aquafarm_gym.bags DATASET_ID BAG … [--observation features]
 
-Each episode is played again in this process, from the bag's scenario, seed and actions. After every
-step, the rewards, the hash of the state and the end reason must equal those of the bag. The
-observations of the dataset come from this replay. If there are several ships, each of them gives a
-separate episode.
+Each episode that a bag contains from step 0 is played again in this process, with the bag's
+scenario, seed and actions. At every step, the rewards, the hash of the state and the end reason
+must equal those of the bag. The observations of the dataset come from this replay. The dataset
+contains a separate episode for each agent (ship or self-propelled device).
 """
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Recorded:
 
 @dataclasses.dataclass
 class Replayed:
-    """An episode of one ship as arrays: observations and masks [T + 1, …], others [T]."""
+    """An episode of one agent as arrays: observations and masks [T + 1, …], others [T]."""
     seed: int
     episode: int
     observations: npt.NDArray[Any]
@@ -96,7 +96,8 @@ def _episodes_in(reader: Any, path: str) -> Iterator[Recorded]:
 
 def _take(running: dict[str, Recorded], prefix: str, spec: Any, state: Any,
           path: str) -> Iterator[Recorded]:
-    """Adds a state to the running episode of its ranch; yields the episode that it ends."""
+    """Adds a state to the running episode of its ranch. If the state starts another episode, yields
+    the previous one."""
     if state.step == 0:
         if prefix in running:
             yield running.pop(prefix)
@@ -118,7 +119,7 @@ def _take(running: dict[str, Recorded], prefix: str, spec: Any, state: Any,
 
 
 def replay(recorded: Recorded, observation: str = "features") -> list[Replayed]:
-    """Plays an episode again and returns one result per ship. Raises ValueError at the first
+    """Plays an episode again and returns one result per agent. Raises ValueError at the first
     difference, or if a service changed the farm."""
     if recorded.is_changed:
         raise ValueError(f"{recorded.where}: got changes from outside (topic saved_state), expected "
@@ -160,11 +161,11 @@ def make_dataset(dataset_id: str, paths: list[str | pathlib.Path], observation: 
                  **about: Any) -> Any:
     """Makes a Minari dataset of the episodes of bags of one scenario, and returns it.
 
-    about: further arguments of minari.create_dataset_from_buffers, such as algorithm_name. From a
-    dataset of one ship, Minari can recover the environment. Action 10 (a ship
-    held its cell) occurs only if a ship had no command, as in paced bags; the action space then has
-    11 actions. Raises ValueError as read_episodes and replay do, and if the bags have different
-    scenarios or contain no episode from step 0.
+    about: further arguments of minari.create_dataset_from_buffers, such as algorithm_name. Minari
+    can recover the environment from a dataset of one ship. Action 10 (the ship holds its cell)
+    occurs only if a ship had no command, as in paced bags; the action space then has 11 actions.
+    Raises ValueError as read_episodes and replay do, and if the bags have different scenarios or
+    contain no complete step of an episode from step 0.
     """
     import minari
     from minari.data_collector import EpisodeBuffer
@@ -201,7 +202,7 @@ def make_dataset(dataset_id: str, paths: list[str | pathlib.Path], observation: 
 
 
 def name_of(scenario: core.Scenario) -> str:
-    """Returns the name of a scenario if it is a shipped one, else its YAML text."""
+    """Returns the name of a shipped scenario. Returns the YAML text of any other scenario."""
     try:
         if find_scenario(scenario.name) == scenario:
             return scenario.name

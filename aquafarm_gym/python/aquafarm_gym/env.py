@@ -28,7 +28,7 @@ class FarmEnv(SingleFarm, gymnasium.Env[Any, Any]):
     """One farm with one ship.
 
     observation: `features` (default), `planes` or `index`. info has the same keys at every step,
-    and contains only numbers: `action_mask` (int8 [10], 1: legal), `outcome` (index into
+    and contains no text: `action_mask` (int8 [10], 1: legal), `outcome` (index into
     aquafarm_core.OUTCOMES), `reason` (index into aquafarm_core.REASONS, 0: the episode continues),
     `is_success`, and `summary`, whose entries are 0 until the episode ends. reset(seed=…) starts
     episode 0 of a sequence of episodes. reset() starts the next episode of the sequence, and
@@ -47,8 +47,8 @@ class FarmEnv(SingleFarm, gymnasium.Env[Any, Any]):
                  picture_layers: str = rendering.LAYERS,
                  picture_style: str = rendering.STYLE) -> None:
         """farms: a backend that replaces the scenario's farms in this process, such as RosFarms().
-        picture_size: width and height of pictures [pixels]. picture_layers: their layers
-        (aquafarm_core.pictures.LAYERS), picture_style: dark or light, as for ./aquafarm render."""
+        picture_size: width and height of pictures [pixels]. picture_layers: some names of
+        aquafarm_core.pictures.LAYERS, separated by commas. picture_style: dark or light."""
         super().__init__(one_agent(farms or LocalFarms(scenario, 1, observation)), observation,
                          render_mode, picture_size, picture_layers, picture_style)
         self.action_space = spaces.action_space()

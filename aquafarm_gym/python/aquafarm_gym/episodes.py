@@ -19,7 +19,8 @@ NO_SUMMARY: dict[str, Any] = {
 
 
 def whole_number(where: str, value: Any, limit: int, hint: str) -> int:
-    """Returns `value` as int. Raises ValueError if it is not a whole number in [0, limit)."""
+    """Returns `value` as int. Raises ValueError if it is not a whole number in [0, limit).
+    limit: a power of two. hint: last part of the error message."""
     try:
         number = operator.index(value)
     except TypeError:
@@ -69,7 +70,8 @@ class Episodes:
     def next(self, seed: Any, options: dict[str, Any], drawn_seed: Callable[[], int | None],
              by: int = 1) -> tuple[int, int]:
         """Returns the next (seed, episode). options: may contain the number of the `episode`.
-        drawn_seed: called if there is no seed yet. by: number of episodes to advance."""
+        drawn_seed: called if there is no seed yet. by: number of episodes by which a reset without
+        a seed advances."""
         if seed is not None:
             self.seed, self.episode = check_seed(seed), 0
         elif self.seed is None:

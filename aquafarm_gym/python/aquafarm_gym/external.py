@@ -13,8 +13,8 @@
 
 main trains the learner for the number of episodes that the benchmark requests, then evaluates it
 with the benchmark's evaluation seed. It writes run.json, metrics.csv, evaluation.csv and
-evaluation.json into the run folder, with the columns and keys of aquafarm_train and
-aquafarm_evaluate.
+evaluation.json into the run folder. Their columns and keys have the names that aquafarm_train and
+aquafarm_evaluate use.
 """
 from __future__ import annotations
 
@@ -141,7 +141,8 @@ def summary_of(records: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def with_limit(scenario: core.Scenario, max_steps: int) -> core.Scenario:
-    """Returns the scenario with the step limit `max_steps`, or unchanged if that is 0."""
+    """Returns the scenario with the step limit `max_steps`; unchanged if max_steps is 0. Raises
+    ValueError if the YAML text does not contain the old limit exactly once."""
     if max_steps in (0, scenario.step_limit):
         return scenario
     old, new = f"step_limit: {scenario.step_limit}", f"step_limit: {max_steps}"

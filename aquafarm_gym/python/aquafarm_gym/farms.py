@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Backends of all environments in this package: N farms with S agents each, with results as arrays.
 
-A backend has the attributes name, yaml, farms, agents, state_count, feature_names, feature_count,
-plane_count, height, width and buffers (see aquafarm_core.FarmBatch), and the methods
-reset(seed, first_episode), step(actions), finished() and close(). LocalFarms (farms in this
+A backend has the attributes of Farms, yaml and buffers (see aquafarm_core.FarmBatch). It has the
+methods reset(seed, first_episode), step(actions), finished() and close(). LocalFarms (farms in this
 process) also has start, start_next and text; aquafarm_gym.ros.RosFarms (farms behind ROS) does not.
 """
 from __future__ import annotations
@@ -111,28 +110,28 @@ class LocalFarms(Farms):
         return self.batch.buffers
 
     def reset(self, seed: int, first_episode: int = 0) -> None:
-        """As FarmBatch.reset."""
+        """See FarmBatch.reset."""
         self.batch.reset(seed, first_episode)
 
     def step(self, actions: npt.NDArray[np.uint8]) -> None:
-        """As FarmBatch.step."""
+        """See FarmBatch.step."""
         self.batch.step(actions)
 
     def finished(self) -> list[dict[str, Any]]:
-        """As FarmBatch.finished."""
+        """See FarmBatch.finished."""
         return self.batch.finished()
 
     def start(self, mask: npt.NDArray[np.bool_], seeds: list[int], episodes: list[int],
               stride: int) -> None:
-        """As FarmBatch.start."""
+        """See FarmBatch.start."""
         self.batch.start(mask, seeds, episodes, stride)
 
     def start_next(self, mask: npt.NDArray[np.bool_]) -> None:
-        """As FarmBatch.start_next."""
+        """See FarmBatch.start_next."""
         self.batch.start_next(mask)
 
     def text(self, farm: int = 0) -> str:
-        """As FarmBatch.text."""
+        """See FarmBatch.text."""
         return self.batch.text(farm)
 
     def close(self) -> None:

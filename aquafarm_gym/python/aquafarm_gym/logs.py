@@ -4,13 +4,13 @@
     python -m aquafarm_gym.logs RUN … [--to tensorboard | wandb] [--follow] [--window 50]
 
 RUN is a run folder of ./aquafarm train or aquafarm_train; its metrics.csv has one line per episode.
-Each point is the mean over --window episodes. Its x value is the run's total number of farm steps
-after the last of them.
+Each point is the mean over --window episodes; the last point may have fewer. Its x value is the
+run's total number of farm steps after the last of these episodes.
 TensorBoard reads RUN/tensorboard (tensorboard --logdir runs). Weights & Biases receives one run per
-folder, offline unless WANDB_MODE is online. --follow waits until all runs have begun, and logs them
-until they have ended or Ctrl-C is pressed. A run has ended once its policy.ckpt exists, also if it
-is resumed later; --endless also follows such a run. Only --to wandb needs a package from PyPI. This file can
-also run without the package aquafarm_gym: python3 logs.py.
+folder, offline unless WANDB_MODE is set. --follow waits until all runs have begun. It then logs
+them until all have ended or Ctrl-C is pressed. A run counts as ended once its policy.ckpt exists,
+even if it was resumed and still trains; --endless follows such a run too. Only --to wandb needs a
+package from PyPI. This file can also run without the package aquafarm_gym: python3 logs.py.
 """
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def _varint(value: int) -> bytes:
 
 
 def _text(field: int, data: bytes) -> bytes:
-    """Returns a field of a protocol buffer that contains a text or a message."""
+    """Returns a length-delimited field (a text or a message) of a protocol buffer."""
     return _varint(field << 3 | 2) + _varint(len(data)) + data
 
 
@@ -241,11 +241,12 @@ class Curves:
 
 def log_runs(runs: list[pathlib.Path], kind: str = "tensorboard", window: int = 50,
              follow: bool = False, endless: bool = False) -> list[int]:
-    """Logs run folders and returns the number of points of each, 0 for a run that had not begun
-    when Ctrl-C was pressed. kind: tensorboard or wandb. follow: whether to wait until all runs have
-    begun, and to continue until all have ended or Ctrl-C is pressed. endless: with
+    """Logs run folders and returns the number of points of each. The number is 0 for a run that had
+    not begun when Ctrl-C was pressed. kind: tensorboard or wandb. follow: whether to wait until all
+    runs have begun, and to continue until all have ended or Ctrl-C is pressed. endless: with
     follow, whether to continue even after all runs have ended. Raises ValueError if a folder
-    contains no run, and ImportError if the package wandb is needed but missing."""
+    contains neither metrics.csv nor run.json, or if metrics.csv is invalid. Raises ImportError if
+    the package wandb is needed but missing."""
     begun = runs
     try:
         while follow and not all((run / "metrics.csv").is_file() for run in runs):

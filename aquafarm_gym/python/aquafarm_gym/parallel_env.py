@@ -22,8 +22,8 @@ from aquafarm_gym.single_farm import SingleFarm, info_at, observation_at
 
 class FarmParallelEnv(SingleFarm,
                       ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]
-    """One farm with several agents, named ship_0, ship_1, … as in ROS. Self-propelled devices are
-    the last agents; they terminate when they are delivered.
+    """One farm whose agents are named ship_0, ship_1, … as in ROS. Self-propelled devices are the
+    last agents; they terminate when they are delivered.
 
     Observations and infos are those of FarmEnv, one per agent. state() returns the observations of
     all agents in one array (`state_space`), for centralized critics.
@@ -106,7 +106,7 @@ class FarmParallelEnv(SingleFarm,
 
     def render(self) -> Any:
         """Returns the farm as a picture, uint8 [height, width, 3] (`rgb_array`), or as text
-        (`ansi`). In mode `human`, shows it in a window and returns None."""
+        (`ansi`). In mode `human`, shows the farm in a window and returns None."""
         if self.render_mode == "human":
             self._window.show()
         return self._picture()

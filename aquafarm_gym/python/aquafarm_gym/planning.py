@@ -54,12 +54,12 @@ def plan_rescue(ranch: core.Scenario | Path, *, bulletin: Path | None = None,
     ranch: a scenario with a geographic origin, its file or its name. bulletin: file with the
     forecast of the storm. storm: instead of a bulletin, a file with a recorded track; storm_name
     selects a storm of the file. at: start of the plan (default: now, or the newest report of an old
-    bulletin). devices, ships_file: CSV files (docs/plan.md). ships: number of ships. capacity:
-    devices aboard a ship. depart_h: earliest departure after the start [h]. speed_kn: speed of the
-    ships [kn]. abort_wind_kt: wind at which ships stop [kn]. risk_averse: share of the worst storms
-    whose mean loss is minimised; 0 maximises the mean value saved. currency: that of the
-    values. utc_offset_h: local time (default: by longitude). members: number of possible storms,
-    which are drawn from `seed`.
+    bulletin; required with `storm`). devices, ships_file: CSV files (docs/plan.md). ships: number
+    of ships. capacity: max devices aboard a ship. depart_h: earliest departure after the start [h].
+    speed_kn: speed of the ships [kn]. abort_wind_kt: wind at which ships stop [kn]. risk_averse:
+    fraction of the storms, the worst ones, whose mean loss is minimised; 0 maximises the mean value
+    saved. currency: currency of the devices' values. utc_offset_h: local time minus UTC [h]
+    (default: from the longitude). members: number of possible storms, which are drawn with `seed`.
 
     Raises ValueError, with one line, if an option, a file or a position is wrong.
     """

@@ -40,11 +40,12 @@ def check_render_mode(render_mode: str | None, farms: Any,
 
 
 class Pictures:
-    """Draws the farms of a backend, each with the trails of its ships."""
+    """Draws the farms of a backend. Each farm has its own painter, which keeps the trails of its
+    ships."""
 
     def __init__(self, farms: Any, size: tuple[int, int] = SIZE, layers: str = LAYERS,
                  style: str = STYLE) -> None:
-        """size: width and height [pixels], each in [160, 4096]. layers and style: as for ./aquafarm
+        """size: width and height [pixels], each in [160, 4096]. layers, style: as in ./aquafarm
         render."""
         self._farms = farms
         self._size = size
@@ -108,8 +109,8 @@ class Window:
 
 
 def has_display() -> bool:
-    """Returns whether a window can be opened: on a display, or with the driver in
-    SDL_VIDEODRIVER."""
+    """Returns whether a window can probably be opened. On Linux, DISPLAY, WAYLAND_DISPLAY or
+    SDL_VIDEODRIVER must be set; other systems always return True."""
     if sys.platform != "linux":
         return True
     return any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"))
@@ -132,7 +133,7 @@ def png_of(pixels: Pixels) -> bytes:
 
 def html_of(farms: Any, pictures: Pictures | None, numbers: range | list[int]) -> str:
     """Returns farms as HTML for a notebook: pictures, or text if this installation cannot draw
-    them."""
+    pictures. Farms behind ROS are shown by their repr. numbers: the farms to show."""
     if not hasattr(farms, "text"):
         return f"<pre>{html.escape(repr(farms))}</pre>"
     parts = []

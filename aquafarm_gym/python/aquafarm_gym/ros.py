@@ -28,7 +28,8 @@ BITS: dict[str, int] = {
 
 
 def check_master(limit_s: float) -> None:
-    """Raises ConnectionError if there is no ROS master within the limit. (rospy waits forever.)"""
+    """Raises ConnectionError if the address of the ROS master accepts no connection within limit_s.
+    (rospy would wait forever.)"""
     uri = rosgraph.get_master_uri()
     try:
         host, port = rosgraph.network.parse_http_host_and_port(uri)
@@ -46,8 +47,8 @@ class Service(rospy.ServiceProxy):  # type: ignore[misc]
         self.transport: Any
 
     def call(self, request: Any) -> Any:
-        """Calls the service. Raises rospy.ServiceException if it does not respond within the
-        limit."""
+        """Calls the service. Raises rospy.ServiceException if the call fails, or if the service
+        sends nothing for limit_s."""
         try:
             if self.transport is None:
                 self._connect(request)
@@ -79,8 +80,8 @@ class RosFarms(Farms):
 
     A call without a response is repeated with the same sequence number, so that no farm steps
     twice. Methods raise ConnectionError if the sim node was restarted, if another client changed
-    the farms, or if the node does not respond for wait_limit_s. They raise ValueError if
-    the node refuses a call.
+    the farms, or if the node does not execute a call within wait_limit_s, for example because it
+    is paused. They raise ValueError if the node refuses a call.
     """
 
     yaml: str
@@ -113,7 +114,7 @@ class RosFarms(Farms):
         self._finished: list[dict[str, Any]] = []
 
     def reset(self, seed: int, first_episode: int = 0) -> None:
-        """As FarmBatch.reset."""
+        """See FarmBatch.reset."""
         self._state_id = None
         answer = self._call("reset", has_seed=True, seed=seed, has_episode=True,
                             episode=first_episode, farms=self.farms,
@@ -122,7 +123,7 @@ class RosFarms(Farms):
         self._take(answer.result)
 
     def step(self, actions: npt.NDArray[np.uint8]) -> None:
-        """As FarmBatch.step."""
+        """See FarmBatch.step."""
         if self._state_id is None:
             raise ValueError("step: got no reset before, expected one; call reset first")
         answer = self._call("step", sequence=next(self._sequence), actions=actions.tobytes(),
@@ -130,7 +131,7 @@ class RosFarms(Farms):
         self._take(answer.result)
 
     def finished(self) -> list[dict[str, Any]]:
-        """As FarmBatch.finished."""
+        """See FarmBatch.finished."""
         return self._finished
 
     def close(self) -> None:

@@ -19,13 +19,13 @@ from aquafarm_gym.rendering import Pictures, check_render_mode
 
 
 class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
-    """N farms with S ships each as a Stable-Baselines3 VecEnv. Each ship is a separate environment,
-    number farm · S + ship of num_envs = N · S, so that one policy plays all ships.
+    """N farms with S ships each as a Stable-Baselines3 VecEnv. Each ship is a separate environment:
+    ship s of farm f has the index f · S + s. The attribute num_envs is N · S.
 
     If the episode of a farm ends, the farm starts its next episode in the same step. The infos of
     its ships then contain `terminal_observation`, `TimeLimit.truncated`, `is_success`, `summary`
-    (as in FarmEnv) and `episode`, as Monitor writes it: r, the return of the farm, l, the number of
-    steps, and t, which is always 0. MaskablePPO of sb3_contrib calls action_masks().
+    (as in FarmEnv) and `episode`. The latter has the keys of Monitor: r (return of the farm), l
+    (number of steps) and t (always 0). MaskablePPO of sb3_contrib calls action_masks().
     """
 
     farms: LocalFarms
@@ -34,7 +34,7 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
     def __init__(self, num_envs: int = 1, scenario: core.Scenario | str | pathlib.Path = "paper",
                  observation: str = "features", threads: int = 1,
                  render_mode: str | None = None) -> None:
-        """num_envs: number N of farms. render_mode: rgb_array (for VecVideoRecorder) or None."""
+        """num_envs: number of farms, N. render_mode: rgb_array (for VecVideoRecorder) or None."""
         self.farms = LocalFarms(scenario, num_envs, observation, threads=threads)
         if self.farms.agents > self.farms.scenario.ships:
             raise ValueError(f"scenario {self.farms.name}: got self-propelled devices, whose play "

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The spaces of observations and actions. Farms behind ROS have the same as those in this
-process."""
+"""The spaces of observations and actions. They are the same for farms in this process and farms
+behind ROS."""
 from typing import Any
 
 import aquafarm_core as core
@@ -11,7 +11,8 @@ from gymnasium import spaces
 N_ACTIONS: int = len(core.ACTIONS)
 
 # Bounds of the features by the last part of their names (FarmBatch.feature_names). Lengths are in
-# units of the map's longer side. A storm's centre and reach may be far outside the map.
+# units of the map's longer side. A storm's centre may be far outside the map, and its reach may be
+# far larger than the map: FAR bounds both.
 FAR: float = 1e4
 BOUNDS: dict[str, tuple[float, float]] = {
     "x": (-1, 1), "y": (-1, 1), "time_left": (-1, 1), "free_capacity": (0, 1),

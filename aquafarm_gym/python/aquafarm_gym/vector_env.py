@@ -105,9 +105,9 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
               options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Starts episodes. seed: a number starts its sequence, with farm i of N at episode i; a
         list starts one sequence per farm, at episode 0. Without a seed (or with None in the list),
-        a farm continues its sequence. options: `episode` is added to the number of the first
-        episode of each farm; `reset_mask` (bool [N]) selects the farms that start, and the others
-        do not change."""
+        a farm continues its sequence. options: with `episode` k, farm i starts at episode k + i, or
+        at episode k if its seed comes from a list. `reset_mask` (bool [N]) selects the farms that
+        start; the other farms do not change."""
         options = check_options(options, ("episode", "reset_mask"))
         mask = self._mask_of(options)
         seeds = self._seeds_of(seed)
@@ -287,13 +287,14 @@ class FarmVectorEnv(VectorBase):
 
     autoreset_mode (a gymnasium.vector.AutoresetMode or its name) specifies when a farm starts its
     next episode: NextStep, in the next step, whose action it ignores (the default); SameStep, in
-    the step that ends the episode; Disabled, only by reset with a reset_mask. With copy=False,
-    observations and rewards are the arrays that the farms write; the next step overwrites them.
+    the step that ends the episode; Disabled, only by reset, for example with a reset_mask. With
+    copy=False, observations are the arrays that the farms write, and the next step overwrites
+    them. The same holds for rewards of FarmVectorEnv, except in mode SameStep.
 
-    infos has the same keys at every step: those of FarmEnv as arrays [N, …], and `is_first` (bool
-    [N]). Each has a mask, such as `_action_mask` (bool [N]). `summary` is valid where `_summary` is
-    True, and 0 elsewhere. In mode SameStep, infos also contain `final_obs` and `final_info` when an
-    episode ends.
+    infos always contains the keys of FarmEnv as arrays [N, …], and `is_first` (bool [N]). Each key
+    has a mask, such as `_action_mask` (bool [N]). `summary` is valid where `_summary` is True, and
+    0 elsewhere. In mode SameStep, infos also contains `final_obs` and `final_info` when an episode
+    ends.
     """
 
     def __init__(self, num_envs: int = 1, scenario: core.Scenario | str | pathlib.Path = "paper",
@@ -316,8 +317,9 @@ class TeamVectorEnv(VectorBase):
 
     The reward is the team's: the sum of the rewards of all agents, or, if the scenario gives each
     agent the team's reward (`rewards: {sharing: team}`), that reward once. infos["agent_rewards"],
-    float32 [N, S], contains the reward of each agent. infos["active"], bool [N, S], is False for a delivered
-    self-propelled device. Other results are as in FarmVectorEnv, with S entries per farm.
+    float32 [N, S], contains the reward of each agent. infos["active"], bool [N, S], is False for a
+    delivered self-propelled device. Observations, action masks and outcomes have S entries per
+    farm. Other results are as in FarmVectorEnv.
     """
 
     def __init__(self, num_envs: int = 1,

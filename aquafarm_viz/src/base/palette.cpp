@@ -42,7 +42,7 @@ Rgb DeviceColor(std::uint8_t kind) {
     case DeviceState::BREEDING_RELEASE:
       return {0xc4, 0xc4, 0xff};
     case DeviceState::DEEP_WATER_BREEDING:
-      return {0xf2, 0xf6, 0xfa};
+      return {0x7f, 0xd4, 0xd4};
     default:
       return kUnknown;
   }

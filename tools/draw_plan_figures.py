@@ -48,6 +48,7 @@ def draw_reliability(data, path):
         sizes = one.inset_axes([0.0, -0.34, 1.0, 0.14], sharex=one)
         sizes.bar(x, [b["count"] for b in bins], width=3.0, color="#0b5394")
         sizes.set_yscale("log")
+        sizes.set_ylim(10, 20_000)
         sizes.set_ylabel("cases", fontsize=9.5)
         sizes.tick_params(labelsize=9)
         one.set_title(f"{title} (n = {sum(b['count'] for b in bins):,})", fontsize=11.5)

@@ -189,7 +189,7 @@ class ReportTest(unittest.TestCase):
 
     def test_it_lists_learner_scenario_seeds_and_version(self):
         settings = json.loads((self.trained / "run.json").read_text())
-        for word in ("q_learning on cove", settings["version"],
+        for word in ("q_learning on the scenario cove", settings["version"],
                      "layout:", settings["options"]):
             self.assertIn(word, self.page.words)
         count = len((self.trained / "metrics.csv").read_text().splitlines()) - 1
@@ -391,7 +391,7 @@ class ReportTest(unittest.TestCase):
         page = Page(self.folder / "b.html")
         figures = list((output / "figures").glob("*.png"))
         self.assertEqual(len(figures) + 1, len(page.embedded("image/png")))
-        for word in ("Benchmark on cove", "Q-learning, paper", "RANDOM", "The best learner",
+        for word in ("Benchmark on the scenario cove", "Q-learning, paper", "RANDOM", "The best learner",
                      "Seeds of the trainings", "evaluation_episodes",
                      "its share of the optimum", "Mean return of all episodes so far"):
             self.assertIn(word, page.words)

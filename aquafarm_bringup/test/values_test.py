@@ -144,7 +144,7 @@ class ValuesTest(unittest.TestCase):
         text = {"cell_size_m": 1000.0, "devices": [[0, 0]]}
         layers = [("warmth", "degC", values), ("depth", "m", -values), ("flat", "m", 0.0 * values)]
         found = headline(values, text, layers, [compare(values, field) for _, _, field in layers])
-        self.assertIn("rises with temperature (+1.00)", found)
+        self.assertIn("rises with temperature (rank correlation +1.00)", found)
         self.assertIn("falls with depth (−1.00)", found)
         self.assertNotIn("flat", found, "a constant layer has no rank correlation")
         self.assertIn("distance to a device (", found)

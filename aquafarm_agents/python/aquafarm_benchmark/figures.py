@@ -168,7 +168,7 @@ def draw_rewards(path, contestants, runs, references):
         path, lambda ends: _learning_times(contestants, runs, references) or
         f"Return at the end of the training: {_listed(contestants, ends)}",
         f"Fig. 12a: the first run of each learner, means of {measures.WINDOW} episodes.",
-        "return of an episode", [
+        f"{measures.WINDOW}-episode mean return", [
             (lambda axes: plot_rewards_by_steps(axes, *data), "time steps so far (logarithmic)"),
             (lambda axes: plot_rewards_by_episodes(axes, *data), "episode")])
 
@@ -232,6 +232,7 @@ def draw_square_error(path, contestants, runs):
             axes.set_title(f"{one.label}: {_significant(first)} → {_significant(last)}", fontsize=11,
                            color=legible(one.colour))
             changes.append((last / first, one.label))
+    _equal_decades(all_axes.flat[:len(learners)])
     for axes in all_axes.flat[len(learners):]:
         axes.axis("off")
     for axes in all_axes[:, 0]:
@@ -242,6 +243,14 @@ def draw_square_error(path, contestants, runs):
              f"give the first and the last value. {_shading(contestants, runs)} The error is relative to each learner's own targets and "
              "cannot be compared between learners. A policy that fails can have a low error too.")
     save(figure, path)
+
+
+def _equal_decades(charts):
+    """Gives logarithmic axes the same number of decades, so that slopes can be compared."""
+    limits = [np.log10(axes.get_ylim()) for axes in charts]
+    half = max((high - low for low, high in limits), default=0.0) / 2.0
+    for axes, (low, high) in zip(charts, limits):
+        axes.set_ylim(*10.0 ** ((low + high) / 2.0 + np.array([-half, half])))
 
 
 def _significant(value):
@@ -318,7 +327,8 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
         scores = np.array([measures.return_per_step(*pair, window)
                            for pair in zip(returns, steps)])
         episodes = np.arange(window, returns.shape[1] + 1)
-        ends.append(_plot_shaded(axes, episodes, scores, one, one.label))
+        ends.append(_plot_shaded(axes, episodes, scores, one, one.label,
+                                 strength=1.0 if len(contestants) < 3 else 0.5))
     axes.axhline(0.0, color="black", linewidth=0.5, label="_zero")
     ends += _plot_references(axes, references, max(end[0] for end in ends), digits=2)
     if limits:
@@ -426,12 +436,12 @@ def plot_repeated(axes, contestants, runs, references):
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
-def _plot_shaded(axes, episodes, values, one, label):
+def _plot_shaded(axes, episodes, values, one, label, strength=1.0):
     """Plots the median of values [runs, episodes], shaded between their lowest and highest value.
     Returns the end of the line."""
     median = np.median(values, axis=0)
     axes.plot(episodes, median, **_line_style(one), label=label)
-    shade(axes, episodes, values.min(axis=0), values.max(axis=0), one.colour)
+    shade(axes, episodes, values.min(axis=0), values.max(axis=0), one.colour, strength)
     return episodes[-1], median[-1], one.colour, label
 
 

@@ -48,12 +48,12 @@ class Contestant:
     learns: bool = True
     exploration: str = ""  # empty: the algorithm's default
     options: typing.Tuple[str, ...] = ()
-    cost: float = 1.0  # estimated duration of a training relative to the others
+    cost: float = 1.0  # estimated duration of a run, relative to the others
     episodes: int = 0  # maximum number of evaluation episodes; 0: as many as requested
     repeats: bool = True  # False: one run, since the result does not depend on the seed
     scenario: str = ""  # empty: that of the benchmark
     paper_row: str = ""  # key of PAPER_TABLE; empty if Table 1 has no such row
-    named_only: bool = False  # True: all of --algorithms does not include it
+    named_only: bool = False  # True: excluded from --algorithms all; include it by name
     command: typing.Tuple[str, ...] = ()  # program of a learner of another package; see --learner
     library: str = ""  # shared library that registers the learner; see --learner
 
@@ -77,7 +77,8 @@ FARMS = 1
 
 # Trainings run in parallel, one per core, so they use device=cpu. docs/decisions/settling_early.md
 # gives the reasons for these numbers. For DQN and LSTM-DQN, temperature and learning rate depend on
-# the number of episodes, not on the length of the training: short and long trainings start alike.
+# the number of episodes so far, not on the fraction of the training that is done: short and long
+# trainings start alike.
 _EXPLORED = 100  # episodes until the temperature is one unit of reward
 _COOLING = "boltzmann:harmonic:20:1:{explored}"
 _FIRST_RATE = 5e-4
@@ -87,7 +88,7 @@ _NETWORK = ("device=cpu", "mask_blocked=true", "target_update_interval=25", "ema
             f"learning_rate=harmonic:{_FIRST_RATE}:{{last_rate}}:1")
 _TABLE_EXPLORATION = "epsilon_greedy:linear:1:0.01:0.5"
 
-# The first colours are those of Okabe and Ito (2008), Color universal design.
+# The colours of the learners and of planner are those of Okabe and Ito (2008), Color universal design.
 _RANDOM = Contestant("random", "RANDOM", "#7f7f7f", cost=0.05, options=("actions=reachable",),
                      paper_row="random")
 _Q_LEARNING = Contestant("q_learning", "Q-learning", "#0072b2", cost=0.02,
@@ -153,8 +154,8 @@ def _tuned(one):
     return dataclasses.replace(one, label=f"{one.label}, tuned", paper_row="")
 
 
-# The DQN settings of the paper that differ from the tuned ones; see preset=paper in
-# docs/algorithms.md.
+# Settings of replay, target and optimiser as in preset=paper of DQN (docs/algorithms.md).
+# Exploration and masks stay tuned.
 _PAPER_REPLAY = ("priority_exponent=0", "loss=mse", "max_grad_norm=0", "double_dqn=false",
                  "action_gap=0", "ema_rate=0", "reward_scale=1", "gamma=0.99",
                  "target_update_interval=250", "buffer_size=100000",

@@ -40,6 +40,7 @@ def draw_route(path, label, route_file):
     rows = 2 if panels else 1
     figure, all_axes = plt.subplots(rows, 2, figsize=(10.5, 5.4 * rows), squeeze=False,
                                     layout="constrained")
+    figure.get_layout_engine().set(h_pad=0.12)
     all_axes = list(all_axes.flat)
     for axes, (key, words) in zip(all_axes, panels):
         _chart(axes, route["chart"])

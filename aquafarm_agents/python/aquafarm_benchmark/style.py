@@ -12,6 +12,7 @@ _DPI = 150
 _LETTERS = 78  # max length of a line of a headline
 _NAME_PT = 15.0  # height of a name [pt]
 _NEAR = 0.15  # max distance along x of ends that are named in one column [widths of the axes]
+_INSIDE = 0.78  # highest name of a line that ends inside the axes, below the references
 _TEXT = 4.5  # min contrast ratio of names on white (WCAG 2.1, 1.4.3)
 plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False,
                      "axes.titlelocation": "left"})
@@ -71,11 +72,15 @@ def name_ends(axes, ends):
     axes.figure.draw_without_rendering()  # sets the size of the axes
     to_axes = axes.transData + axes.transAxes.inverted()
     height_pt = 72.0 * axes.get_window_extent().height / axes.figure.dpi
-    places = spread([float(to_axes.transform((x, y))[1]) for x, y, _, _ in ends],
-                    _NAME_PT / height_pt, high=1.0 + 0.3 * _NAME_PT / height_pt)
-    lengths = [float(to_axes.transform((x, y))[0]) for x, y, _, _ in ends]
-    for (x, y, colour, name), place, length in zip(ends, places, lengths):
-        end = max(other for other in lengths if other <= length + _NEAR)  # right of all near ends
+    at = {end: [float(value) for value in to_axes.transform(end[:2])] for end in ends}
+    gap = _NAME_PT / height_pt
+    places = {}
+    for is_inside, high in ((True, _INSIDE), (False, 1.0 + 0.3 * gap)):
+        group = [end for end in ends if (at[end][0] < 0.95) == is_inside]
+        places.update(zip(group, spread([at[end][1] for end in group], gap, high=high)))
+    for (x, y, colour, name), place in places.items():
+        # A name stands to the right of all ends that are near.
+        end = max(length for length, _ in at.values() if length <= at[x, y, colour, name][0] + _NEAR)
         axes.annotate(name, (x, y), xytext=(min(end, 1.0) + 0.04, place), textcoords=axes.transAxes,
                       color=legible(colour), va="center", fontsize=10, annotation_clip=False,
                       bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
@@ -93,7 +98,10 @@ def legible(colour):
         rgb = 0.95 * rgb
 
 
-def shade(axes, x, low, high, colour):
-    """Shades a range. Its thin edges stay visible where ranges overlap."""
-    axes.fill_between(x, low, high, facecolor=(*colors.to_rgb(colour), 0.16),
-                      edgecolor=(*colors.to_rgb(colour), 0.45), linewidth=0.5)
+def shade(axes, x, low, high, colour, strength=1.0):
+    """Shades a range. Its thin edges stay visible where ranges overlap.
+
+    strength: factor of the opacity
+    """
+    axes.fill_between(x, low, high, facecolor=(*colors.to_rgb(colour), 0.16 * strength),
+                      edgecolor=(*colors.to_rgb(colour), 0.45 * strength), linewidth=0.5)

@@ -128,7 +128,7 @@ def report(folders, work, episodes, read_metrics):
         place.mkdir()
         players = references.play_references(group[0].folder / "scenario.yaml", place, episodes)
         own = [run.player for run in group]
-        title = f"Return on {group[0].scenario}"
+        title = f"Return on the scenario {group[0].scenario}"
         sections.append(blocks.section(title, references.show_tiles(players[:1] + own +
                                                                     players[1:])))
     sections.append(curves.show([run.player.label for run in runs],

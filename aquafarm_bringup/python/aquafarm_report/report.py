@@ -87,7 +87,7 @@ def report_run(run, folder, episodes):
     notes = [curves.gap_note(players[1].label, columns, players[1])] if columns else []
     training = curves.show([settings["algorithm"]], [columns], notes, players)
     return blocks.page(
-        f"{settings['algorithm']} on {settings['scenario']}",
+        f"{settings['algorithm']} on the scenario {settings['scenario']}",
         blocks.section("Return of the policy and of the references", references.show_tiles(players), facts), training,
         *sections,
         blocks.section("Configuration",
@@ -154,7 +154,7 @@ def report_benchmark(benchmark, folder, episodes):
         shown += show_episodes(run, folder, episodes)[-1]
     seeds = sorted({run["seed"] for of_one in results["runs"].values() for run in of_one})
     return blocks.page(
-        f"Benchmark on {settings.get('scenario', 'a ranch')}", tiles,
+        f"Benchmark on the scenario {settings.get('scenario', '(unknown)')}", tiles,
         blocks.section("Return and share of the optimum", intervals.table(results["table"]),
                        intervals.chart(results["table"])),
         blocks.section("Table 1, the paper's and ours", blocks.markdown_table(

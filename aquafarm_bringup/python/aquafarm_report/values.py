@@ -265,7 +265,8 @@ def headline(values, text, layers, results):
     for words, rho in sorted((pair for pair in pairs if pair[1] is not None),
                              key=lambda pair: -abs(pair[1])):
         trend = "hardly changes" if abs(rho) < _WEAK else "falls" if rho < 0.0 else "rises"
-        said[trend].append(f"{words} ({signed(rho)})")
+        known = any(said.values())
+        said[trend].append(f"{words} ({'' if known else 'rank correlation '}{signed(rho)})")
     parts = [f"{trend} with {' and '.join(names)}" for trend, names in said.items() if names]
     return f"The return {', '.join(parts)}" if parts else ""
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Names of the topics, parameters and frames of this package. The names of topics are relative.
+/// Names of the topics and frames of this package, and of the parameters of viz_node. The names of
+/// topics are relative.
 
 namespace aquafarm_viz::names {
 

@@ -7,6 +7,7 @@
 
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/scene/labels.h"
+#include "draw/free_space.h"
 #include "draw/symbols.h"
 #include "scene/ship_place.h"
 
@@ -211,8 +212,25 @@ void DrawPorts(cv::Mat& map, const FarmSpec& spec, const Layout& layout, const F
   }
 }
 
+namespace {
+
+// Returns the length of the arrow of a legal move [pixels].
+double DirectionSize(const Layout& layout) {
+  return std::max(0.55 * layout.view.cell_px(), 12.0 * layout.unit);
+}
+
+}  // namespace
+
+void BlockDirections(const std::vector<PortDirections>& ports, const Layout& layout,
+                     FreeSpace& space) {
+  for (const auto& port : ports) {
+    space.Block(Around(layout.view.ToPixel(port.cell.x, port.cell.y),
+                       layout.port_radius_px() + 0.9 * DirectionSize(layout)));
+  }
+}
+
 void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, const Layout& layout) {
-  const double size = std::max(0.55 * layout.view.cell_px(), 12.0 * layout.unit);
+  const double size = DirectionSize(layout);
   for (const auto& port : ports) {
     const cv::Point2d middle = layout.view.ToPixel(port.cell.x, port.cell.y);
     for (const std::uint8_t action : port.actions) {

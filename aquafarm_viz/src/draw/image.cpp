@@ -186,6 +186,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   if (layers.directions) {
     if (!p.directions) p.directions = LegalDirections(spec);
     DrawDirections(map, *p.directions, p.layout);
+    BlockDirections(*p.directions, p.layout, space);
   }
   DrawPorts(map, spec, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);

@@ -29,8 +29,9 @@ void LabelSpace::BlockPaths(const aquafarm_msgs::FarmState& state, const Trail& 
       const cv::Point from = way->places[i - 1];
       const cv::Point to = way->places[i];
       if (Trail::IsGap(from, to)) continue;
-      spaces_[std::size_t(Cover::kNothing)].BlockLine(
-          layout.view.ToPixel(from.x, from.y), layout.view.ToPixel(to.x, to.y), layout.Px(4));
+      spaces_[std::size_t(Cover::kNothing)].BlockLine(layout.view.ToPixel(from.x, from.y),
+                                                      layout.view.ToPixel(to.x, to.y),
+                                                      layout.Px(11));  // as wide as an arrowhead
     }
   }
 }

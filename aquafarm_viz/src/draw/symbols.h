@@ -167,6 +167,9 @@ void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px
 
 /// Draws the arrows of the legal moves around each port.
 void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, const Layout& layout);
+/// Marks the arrows of DrawDirections as used.
+void BlockDirections(const std::vector<PortDirections>& ports, const Layout& layout,
+                     FreeSpace& space);
 
 /// Draws the symbol of one greedy action: an arrow for a move, a disc for a pickup, a ring for a
 /// drop-off.

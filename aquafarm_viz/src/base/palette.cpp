@@ -130,7 +130,7 @@ Rgb ValueColor(double share) {
   }();
   constexpr double kLast = 0.8 * 255.0;
   const auto i = static_cast<int>(std::lround(kLast * std::clamp(share, 0.0, 1.0)));
-  const cv::Vec3b bgr = kColors(0, i);
+  const cv::Vec3b& bgr = kColors(0, i);
   return {bgr[2], bgr[1], bgr[0]};
 }
 

@@ -58,7 +58,7 @@ double MetresFromFarm(const aquafarm_msgs::FarmSpec& spec, double x, double y) {
   return spec.cell_size_m * std::hypot(x - (spec.width - 1) / 2.0, y - (spec.height - 1) / 2.0);
 }
 
-std::string WhereText(const FarmSpec& spec, double x, double y) {
+std::string WhereText(const aquafarm_msgs::FarmSpec& spec, double x, double y) {
   return DistanceText(MetresFromFarm(spec, x, y)) + " " + PointFromFarm(spec, x, y);
 }
 

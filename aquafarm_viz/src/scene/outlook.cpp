@@ -253,6 +253,7 @@ std::string Names(const Outlook& outlook,
   }
   std::sort(ids.begin(), ids.end());
   std::vector<std::string> names;
+  names.reserve(ids.size());
   for (const std::int32_t id : ids) names.push_back(DeviceLabel(id));
   return names.size() > kMaxNames    ? std::to_string(names.size()) + " devices"
          : names.size() == kMaxNames ? names[0] + " and " + names[1]

@@ -23,7 +23,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"
 from aquafarm_report import values_topics  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 
-from aquafarm_report.values import (ValuesError, compare, draw_map,  # noqa: E402
+from aquafarm_report.values import (ValuesError, compare, device_relation, draw_map,  # noqa: E402
                                     draw_places, draw_relation, headline, make, read, verdict)
 
 
@@ -143,7 +143,8 @@ class ValuesTest(unittest.TestCase):
         values = slope()
         text = {"cell_size_m": 1000.0, "devices": [[0, 0]]}
         layers = [("warmth", "degC", values), ("depth", "m", -values), ("flat", "m", 0.0 * values)]
-        found = headline(values, text, layers, [compare(values, field) for _, _, field in layers])
+        found = headline([*((layer, compare(values, layer[2])) for layer in layers),
+                          device_relation(values, text)])
         self.assertIn("rises with temperature (rank correlation +1.00)", found)
         self.assertIn("falls with depth (−1.00)", found)
         self.assertNotIn("flat", found, "a constant layer has no rank correlation")

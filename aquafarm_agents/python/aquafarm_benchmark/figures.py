@@ -13,10 +13,15 @@ _NBSP = "\N{NO-BREAK SPACE}"
 _REACHED = 0.9  # a learner has learnt once it reaches this fraction of the best reference
 
 
+def _learners(contestants):
+    """Returns the contestants except RANDOM."""
+    return [one for one in contestants if one.name != "random"]
+
+
 def _listed(contestants, ends, digits=0):
     """Returns the learners except RANDOM with the last values of their lines, the highest first:
     "DQN 271, PPO 259"."""
-    learners = {one.label for one in contestants if one.name != "random"}
+    learners = {one.label for one in _learners(contestants)}
     last = sorted(((y, name) for _, y, _, name in ends if name in learners), reverse=True)
     return ", ".join(f"{name}{_NBSP}{number(y, digits)}" for y, name in last)
 
@@ -124,10 +129,10 @@ def _plot_one_run(axes, one, curve, x):
 
 def _mark_reached(axes, references):
     """Draws a dotted line at the return to which the headline of Fig. 12a refers."""
-    if references and max(references.values()) > 0.0:
-        axes.axhline(_REACHED * max(references.values()), color="black", linestyle=":",
-                     linewidth=1.2, label="_reached")
-        axes.text(0.99, _REACHED * max(references.values()), f"{100 * _REACHED:.0f} %", fontsize=9.5,
+    target = _REACHED * max(references.values(), default=0.0)
+    if target > 0.0:
+        axes.axhline(target, color="black", linestyle=":", linewidth=1.2, label="_reached")
+        axes.text(0.99, target, f"{100 * _REACHED:.0f} %", fontsize=9.5,
                   transform=axes.get_yaxis_transform(), va="top", ha="right")
 
 
@@ -180,13 +185,12 @@ def _learning_times(contestants, runs, references):
     if best is None or references[best] <= 0.0:
         return ""
     found = []
-    for one in contestants:
+    for one in _learners(contestants):
         curve = runs[one.name][0]["curve"]
         episodes, means = _smooth(curve["return"])
         reached = means >= _REACHED * references[best]
         steps = np.cumsum(curve["steps"])[episodes[np.argmax(reached)] - 1] if reached.any() else np.inf
-        if one.name != "random":
-            found.append((steps, one.label))
+        found.append((steps, one.label))
     texts = [f"{name}{_NBSP}{float(f'{steps:.2g}'):,.0f}" if steps < np.inf else
              f"{name}{_NBSP}never" for steps, name in sorted(found)]
     return (f"Time steps until {100 * _REACHED:.0f} % of the return of the {best}: "
@@ -239,9 +243,10 @@ def draw_square_error(path, contestants, runs):
         axes.set_ylabel("error [reward²]")
     found = ", ".join(f"{name}{_NBSP}×{ratio:.1f}" for ratio, name in sorted(changes))
     explain(figure, f"Error of the value estimates at the end, relative to the start: {found}",
-             f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic; the titles "
-             f"give the first and the last value. {_shading(contestants, runs)} The error is relative to each learner's own targets and "
-             "cannot be compared between learners. A policy that fails can have a low error too.")
+            f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic; the titles "
+            f"give the first and the last value. {_shading(contestants, runs)} The error is relative "
+            "to each learner's own targets and cannot be compared between learners. A policy that "
+            "fails can have a low error too.")
     save(figure, path)
 
 
@@ -303,7 +308,7 @@ def draw_mean_score(path, contestants, runs, references):
         ends = plot_mean_score(all_axes[letter], panel, runs, references, limits)
         if letter == "c":  # in the other panels the title names the line
             explain(figure, f"Return per step at the end: {_listed(contestants, ends, digits=1)}",
-                     f"Fig. 13: means of {measures.WINDOW} episodes. {_shading(contestants, runs)}")
+                    f"Fig. 13: means of {measures.WINDOW} episodes. {_shading(contestants, runs)}")
             name_ends(all_axes[letter], ends)
         for name, value in references.items():
             if letter != "c":

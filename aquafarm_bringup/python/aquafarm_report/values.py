@@ -224,6 +224,7 @@ def draw(text, values, layers, results, path):
         left=0.7 * _GAP / width_in, right=1.0 - 0.9 * _GAP / width_in, wspace=_GAP / _COLUMN,
         top=1.0 - _TOP / height_in, bottom=0.3 * _GAP / height_in,
         hspace=0.95 * _GAP / (sum(heights) / len(heights)))
+    near = device_relation(values, text)
     draw_map(axes[0][0], values, km, _VALUE_COLOURS, "points", _LOWEST)
     letters = iter("abcdefghijklmnopqrstuvwxyz")
     axes[0][0].set_title(f"({next(letters)}) Return if the ship starts here", fontsize=11)
@@ -238,11 +239,11 @@ def draw(text, values, layers, results, path):
                                   fontsize=11)
         draw_places(axes[0][column], text, km)
     if layers:
-        draw_relations(axes[1], text, values, layers, results, letters)
+        draw_relations(axes[1], values, near, list(zip(layers, results)), letters)
     draw_key(figure, axes)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
-    if found := headline(values, text, layers, results):
+    if found := headline([*zip(layers, results), *([near] if near else [])]):
         figure.suptitle(found, fontsize=13, weight="bold", x=0.02, y=0.99, ha="left")
     said = verdict(values, text)
     figure.text(0.02, 1.0 - 0.32 / height_in, "\n".join([
@@ -253,14 +254,13 @@ def draw(text, values, layers, results, path):
     pyplot.close(figure)
 
 
-def headline(values, text, layers, results):
+def headline(relations):
     """Returns the sentence above the figure, which states the rank correlations of the return.
-    Empty if no correlation is defined."""
-    pairs = [(sea_words(name), result["spearman_rho"])
-             for (name, _, _), result in zip(layers, results)]
-    if devices := text.get("devices"):
-        away = device_distance(values.shape, devices, text["cell_size_m"] / 1000.0)
-        pairs.append(("distance to a device", compare(values, away[2])["spearman_rho"]))
+    Empty if no correlation is defined.
+
+    relations: [(layer, result of compare)]
+    """
+    pairs = [(sea_words(name), result["spearman_rho"]) for (name, _, _), result in relations]
     said = {"falls": [], "rises": [], "hardly changes": []}
     for words, rho in sorted((pair for pair in pairs if pair[1] is not None),
                              key=lambda pair: -abs(pair[1])):
@@ -271,16 +271,28 @@ def headline(values, text, layers, results):
     return f"The return {', '.join(parts)}" if parts else ""
 
 
-def draw_relations(axes, text, values, layers, results, letters):
-    """Draws the second row: the return against the distance to a device and against each sea."""
-    if devices := text.get("devices"):
-        away = device_distance(values.shape, devices, text["cell_size_m"] / 1000.0)
-        draw_relation(axes[0], values, away, compare(values, away[2]), next(letters))
+def device_relation(values, text):
+    """Returns the layer of device_distance and its similarity to the returns (compare); None
+    without devices."""
+    if not (devices := text.get("devices")):
+        return None
+    away = device_distance(values.shape, devices, text["cell_size_m"] / 1000.0)
+    return away, compare(values, away[2])
+
+
+def draw_relations(axes, values, near, seas, letters):
+    """Draws the second row: the return against the distance to a device and against each sea.
+
+    near: of device_relation
+    seas: [(layer, result of compare)]
+    """
+    if near:
+        draw_relation(axes[0], values, *near, next(letters))
     else:
         axes[0].axis("off")
-    for axis, layer, result in zip(axes[1:], layers, results):
+    for axis, (layer, result) in zip(axes[1:], seas):
         draw_relation(axis, values, layer, result, next(letters))
-    axes[0 if devices else 1].set_ylabel("return if the ship starts there")
+    axes[0 if near else 1].set_ylabel("return if the ship starts there")
 
 
 def draw_key(figure, axes):

@@ -322,8 +322,7 @@ class Checker {
   const std::string path_;
   Key key_;  // key of the simulated episode
   std::optional<Simulation> simulation_;
-  std::optional<OccupancyGrid>
-      early_chart_;  // the last chart: it precedes the states of its episode
+  std::optional<OccupancyGrid> early_chart_;  // the last chart: it may precede its episode's states
   BagCheck check_;
 };
 

@@ -179,7 +179,7 @@ void DrawPaths(cv::Mat& map, const FarmState& state, const Trail& paths, const L
       const cv::Scalar color = Bgr(PathColor(state, ship.id, age, *layout.style));
       const cv::Point2d start = layout.view.ToPixel(from.x, from.y);
       const cv::Point2d end = layout.view.ToPixel(to.x, to.y);
-      DrawMoved(map, start, end, ship.own_device < 0 && !way->loaded[i], color, layout);
+      DrawMoved(map, start, end, !way->loaded[i], color, layout);
       since_head_px += cv::norm(end - start);
       if (since_head_px < kBetweenHeads * layout.unit) continue;
       DrawDirection(map, start, end, color, layout);

@@ -90,13 +90,7 @@ class Row {
   // Adds the pointer towards a centre outside the farm.
   void Pointer() {
     Marker pointer = MakeList();
-    const auto& outline = PointerOutline();
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-      const cv::Point2d a = cv::Point2d(outline[i]) * (0.5 * size_m_);
-      const cv::Point2d b = cv::Point2d(outline[(i + 1) % outline.size()]) * (0.5 * size_m_);
-      pointer.points.insert(pointer.points.end(),
-                            {Point(0.0, 0.0), Point(a.x, a.y), Point(b.x, b.y)});
-    }
+    AddFilled(pointer, PointerOutline(), 0.5 * size_m_);
     pointer.color = Color(GradeColor(3));
     Put(pointer);
   }

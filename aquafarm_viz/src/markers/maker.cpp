@@ -50,6 +50,17 @@ visualization_msgs::Marker Maker::Line(const char* space, double line, const std
   return Text(space, 0, half - 0.5, LineAbove(line), text, line_m_, color);
 }
 
+void AddFilled(visualization_msgs::Marker& marker, const std::vector<cv::Point2f>& outline,
+               double size_m) {
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const cv::Point2f a = outline[i];
+    const cv::Point2f b = outline[(i + 1) % outline.size()];
+    marker.points.push_back(Point(0.0, 0.0));
+    marker.points.push_back(Point(a.x * size_m, a.y * size_m));
+    marker.points.push_back(Point(b.x * size_m, b.y * size_m));
+  }
+}
+
 void AddOutline(visualization_msgs::Marker& marker, const std::vector<cv::Point2f>& outline,
                 double size_m) {
   constexpr double kInner = 0.78;  // side of the inner edge, relative to the outer one

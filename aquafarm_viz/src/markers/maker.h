@@ -51,6 +51,12 @@ inline geometry_msgs::Point Point(double x, double y, double z = 0.0) {
   return point;
 }
 
+/// Adds the triangles of a filled outline around the position of the marker. Each line from the
+/// origin to a corner must lie inside the outline.
+/// @param size_m  length of one unit of the outline [m]
+void AddFilled(visualization_msgs::Marker& marker, const std::vector<cv::Point2f>& outline,
+               double size_m);
+
 /// Creates the markers of one farm. Positions are given in cells and converted to metres; sizes
 /// depend on the size of the farm.
 class Maker {
@@ -136,13 +142,7 @@ class Maker {
     visualization_msgs::Marker marker =
         Make(space, id, visualization_msgs::Marker::TRIANGLE_LIST, layer, x, y);
     marker.color = Color(color);
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-      const cv::Point2f a = outline[i];
-      const cv::Point2f b = outline[(i + 1) % outline.size()];
-      marker.points.push_back(Point(0.0, 0.0));
-      marker.points.push_back(Point(a.x * size_m, a.y * size_m));
-      marker.points.push_back(Point(b.x * size_m, b.y * size_m));
-    }
+    AddFilled(marker, outline, size_m);
     return marker;
   }
 

@@ -284,7 +284,7 @@ void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, con
     if (length == 0.0 || Trail::IsGap(way->places[i - 1], way->places[i])) continue;
     const cv::Point2d along = (to - from) * (half_m / length);  // overlaps the next rectangle
     const cv::Point2d side(-along.y, along.x);
-    const bool is_dash = ship.own_device < 0 && !way->loaded[i];
+    const bool is_dash = !way->loaded[i];
     const cv::Point2d a = is_dash ? from + 0.2 * (to - from) : from - along;
     const cv::Point2d b = is_dash ? to - 0.2 * (to - from) : to + along;
     std::vector<cv::Point2d> corners{a - side, b - side, b + side, a - side, b + side, a + side};

@@ -235,11 +235,11 @@ void RanchWidget::Refresh() {
   Fill(ships_, model_.Ships(), 2);
   Fill(devices_, model_.Devices(), 4);
   AddSymbols();
-  Fill(disasters_, model_.Disasters(), 2);
-  // While the curve is shown, there is no space for this table.
-  disasters_->setVisible(model_.curve().empty() && disasters_->rowCount() > 0);
+  const bool has_curve = !model_.curve().empty();  // then there is no space for the disasters
+  if (!has_curve) Fill(disasters_, model_.Disasters(), 2);
+  disasters_->setVisible(!has_curve && disasters_->rowCount() > 0);
   curve_->Show(model_.curve());
-  curve_->setVisible(!model_.curve().empty());
+  curve_->setVisible(has_curve);
   RefreshPlan();
 }
 

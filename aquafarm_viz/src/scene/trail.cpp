@@ -52,7 +52,7 @@ void Trail::Update(const aquafarm_msgs::FarmState& state) {
       }
     }
     trail.places.push_back(place);
-    trail.loaded.push_back(!ship.aboard.empty());
+    trail.loaded.push_back(ship.own_device >= 0 || !ship.aboard.empty());
     if (trail.places.size() <= length_) continue;
     trail.places.pop_front();
     trail.loaded.pop_front();

@@ -18,7 +18,9 @@ namespace aquafarm_viz {
 struct ShipTrail {
   int bearing_deg{};             ///< bearing of the last move, [0, 359]; 0 before the first move
   std::deque<cv::Point> places;  ///< visited cells, oldest first, the current one last
-  std::deque<bool> loaded;       ///< per cell: whether the ship reached it with a device aboard
+  /// Per cell: whether the ship reached it with a device aboard. A self-propelled device always
+  /// did.
+  std::deque<bool> loaded;
 
   /// Returns the index of the first cell after the last gap; 0 if there is no gap (IsGap).
   std::size_t UnbrokenFrom() const;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""For catkin alone: where the Python packages lie."""
+"""Describes the folder of the Python packages to catkin. No other tool uses this file."""
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 

@@ -3,8 +3,8 @@
 """Measures the speed of a well-known reference and prints the ratio of a benchmark's figure to it.
 
 usage: bench_reference.py taxi | numpy | sb3 | torch BENCH_OUTPUT, a file with 'metric value unit'
-lines. Each reference uses one core. Except for Taxi, a reference does not simulate an environment,
-which makes it faster than a real training.
+lines. Each reference uses one core. Only Taxi simulates an environment. The other references do
+not, which makes them faster than real trainings.
 """
 import sys
 import time

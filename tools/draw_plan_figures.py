@@ -78,14 +78,15 @@ def finding(storms):
 
 
 def name_of(storm):
-    """Returns the name and year of a storm. Changes names in capitals: the two archives differ."""
+    """Returns the name and year of a storm. One archive writes names in capitals; they are
+    converted to title case."""
     name = storm["name"] or storm["id"]
     return f"{name.title() if name.isupper() else name} {storm['nearest'][:4]}"
 
 
 def draw_back_test(data, path):
-    """Draws the value that is saved, promised, and saved by a clairvoyant in each recorded
-    storm."""
+    """Draws three values for each recorded storm: saved by the plan, promised by the plan, and
+    saved by a clairvoyant."""
     storms = data["storms"]
     figure, axes = plt.subplots(figsize=(8.2, 0.27 * len(storms) + 1.2))
     places = range(len(storms), 0, -1)

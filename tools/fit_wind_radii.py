@@ -21,7 +21,7 @@ import numpy as np
 NM_KM = 1.852
 KT_MPS = 0.514444
 CLASSES = ((0, 48), (48, 64), (64, 200))  # wind of the storm [kt]
-# Medians of (former estimate / recorded radius) over the bulletin rings (issue 21): of 34 kt in
+# Medians of (former estimate / recorded radius) over the bulletin rings (docs/data.md): of 34 kt in
 # storms below 48 kt, and of 34, 50 and 64 kt in all storms.
 FORMER_34_TS, FORMER_34, FORMER_50, FORMER_64 = 0.47, 0.68, 1.27, 1.79
 

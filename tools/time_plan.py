@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Times a rescue plan on one core: 1,000 members, 40 x 40 cells, six devices, two ships.
 
-tools/time_plan.py page --coast COAST.json [--runs 5] [--core 0]   # from chart and bulletin to page
-tools/time_plan.py node --coast COAST.json [--runs 10] [--core 0]  # a new bulletin in plan_node
+tools/time_plan.py page --coast COAST.json [--runs 5] [--core 0]  # from chart and bulletin to page
+tools/time_plan.py node --coast COAST.json [--runs 5] [--core 0]  # a new bulletin in plan_node
 
 Prints median, min and max of wall and processor seconds. Build first; `node` needs a sourced
 setup.bash. The forecast is In-Fa (2021) as recorded, with the latitude and longitude of each
@@ -33,7 +33,7 @@ DEVICES = [("F1", 30.16, 122.66, "monitoring", 45000), ("F2", 30.22, 122.66, "mo
            ("F4", 30.15, 122.60, "temporary_breeding", 55000),
            ("F5", 30.18, 122.56, "breeding_release", 30000),
            ("F6", 30.26, 122.57, "deep_water_breeding", 120000)]
-MOST_S = 120
+MOST_S = 120  # max time until a plan arrives [s]
 
 
 def infa():
@@ -161,7 +161,7 @@ def main():
     parser.add_argument("what", choices=("page", "node"))
     parser.add_argument("--coast", type=pathlib.Path, required=True, help="coast (GeoJSON)")
     parser.add_argument("--runs", type=int, default=5)
-    parser.add_argument("--core", type=int, default=0, help="processor that all of it runs on")
+    parser.add_argument("--core", type=int, default=0, help="core of aquafarm plan or plan_node")
     options = parser.parse_args()
     print(f"load {os.getloadavg()[0]:.1f}, core {options.core}")
     with tempfile.TemporaryDirectory(prefix="time_plan.") as name:

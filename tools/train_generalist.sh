@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Trains the generalist (docs/generalist.md) and evaluates it on ranches that no training draws.
 #   tools/train_generalist.sh RUN_FOLDER [STEPS [STEPS_2 [STEPS_3]]]
-# The trainings before the last are in RUN_FOLDER.first and RUN_FOLDER.second. Each continues the one
-# before it, the second and third with a longer horizon.
+# The first two trainings are in RUN_FOLDER.first and RUN_FOLDER.second. The second continues the
+# first, and the third continues the second, both with a longer horizon (gamma).
 # Run `source .ws/devel/setup.bash` first. An interrupted training resumes with the same command.
 set -euo pipefail
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The objects aquafarm_agents_plain, which need no libtorch: planners, rescue plans, and policies that
-# are already trained. The Python module of aquafarm_gym contains them, too, and adds them under the
-# same name where aquafarm_agents is not built, so that ccache knows them again. It needs the target
-# aquafarm::core, nlohmann_json and AquafarmCore.cmake; without AQUAFARM_BLAS_INCLUDE the policies of
-# PPO multiply by Eigen.
+# The objects aquafarm_agents_plain, which need no libtorch: planners, rescue plans, and policies
+# that are already trained. The Python module of aquafarm_gym contains them, too. Where
+# aquafarm_agents is not built, aquafarm_gym adds them under the same name, so that ccache finds
+# earlier results.
+# This file needs the target aquafarm::core, nlohmann_json and AquafarmCore.cmake. Without
+# AQUAFARM_BLAS_INCLUDE the policies of PPO multiply matrices with Eigen.
 set(plain_sources
   src/base/options.cpp
   src/base/schedule.cpp
@@ -52,7 +53,7 @@ set(plain_sources
   src/rescue/trip_search.cpp
   src/rescue/what_if.cpp)
 
-# They need BLAS, for processors without AVX2.
+# These sources need BLAS or Eigen, which gemm.cpp uses on processors without AVX2.
 set(ppo_policy_sources
   src/networks/gemm.cpp
   src/networks/lstm_cell.cpp

@@ -25,7 +25,7 @@ where shape is the shape of an observation, followed by ones. It responds with
 
     u32 0 | n actions (u8)          or an error:   u32 length in bytes | text
 
-It ends when the program closes the socket.
+This process ends when the program closes the socket.
 """
 import importlib.util
 import json
@@ -74,8 +74,8 @@ def load_function(path, name):
 
 
 def load_model(path):
-    """Returns the kind of observations and the function of a model that Stable-Baselines3 saved.
-    Raises BadPolicy."""
+    """Returns the kind of observations and the function of a model that Stable-Baselines3 or
+    sb3-contrib saved. Raises BadPolicy."""
     try:
         with zipfile.ZipFile(path) as archive:
             module = json.loads(archive.read("data"))["policy_class"]["__module__"]

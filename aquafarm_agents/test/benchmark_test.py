@@ -88,15 +88,18 @@ class BenchmarkTest(unittest.TestCase):
                 time.sleep(0.05)
             self.assertTrue(list(folder.glob("checkpoints/step_*.ckpt")), f"{folder}: did not save")
 
-    def start(self, output, *arguments, episodes=150, scenario=DATA / "tiny.yaml"):
+    def start(self, output, *arguments, episodes=150, scenario=DATA / "tiny.yaml", draws=False):
+        """Starts a benchmark. draws: whether it draws figures, which takes some seconds"""
         return Program(self, program("aquafarm_agents", "aquafarm_benchmark"), scenario,
+                       *([] if draws else ["--tables-only"]),
                        "--output", self.folder / output, "--runs", "2", "--episodes", episodes,
                        "--evaluation-episodes", "30", "--programs",
                        pathlib.Path(program("aquafarm_agents", "aquafarm_train")).parent,
                        *arguments)
 
     def test_it_ends_in_tables_and_figures(self):
-        one = self.start("out", "--algorithms", "random,q_learning,planner", episodes=400)
+        one = self.start("out", "--algorithms", "random,q_learning,planner", episodes=400,
+                         draws=True)
         self.assertEqual(0, one.code(180), one.words())
         everything = json.loads((self.folder / "out/results.json").read_text())
         rows = {row["name"]: row for row in everything["table"]}
@@ -128,7 +131,8 @@ class BenchmarkTest(unittest.TestCase):
         scenario = self.folder / "insured.yaml"
         scenario.write_text((DATA / "tiny.yaml").read_text() + "money:\n  device_values: "
                             "{monitoring: 1000.01, temporary_breeding: 500.5}\n  ship_hour: 7\n")
-        one = self.start("out", "--algorithms", "random", episodes=50, scenario=scenario)
+        one = self.start("out", "--algorithms", "random", episodes=50, scenario=scenario,
+                         draws=True)
         self.assertEqual(0, one.code(180), one.words())
         rows = {row["name"]: row["money"] for row in
                 json.loads((self.folder / "out/results.json").read_text())["table"]}
@@ -201,6 +205,8 @@ class BenchmarkTest(unittest.TestCase):
         self.played("play", 7, policy="random")
         one = self.start("out", "--algorithms", "random", "--human", folder, episodes=20)
         self.assertEqual(0, one.code(), one.words())
+        self.assertRegex(one.words(), "; tables are in ")
+        self.assertFalse((self.folder / "out/figures").exists())
         everything = json.loads((self.folder / "out/results.json").read_text())
         rows = {row["name"]: row for row in everything["table"]}
         self.assertEqual(["random", "human", "clairvoyant"], list(rows))
@@ -271,9 +277,9 @@ class BenchmarkTest(unittest.TestCase):
 
     def test_killed_it_resumes_and_ends_in_the_same_numbers(self):
         arguments = ("--algorithms", "q_learning", "--jobs", "2")
-        whole = self.start("whole", *arguments, episodes=60000)
+        whole = self.start("whole", *arguments, episodes=30000)
         self.assertEqual(0, whole.code(), whole.words())
-        part = self.start("parts", *arguments, episodes=60000)
+        part = self.start("parts", *arguments, episodes=30000)
         trainings = self.folder / "parts/runs/q_learning"
         both = [trainings / "seed_1", trainings / "seed_2"]
         # Also after a failure, no process stays stopped.
@@ -284,7 +290,7 @@ class BenchmarkTest(unittest.TestCase):
         send_all(str(trainings), signal.SIGCONT)  # they continue, handle their SIGINT and save
         self.wait_until_saved(both)
         self.assertFalse(list(trainings.glob("*/evaluation.json")), "it was over already")
-        rest = self.start("parts", *arguments, episodes=60000)
+        rest = self.start("parts", *arguments, episodes=30000)
         self.assertEqual(0, rest.code(), rest.words())
         logs = [path.read_text() for path in trainings.glob("*.log")]
         self.assertEqual(2, sum("resuming from" in text for text in logs), "\n".join(logs))
@@ -294,7 +300,7 @@ class BenchmarkTest(unittest.TestCase):
         # Complete runs are not repeated.
         before = {path: path.stat().st_mtime_ns for path in trainings.rglob("policy.ckpt")}
         self.assertEqual(2, len(before))
-        again = self.start("parts", *arguments, episodes=60000)
+        again = self.start("parts", *arguments, episodes=30000)
         self.assertEqual(0, again.code(), again.words())
         self.assertIn("3 of 3 runs are already complete", again.words())
         self.assertEqual(before, {path: path.stat().st_mtime_ns
@@ -343,7 +349,7 @@ class BenchmarkTest(unittest.TestCase):
             run_all([job])
 
     def test_networks_take_part_with_the_settings_of_the_protocol(self):
-        one = self.start("out", "--algorithms", "dqn,lstm_dqn", episodes=20)
+        one = self.start("out", "--algorithms", "dqn,lstm_dqn", episodes=20, draws=True)
         self.assertEqual(0, one.code(180), one.words())
         everything = json.loads((self.folder / "out/results.json").read_text())
         for name in ("dqn", "lstm_dqn"):

@@ -63,7 +63,7 @@ class DaskTest(unittest.TestCase):
         return Program(self, program("aquafarm_agents", "aquafarm_benchmark"), DATA / "tiny.yaml",
                        "--algorithms", "q_learning", "--runs", "2", "--episodes", "400000",
                        "--evaluation-episodes", "30", "--programs", pathlib.Path(train).parent,
-                       "--output", self.folder / output, *arguments)
+                       "--tables-only", "--output", self.folder / output, *arguments)
 
     def under_way(self, output):
         """Whether both trainings have completed some episodes."""

@@ -174,7 +174,7 @@ class PlanNodeTest(unittest.TestCase):
         self.assertEqual({0, 100}, set(charts[-1].data))
 
     def test_a_new_bulletin_is_planned_with_within_two_seconds(self):
-        """The bar of issue 22: 1,000 possible storms. Prints what it measured."""
+        """The requirement of issue 22, for 1,000 possible storms. Prints what it measured."""
         self.put("a.json", bulletin("First"))
         self.plan_for()
         self.wait(lambda plan: plan.storm_name == "First", "the first bulletin")

@@ -19,7 +19,7 @@
 namespace aquafarm_agents {
 namespace {
 
-using namespace aquafarm::agents;        // NOLINT: this file speaks of nothing else
+using namespace aquafarm::agents;        // NOLINT: used in the whole file
 using namespace aquafarm::agents::test;  // NOLINT
 
 constexpr std::uint8_t kEverything = kIndexBit | kFeaturesBit | kPlanesBit;

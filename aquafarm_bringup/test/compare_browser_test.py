@@ -26,7 +26,7 @@ EPISODES = 40
 RUNS = (("table", "q_learning"), ("other", "sarsa"))
 
 RANGES = "return charts.map(chart => chart.xAxisRange());"
-# Tables and figures that need scrolling.
+# Returns the tables and figures that are wider than their boxes.
 SCROLLING = """
 return [...document.querySelectorAll(".wide")].filter(one => one.scrollWidth > one.clientWidth)
   .map(one => one.textContent.slice(0, 60));
@@ -40,7 +40,7 @@ class CompareBrowserTest(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="aquafarm_compare_browser_"))
         cls.scenario = cls.folder / "cove.yaml"
-        # Another layout in every episode, so that there are intervals.
+        # Each episode has another layout: intervals need different starts.
         cls.scenario.write_text(SCENARIO.replace("layout: {", "layout: {mode: per_episode, "))
         for name, algorithm in RUNS:
             code, words = run("aquafarm_agents", "aquafarm_train", cls.scenario, "--algorithm",
@@ -57,7 +57,7 @@ class CompareBrowserTest(unittest.TestCase):
 
     @classmethod
     def make_other_pages(cls):
-        """Pages of a run and of a benchmark."""
+        """Makes and returns the pages of a run and of a benchmark."""
         benchmark = cls.folder / "benchmark"
         code, words = run("aquafarm_agents", "aquafarm_benchmark", cls.scenario, "--output",
                           benchmark, "--runs", 2, "--episodes", 60, "--evaluation-episodes", 10,
@@ -86,7 +86,7 @@ class CompareBrowserTest(unittest.TestCase):
         self.browser.get((page or self.page).as_uri())
 
     def chart(self, name):
-        """The drawing of a chart, scrolled into the window."""
+        """Scrolls a chart into the window and returns its element."""
         place = self.browser.find_element(By.ID, name)
         self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", place)
         return place
@@ -130,9 +130,9 @@ class CompareBrowserTest(unittest.TestCase):
                          [tile[0] for tile in tiles])
         for tile in tiles:
             self.assertRegex(tile[2], r"^95 %: \[−?[\d.]+, −?[\d.]+\]$")
-            self.assertRegex(tile[3], r"^success \d+% \[\d+%, \d+%\]$")
+            self.assertRegex(tile[3], r"^success \d+ % \[\d+ %, \d+ %\]$")
             self.assertRegex(tile[5], rf"^{EPISODES} episodes, \d+ distinct$")
-        self.assertEqual("100.0% of the optimum", tiles[-1][4])
+        self.assertEqual("100.0 % of the optimum", tiles[-1][4])
 
     def test_the_pointer_shows_the_value_of_every_run(self):
         self.show()

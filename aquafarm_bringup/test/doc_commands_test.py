@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the printed commands of all pages as they stand there. Commands that take long, need a
-screen or download have a reason; their launch arguments and options are checked instead."""
+screen or download something are not run: NOT_RUN and NOT_RUN_ELSEWHERE state the reasons. Their
+launch arguments and options are checked instead."""
 import json
 import os
 import pathlib
@@ -29,7 +30,7 @@ PAGES = [DOCS / "operators.md", DOCS / "researchers.md", DOCS / "ros_engineers.m
 OTHER_PAGES = sorted(set(DOCS.rglob("*.md")) - set(PAGES))
 DATA = REPOSITORY / "aquafarm_sim" / "core" / "test" / "data"
 
-# Commands that are not run, by their first words, with the reason.
+# Commands of PAGES that are not run, by their first words, with the reason.
 NOT_RUN = {
     "./aquafarm train": "a training takes minutes; train_launch_test runs one",
     "./aquafarm benchmark": "a benchmark takes hours; benchmark_test runs one",
@@ -43,7 +44,7 @@ NOT_RUN = {
     "rosservice call": "needs the ranch of ./aquafarm sim; the server tests move ships",
     "roslaunch aquafarm_bringup": "runs until Ctrl-C; its arguments are checked",
 }
-# The same for the pages that are not start pages.
+# Commands of OTHER_PAGES that are not run, by their first words, with the reason.
 NOT_RUN_ELSEWHERE = {
     "aquafarm_train": "a training of minutes to hours; its options are checked",
     "rosrun aquafarm_agents aquafarm_train": "a training of minutes; its options are checked",
@@ -87,7 +88,7 @@ COAST = """{"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",
 
 
 def commands_of(page):
-    """Commands in the sh blocks of a page, in order; a backslash continues a line."""
+    """Returns the commands in the sh blocks of a page, in order. A backslash continues a line."""
     found = []
     for block in re.findall(r"^ *```sh\n(.*?)^ *```", page.read_text(encoding="utf-8"),
                             re.S | re.M):
@@ -105,13 +106,13 @@ def reason_not_to_run(command, reasons=None):
 
 
 def options_of(command):
-    """Options of a program, such as -e and --episodes, without the values."""
+    """Returns the options in a command, such as -e and --episodes, without their values."""
     words = [word.partition("=")[0] for word in shlex.split(command.partition(" -- ")[0])]
     return [word for word in words if re.match(r"^--?[a-z]", word)]
 
 
 def help_of(command, place, environment):
-    """The words in which a program explains its options; an empty text if it is not one of ours."""
+    """Returns the help text of the program of a command; "" if the program is not one of ours."""
     words = shlex.split(re.sub(r"^(\w+=\S+ )+", "", command))
     if words[0].startswith("aquafarm_"):
         words = ["rosrun", "aquafarm_agents", *words]
@@ -159,7 +160,7 @@ class DocCommandsTest(unittest.TestCase):
         shutil.rmtree(cls.folder, ignore_errors=True)
 
     def prepare_runs(self):
-        """Makes what the other pages assume: two runs, a bag of one, and a folder of ranches."""
+        """Makes the files that the other pages assume: two runs, a bag and a folder of ranches."""
         train = roslib.packages.find_node("aquafarm_agents", "aquafarm_train")[0]
         runs = self.place / "runs"
         for day in ("20260101-120000", "20260102-120000"):
@@ -244,7 +245,7 @@ class DocCommandsTest(unittest.TestCase):
         commands = [one for page in PAGES for one in commands_of(page)]
         for words in NOT_RUN:
             if words.startswith("roslaunch"):
-                continue  # in text, not in blocks
+                continue  # pages contain it outside of sh blocks
             self.assertTrue([one for one in commands if one.startswith(words)], words)
 
     def test_every_program_that_pages_call_is_found(self):

@@ -19,8 +19,8 @@ from ranch import Ranch, verify  # noqa: E402
 
 TRAIN = ["algorithm:=q_learning", "farms:=1", "evaluation_episodes:=0", "random_episodes:=0",
          "viz:=false"]
-INDEX = b"index_pos="  # of a bag, 0 until it is closed
-FIRST_CHUNK = 4117  # bytes before it in every bag
+INDEX = b"index_pos="  # field of a bag's header; its value is 0 until the bag is closed
+FIRST_CHUNK = 4117  # offset of the first chunk in every bag [bytes]
 CHUNK = b"op=\x05"
 
 
@@ -38,7 +38,7 @@ def second_chunk(content):
 
 
 def is_stopped(pid):
-    """True if each thread of a process is suspended."""
+    """Returns whether each thread of a process is suspended."""
     try:
         return all((task / "stat").read_text().rpartition(")")[2].split()[0] == "T"
                    for task in pathlib.Path(f"/proc/{pid}/task").iterdir())
@@ -71,7 +71,7 @@ class KeepEpisodesTest(unittest.TestCase):
     def half_written(self):
         """Returns an unfinished bag that `rosbag reindex` can repair, or None.
 
-        It has the first chunk, all of its index and the header of the second chunk on the disk.
+        The file contains the first chunk, the index of this chunk and the header of the second one.
         """
         for bag in self.folder.rglob("*.partial"):
             try:
@@ -138,7 +138,7 @@ class KeepEpisodesTest(unittest.TestCase):
         reindex(cut)
         code, words = verify(cut)
         self.assertEqual(0, code, words)
-        # The only missing part may be the index at its end.
+        # Only the last steps of the episode may be missing.
         self.assertRegex(words, r": identical: 1 episode, \d+ steps"
                          r"(, episodes without their end: 1)?\n")
 
@@ -147,7 +147,8 @@ class KeepEpisodesTest(unittest.TestCase):
                    f"record_dir:={self.folder}") as ranch:
             self.assertEqual(0, ranch.exit_code(60), ranch.words())
         whole = self.bags()[0]
-        # Killed before closing wrote the index, and after all of it but the header that points to it.
+        # Two moments of a kill while the bag is closed: before the index is written, and after the
+        # index but before the header that points to it.
         with rosbag.Bag(str(whole)) as bag:
             chunks_end = bag._index_data_pos
         for end in (chunks_end, whole.stat().st_size):

@@ -36,7 +36,7 @@ class MainJobTest(unittest.TestCase):
                       for name in ("evaluation", "evaluation_random"))
 
     def record(self, run):
-        """Bag of an episode of the trained policy."""
+        """Records an episode of the trained policy; returns its bag."""
         with Ranch("evaluate", "scenario:=zhoushan_infa_2021", f"policy:={run}", "episodes:=1",
                    "record:=all", "viz:=false", f"record_dir:={self.folder}") as ranch:
             self.assertEqual(0, ranch.exit_code(60), ranch.words())

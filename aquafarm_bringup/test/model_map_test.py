@@ -22,18 +22,18 @@ _NAMED = re.compile(r"`([\w./]+/[\w.]+)`:\s+((?:`[^`]+`(?:,\s+(?:and\s+)?)?)+)")
 
 
 def read_items():
-    """{item of the paper: text of its line}, of docs/model.md."""
+    """Returns {item of the paper: text of its line in docs/model.md}."""
     return dict(_ITEM.findall(PAGE.read_text(encoding="utf-8")))
 
 
 def find_symbols(text):
-    """(file, symbol) pairs that a text names as `file`: `symbol`, `symbol`."""
+    """Returns the pairs (file, symbol) that a text names as `file`: `symbol`, `symbol`."""
     return [(path, symbol) for path, symbols in _NAMED.findall(text)
             for symbol in re.findall(r"`([^`]+)`", symbols)]
 
 
 def contains(source, symbol):
-    """Whether each name of a symbol such as Farm::Step is a whole word of the source."""
+    """Returns whether each name in a symbol such as Farm::Step is a whole word of the source."""
     return all(re.search(rf"\b{name}\b", source) for name in re.findall(r"\w+", symbol))
 
 

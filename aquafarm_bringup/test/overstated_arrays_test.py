@@ -34,7 +34,8 @@ def serialized(message):
 
 
 def overstated(message, field, entry):
-    """The bytes of a message with an array that states entries of STATED bytes and has none."""
+    """Returns a serialized message whose array `field` states a length of STATED bytes but contains
+    no entry."""
     empty = serialized(message)
     size = 1 if isinstance(entry, bytes) else len(serialized(entry)) if entry else 4
     setattr(message, field, entry if isinstance(entry, bytes) else [entry or 0.0])
@@ -44,7 +45,7 @@ def overstated(message, field, entry):
 
 
 def raw(message_type):
-    """A message type whose content is written as it is."""
+    """Returns a message type that is serialized as the bytes of its member `content`."""
 
     class Raw(message_type):
         def serialize(self, buff):
@@ -54,7 +55,7 @@ def raw(message_type):
 
 
 class Peak:
-    """The most memory that the process of a node has had since this object was made."""
+    """Measures the peak memory of a node's process since this object was made."""
 
     def __init__(self, node):
         uri = rosgraph.Master("/test").lookupNode(node)
@@ -88,7 +89,7 @@ class OverstatedArraysTest(unittest.TestCase):
             time.sleep(0.02)
 
     def check(self, topic, message_type, field, entry, *nodes):
-        """Publishes such a message; each node must refuse it and keep its memory."""
+        """Publishes an overstated message. Each node must refuse it, without using more memory."""
         kind = raw(message_type)
         publisher = rospy.Publisher(topic, kind, queue_size=10)
         self.addCleanup(publisher.unregister)

@@ -6,7 +6,8 @@ VOID = {"meta", "input", "br"}
 
 
 class Reader(html.parser.HTMLParser):
-    """Texts by element id, addresses and scripts of a page; its tags must match."""
+    """Reads the text, the element ids and the addresses of a page, and counts its scripts. Fails if
+    its tags do not match."""
 
     def __init__(self, text):
         super().__init__()

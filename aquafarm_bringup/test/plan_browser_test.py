@@ -30,7 +30,7 @@ except ImportError:
 WIDTH, HEIGHT = 1280, 800
 PHONE = 390
 
-# Pairs of labels of the map that overlap, and labels over a port or a device [px].
+# Returns pairs of labels of the map that overlap, and labels that cover a port or a device.
 OVERLAPS = """
 const box = one => one.getBoundingClientRect();
 const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 &&
@@ -51,7 +51,7 @@ labels.forEach((label, i) => {
 return found;
 """
 
-# Elements that reach beyond the window, except in boxes that scroll.
+# Returns the elements that extend beyond the window, except in boxes that scroll.
 TOO_WIDE = """
 return [...document.querySelectorAll("body *")].filter(one => !one.closest("svg *, section") &&
   one.getBoundingClientRect().right > innerWidth + 1).map(one => one.outerHTML.slice(0, 60));
@@ -72,7 +72,7 @@ return {clock: document.getElementById("clock").textContent,
 
 
 def reason_to_skip():
-    """Why no browser can be driven; empty if one can."""
+    """Returns why no browser can be controlled; empty if one can."""
     if webdriver is None:
         return "python3-selenium is not installed"
     for name in ("chromium", "chromedriver"):
@@ -92,7 +92,7 @@ def open_browser():
 
 
 def long_plan(plan):
-    """Six devices in port with one device aboard at a time, and two more notes."""
+    """Returns a plan with more orders (up to 12 and 6 of the two ships) and with more notes."""
     plan = copy.deepcopy(plan)
     for route, count in zip(plan["plan"]["routes"], (12, 6)):
         route["orders"] = (route["orders"] * 6)[:count]
@@ -199,7 +199,7 @@ class BrowserTest(unittest.TestCase):
         place = self.move_slider(exact)["ships"][0]
         left, top = (float(v) for v in re.findall(r"[\d.]+", place))
         scale = 760 / 25
-        # 300 s of the slider are two thirds of a cell.
+        # Rounding to 300 s shifts the time by at most 150 s, in which the ship moves half a cell.
         self.assertLess(abs((x + 0.5) * scale - left), scale)
         self.assertLess(abs(760 - (y + 0.5) * scale - top), scale)
 

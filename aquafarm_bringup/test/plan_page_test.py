@@ -25,7 +25,7 @@ COMMAND = pathlib.Path(__file__).resolve().parent.parent / "scripts" / "make_pla
 
 
 def bulletin():
-    """A typhoon of 2021-07-24 00:00 UTC that moves over the ranch a day later."""
+    """Returns a bulletin of 2021-07-24 00:00 UTC: a typhoon passes over the ranch a day later."""
 
     def point(clock, latitude, **more):
         return {"time": clock, "lat": latitude, "lng": 122.7, "strong": "台风(TY)", "speed": 38,
@@ -42,7 +42,7 @@ def words_of(plan):
 
 
 class PlanFileTest(unittest.TestCase):
-    """Plan files that do not fit are refused with place, value and what to do."""
+    """An invalid plan file is refused with the place, the value and a hint."""
 
     @classmethod
     def setUpClass(cls):
@@ -275,7 +275,7 @@ class PageTest(unittest.TestCase):
             self.assertNotIn(part, words)
 
     def test_orders_of_a_ship_with_a_device_aboard_promise_nothing_without_known_winds(self):
-        for share in (None, 1.0):  # 1.0: files that were made before it was null
+        for share in (None, 1.0):  # files of earlier versions contain 1.0
             plan = plan_sample.storm_unknown_aboard(share)
             words = words_of(plan)
             self.assertRegex(words, r"deliver F1 at port A\s+0\.6\s+unknown")
@@ -390,7 +390,7 @@ class GeoJsonTest(unittest.TestCase):
 
 
 class CommandTest(unittest.TestCase):
-    """A script in the place of aquafarm_plan; the real program is tested by plan_launch_test."""
+    """Replaces aquafarm_plan by a script. plan_program_test tests the real program."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="aquafarm_plan_test_"))

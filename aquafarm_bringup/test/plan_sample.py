@@ -60,7 +60,7 @@ def land_cells():
 
 
 def route(start, goal, closed):
-    """Shortest path over water, without `start`."""
+    """Returns the cells of the shortest path over water, without `start`."""
     back, queue = {start: None}, collections.deque([start])
     while queue:
         cell = queue.popleft()
@@ -97,12 +97,12 @@ class Futures:
         self.grow = grow
 
     def reach(self, cells):
-        """Whether each ring covers each cell, one cell per step: members × steps × 3."""
+        """Returns whether each ring covers a cell, bool [members, steps, 3]. cells: one per step"""
         distance = np.linalg.norm(self.centres - np.asarray(cells, float)[None], axis=2)
         return distance[:, :, None] <= self.radii[None] * self.size
 
     def arrival(self, cell):
-        """First hour of each ring at a cell, infinite where it does not come: members × 3."""
+        """Returns the first hour in which each ring covers a cell, [members, 3]; inf: never."""
         covered = self.reach([cell] * len(self.hours))
         first = np.where(covered.any(1), self.hours[covered.argmax(1)], np.inf)
         return first
@@ -114,7 +114,7 @@ def km(path, start):
 
 
 def make_route(ship, port, leave_h, stops, closed, futures):
-    """A ship's orders: fetches each device and brings it to the nearest port."""
+    """Returns the route of a ship that brings each device of `stops` to the nearest port."""
     hours_per_km = 1 / (SPEED_KN * 1.852)
     at, now, path, orders, total = PORTS[port], leave_h, [[*PORTS[port], leave_h * 3600]], [], 0.0
 
@@ -172,7 +172,7 @@ def loss_of(values):
 
 
 def damage(futures, device, home):
-    """Loss of a device by member: exposure to the rings until it is home."""
+    """Returns the loss of a device, [members]: 0 at home, else by its hours in the rings."""
     cell, value = DEVICES[device][2], DEVICES[device][3]
     exposed = futures.reach([cell] * len(futures.hours)).sum(1) * (STEP_S / 3600)
     share = np.clip(exposed @ np.array([0.10, 0.03, 0.005]), 0, 1)
@@ -185,7 +185,7 @@ def quantile_time(first, q):
 
 
 def order_of(i, routes):
-    """The ship of a device with its stops to fetch and deliver it; None without one."""
+    """Returns (ship, order to fetch, order to deliver) of device i; None if no ship fetches it."""
     for one in routes:
         for fetch, deliver in zip(one["orders"][1::2], one["orders"][2::2]):
             if fetch["device"] == i:
@@ -194,7 +194,7 @@ def order_of(i, routes):
 
 
 def sample_device(i, routes, closed, futures, rng):
-    """Device i, with its loss, its loss without a plan and whether it comes home, by member."""
+    """Returns the entry of device i, and by member: loss, loss without a plan, comes home."""
     name, kind, cell, value = DEVICES[i]
     arrival, members = futures.arrival(cell), futures.size.shape[0]
     home, hour, order = np.zeros(members, bool), np.inf, None
@@ -230,7 +230,7 @@ def sample_device(i, routes, closed, futures, rng):
 
 
 def sample_change(name, text, extra, mean_loss, home_count):
-    """An entry of what_if. @param extra loss; None: impossible"""
+    """Returns an entry of what_if. extra: additional mean loss; None: the change is impossible"""
     entry = {"change": name, "text": text, "possible": extra is not None, "mean_loss": None,
              "q95": None, "devices_home": None, "all_home": None, "difference": None}
     if extra is None:
@@ -246,7 +246,7 @@ def sample_change(name, text, extra, mean_loss, home_count):
 
 
 def sample_hazard(futures):
-    """How many members cover a cell: in the ranch by hour, and by cell every second hour."""
+    """Returns the hazard of the ranch by hour, and that of each cell every second hour."""
     grid = np.stack(np.meshgrid(np.arange(SIZE), np.arange(SIZE)), -1).reshape(-1, 2)
 
     def percent(hour):
@@ -288,7 +288,7 @@ def sample_errors(futures):
 
 
 def sample_place():
-    """Ranch, rings, ports and ships."""
+    """Returns the part of the plan with ranch, rings, ports and ships."""
     return {
         "ranch": {
             "name": "dongji", "description": "Ranch off the Dongji islands (test fixture).",
@@ -305,7 +305,7 @@ def sample_place():
 
 
 def sample_head(seed):
-    """What the page begins with."""
+    """Returns the part of the plan from `format` to `clock`."""
     return {
         "format": "aquafarm_plan", "version": 1, "provenance": {
             "program_version": "0.2.0", "seed": seed, "computed_at": stamp(0.05), "compute_s": 4.2,
@@ -344,7 +344,7 @@ ASSUMPTIONS = [("position error of the forecast", "15 km + 2.5 km per hour of le
 
 
 def sample(members=1000, seed=1):
-    """The sample plan file as a dictionary."""
+    """Returns the sample plan file as a dictionary."""
     futures = Futures(members, seed)
     closed = set(land_cells()) | set(ROCKS)
     routes = [make_route(0, 0, 6, [1, 0], closed, futures),
@@ -374,7 +374,7 @@ def sample(members=1000, seed=1):
 
 
 def nothing_to_save():
-    """The bulletin comes too late: no ship leaves."""
+    """Returns a plan in which the bulletin comes too late: no ship leaves."""
     late = copy.deepcopy(sample(members=200))
     late["outcome"] = {
         "kind": "nothing_can_be_saved", "exit_code": 10,
@@ -405,7 +405,7 @@ def nothing_to_save():
 
 
 def storm_stays_away():
-    """The storm passes at a distance in every member; no currency, no energy model."""
+    """Returns a plan without currency and energy model: all members pass at a distance."""
     calm = copy.deepcopy(nothing_to_save())
     calm["outcome"] = {
         "kind": "storm_stays_away", "exit_code": 11,
@@ -429,7 +429,7 @@ def storm_stays_away():
 
 
 def storm_unknown():
-    """The bulletin has neither winds nor radii: nothing is known."""
+    """Returns a plan for a bulletin with neither winds nor radii: the risk is unknown."""
     plan = copy.deepcopy(storm_stays_away())
     text = "It is unknown whether the storm reaches the devices: its wind and radii are unknown."
     plan["outcome"] = {
@@ -454,7 +454,7 @@ def storm_unknown():
 
 
 def storm_unknown_of_before():
-    """As storm_unknown, of a program that wrote zeros: its page must not show them."""
+    """Returns storm_unknown as earlier versions wrote it: zeros instead of null."""
     plan = copy.deepcopy(storm_stays_away())
     new = storm_unknown()
     plan.update(warnings=new["warnings"], outcome={**new["outcome"]})
@@ -464,9 +464,9 @@ def storm_unknown_of_before():
 
 
 def storm_unknown_aboard(chance=None):
-    """As storm_unknown, but a ship is at sea with F1 aboard: it has orders nevertheless.
+    """Returns the plan storm_unknown with a ship that is at sea with F1 aboard and has orders.
 
-    @param chance of its orders: null, or a number in files that were made before it was null
+    chance: probability of the orders; None, or a number as in files of earlier versions
     """
     plan = copy.deepcopy(storm_unknown())
     cell, port = [12, 13], PORTS[0]

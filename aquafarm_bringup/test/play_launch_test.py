@@ -30,7 +30,7 @@ class PlayLaunchTest(unittest.TestCase):
         return Ranch("play", "viz:=false", *arguments, stdin=self._terminal)
 
     def episode_of(self, bag):
-        """Summary of the episode in a bag."""
+        """Returns the summary of the episode in a bag."""
         with rosbag.Bag(str(bag)) as source:
             found = [message for topic, message, _ in source.read_messages()
                      if topic.endswith("/episode")]

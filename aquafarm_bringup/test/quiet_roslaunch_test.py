@@ -26,7 +26,7 @@ LAUNCH = """<launch>
 class QuietRoslaunchTest(unittest.TestCase):
 
     def launch(self, command, *arguments):
-        """(exit code, output) of launching a node that runs a command."""
+        """Launches a node that runs a command; returns (exit code, output)."""
         port = free_port()
         with tempfile.NamedTemporaryFile("w", suffix=".launch") as file:
             file.write(LAUNCH.format(command))
@@ -41,7 +41,7 @@ class QuietRoslaunchTest(unittest.TestCase):
         code, words = self.launch("echo hello")
         self.assertEqual(0, code, words)
         self.assertEqual(1, len(words.splitlines()), words)
-        self.assertTrue(words.startswith("hello "), words)  # then roslaunch's arguments of a node
+        self.assertTrue(words.startswith("hello "), words)  # roslaunch adds arguments
 
     def test_a_failed_node_is_reported_without_colours(self):
         words = self.launch("false")[1]

@@ -27,7 +27,7 @@ def load_script(name):
 
 
 def verify(*bags):
-    """(exit code, output) of verify_bag, called as a user does."""
+    """Runs verify_bag as a user does; returns (exit code, output)."""
     done = subprocess.run(["rosrun", "aquafarm_bringup", "verify_bag", *map(str, bags)], timeout=60,
                           capture_output=True, text=True)
     return done.returncode, done.stdout + done.stderr
@@ -36,7 +36,7 @@ def verify(*bags):
 class Ranch:
     """A launch in its own process group; leaving the context ends all its processes.
 
-    Trainings write their report, which takes seconds, only if reports is true.
+    reports: whether trainings write their report, which takes seconds
     """
 
     def __init__(self, launch, *arguments, port=None, stdin=subprocess.DEVNULL, reports=False):

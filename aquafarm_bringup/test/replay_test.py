@@ -34,7 +34,7 @@ WAY_OUT = (": set headless:=true or rviz:=false and view the topic image, or dra
 
 
 def make_bag(folder):
-    """A bag of one episode, some fifty steps."""
+    """Makes a bag of one episode with about fifty steps; returns its path."""
     def run(package, name, *arguments):
         subprocess.run([roslib.packages.find_node(package, name)[0], *map(str, arguments)],
                        check=True, stdout=subprocess.DEVNULL, timeout=60)
@@ -95,7 +95,8 @@ class ReplayTest(unittest.TestCase):
         return process, states
 
     def moved_bag(self):
-        """Episodes 4 and 5, each with the states of the bag, on /state and /spec."""
+        """Makes a bag with the topics /state and /spec; returns its path. Its episodes 4 and 5 both
+        contain the states of the recorded bag."""
         path = self.folder / "two.bag"
         with rosbag.Bag(str(self.bag)) as source, rosbag.Bag(str(path), "w") as copy:
             for i, episode in enumerate((4, 5)):
@@ -299,7 +300,7 @@ class ReplayTest(unittest.TestCase):
     def test_a_planner_in_the_midst_of_its_plan_ends_with_the_launch(self):
         with Ranch("replay", f"bag:={self.bag}", "headless:=true", "policy:=clairvoyant") as ranch:
             pid = ranch.wait_for(lambda: ranch.node_pid("bag_policy"), 60)
-            os.kill(pid, signal.SIGSTOP)  # cannot handle signals
+            os.kill(pid, signal.SIGSTOP)  # a stopped process handles no signals except SIGKILL
             ranch.interrupt()
             ranch.exit_code(60)
             self.assertFalse(pathlib.Path(f"/proc/{pid}").exists())

@@ -55,19 +55,19 @@ onload = () => {
 
 
 def program(package, name):
-    """Path of one of the suite's programs."""
+    """Returns the path of a program of aquafarm."""
     return roslib.packages.find_node(package, name)[0]
 
 
 def run(package, name, *arguments, **options):
-    """(exit code, output) of a program."""
+    """Runs a program of aquafarm; returns (exit code, output)."""
     done = subprocess.run([program(package, name), *map(str, arguments)], timeout=120, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False, **options)
     return done.returncode, done.stdout
 
 
 class Page(html.parser.HTMLParser):
-    """Elements, texts and addresses of a page; its tags must match."""
+    """Reads the elements, texts and addresses of a page. Fails if its tags do not match."""
 
     def __init__(self, path):
         super().__init__()
@@ -98,7 +98,7 @@ class Page(html.parser.HTMLParser):
         self.words += data
 
     def embedded(self, kind):
-        """Embedded files of a kind."""
+        """Returns the embedded files of a kind, such as video/mp4."""
         head = f"data:{kind};base64,"
         return [base64.b64decode(one[len(head):]) for one in self.addresses
                 if one.startswith(head)]
@@ -210,25 +210,25 @@ class ReportTest(unittest.TestCase):
         labels = ["RANDOM (all actions)", "q_learning", "planner", "clairvoyant"]
         places = [section.index(f"<span>{label}</span>") for label in labels]
         self.assertEqual(sorted(places), places)
-        self.assertEqual(4, len(re.findall(r"<span>success \d+% \[\d+%, \d+%\]</span>", section)))
-        self.assertIn("<span>100.0% of the optimum</span>", section)  # of the optimum itself
+        self.assertEqual(4, len(re.findall(r"<span>success \d+ % \[\d+ %, \d+ %\]</span>", section)))
+        self.assertIn("<span>100.0 % of the optimum</span>", section)  # of the optimum itself
         self.assertEqual(3, section.count("<span>100 episodes, "))
 
     def test_it_lists_what_became_of_each_device(self):
         found = re.findall(r"<td>F0 \w+( \w+)?</td>(.*?)</tr>", self.page.text)
         self.assertEqual(2, len(found), "the cove has one device: all episodes, and the videos")
-        shares = [int(share) for share in re.findall(r"<td>(\d+)% \[\d+%, \d+%\]</td>", found[0][1])]
+        shares = [int(share) for share in re.findall(r"<td>(\d+) % \[\d+ %, \d+ %\]</td>", found[0][1])]
         self.assertEqual(3, len(shares), found[0])  # home, aboard, left
         self.assertAlmostEqual(100, sum(shares), delta=1)
-        self.assertRegex(found[1][1], r"home at step \d+, health \d+%|left at sea, health \d+%")
+        self.assertRegex(found[1][1], r"home at step \d+, health \d+ %|left at sea, health \d+ %")
 
     def test_shares_of_a_device_count_distinct_starts(self):
         device = {"id": 2, "kind": "deep_water_breeding", "episodes": 100, "delivered": 90,
                   "aboard": 0, "left": 10, "delivered_health": 0.953}
         table = outcomes.summary_table({"devices": [device], "distinct_episodes": 100})
-        self.assertIn("<td>F2 deep water</td><td>90% [83%, 94%]</td><td>0% [0%, 4%]</td>"
-                      "<td>10% [6%, 17%]</td><td>95%</td>", table)
-        self.assertIn("90% [60%, 98%]", outcomes.summary_table(
+        self.assertIn("<td>F2 deep water</td><td>90 % [83 %, 94 %]</td><td>0 % [0 %, 4 %]</td>"
+                      "<td>10 % [6 %, 17 %]</td><td>95 %</td>", table)
+        self.assertIn("90 % [60 %, 98 %]", outcomes.summary_table(
             {"devices": [device], "distinct_episodes": 10}))
         self.assertEqual("", outcomes.summary_table({}), "an evaluation of version 0.1.0")
 
@@ -253,7 +253,7 @@ class ReportTest(unittest.TestCase):
             "random moves of training 2 of 4 episodes end with devices at sea; train longer.",
             note(-420.0, 100.0, -420.0, 100.0))
         self.assertIn("without the random moves of training it does worse", note(99.0, 101.0))
-        for returns in ((239.0, 241.0), (140.0, 160.0), (-160.0,)):  # better, alike, no interval
+        for returns in ((239.0, 241.0), (140.0, 160.0), (-160.0,)):  # better, equal, no interval
             self.assertEqual("", note(*returns))
 
     def test_it_holds_curves_of_return_success_and_loss(self):
@@ -293,9 +293,9 @@ class ReportTest(unittest.TestCase):
 
         others = [player("planner", 98, 98, 98, 98), player("clairvoyant", 100, 100, 100, 100)]
         two = [player("a", 88, 92, 88, 92, is_run=True), player("b", 80, 80, 80, 80, is_run=True)]
-        self.assertEqual("a: it reaches 90.0% of the optimum, 8.0 points [5.7, 10.3] below planner.",
+        self.assertEqual("a: it reaches 90.0 % of the optimum, 8.0 points [5.7, 10.3] below planner.",
                          references.verdict([two[0], *others]))
-        self.assertIn("a has the highest return of the 2 runs: it reaches 90.0% of the optimum, "
+        self.assertIn("a has the highest return of the 2 runs: it reaches 90.0 % of the optimum, "
                       "10 points [8, 12] above b, 8.0 points [5.7, 10.3] below planner. One training each does not "
                       "rank their algorithms.", references.verdict([*two, *others]))
         self.assertEqual("a: its returns sum up to less than 0, 103 points below planner.",
@@ -309,9 +309,9 @@ class ReportTest(unittest.TestCase):
         second = [outcomes.Outcome("F0 release", None, None, 0.5),
                   outcomes.Outcome("F1 release", 2, None, 0.75)]
         table = outcomes.episodes_table(["best", "worst"], [first, second])
-        self.assertIn("<td>F0</td><td>monitoring: home at step 9, health 100%</td>"
-                      "<td>release: left at sea, health 50%</td>", table)
-        self.assertIn("<td>F1 release</td><td>–</td><td>aboard since step 2, health 75%</td>",
+        self.assertIn("<td>F0</td><td>monitoring: home at step 9, health 100 %</td>"
+                      "<td>release: left at sea, health 50 %</td>", table)
+        self.assertIn("<td>F1 release</td><td>–</td><td>aboard since step 2, health 75 %</td>",
                       table)
 
     def test_the_chart_of_a_benchmark_has_the_scale_of_the_learners(self):
@@ -331,7 +331,7 @@ class ReportTest(unittest.TestCase):
         kind = {"kind": "monitoring", "devices": 200, "delivered": 150, "aboard": 0, "left": 50,
                 "delivered_health": 0.9}
         table = outcomes.summary_table({"devices_by_kind": [kind], "distinct_episodes": 100})
-        self.assertIn("<td>monitoring (200)</td><td>75% [66%, 82%]</td>", table)
+        self.assertIn("<td>monitoring (200)</td><td>75 % [66 %, 82 %]</td>", table)
         family = self.folder / "family"
         family.mkdir()
         (family / "scenario.yaml").write_text("name: f\nfamily: {width: [6, 9]}\n")
@@ -362,7 +362,7 @@ class ReportTest(unittest.TestCase):
             pictures = 0
             while capture.read()[0]:
                 pictures += 1
-            self.assertGreater(pictures, 24)  # its steps, and two seconds at the end
+            self.assertGreater(pictures, 24)  # two seconds of pictures follow the steps
 
     def test_without_an_encoder_that_browsers_play_the_videos_are_gifs(self):
         output = self.folder / "gifs.html"

@@ -85,10 +85,10 @@ class SecondHostTest(unittest.TestCase):
         self.server = Program(self, *self.host.inside, SSHD, "-D", "-e", "-f", config)
 
     def loader(self):
-        """An env-loader as on a ship's computer."""
+        """Writes an env-loader as on a ship's computer; returns its path."""
         value = os.environ.get
         path = self.folder / "env.sh"
-        # The variables of OpenBLAS select its kernels, and thus the bits of a training.
+        # These variables select the kernels of OpenBLAS, which affect the result of a training.
         blas = [f"export {name}='{text}'" for name, text in os.environ.items()
                 if name.startswith("OPENBLAS_")]
         path.write_text(LOADER.format(
@@ -151,7 +151,7 @@ class SecondHostTest(unittest.TestCase):
         self.assertGreater(self.clock_after(port, 60), 1.0)
 
     def clock_after(self, port, limit_s):
-        """Time of the farm's clock [s] after it has advanced, or 0.0."""
+        """Returns how far the farm's clock advances in 30 messages [s]; 0.0 without messages."""
         command = [*self.host.environment(port, inside=False), "rostopic", "echo", "-n", "30", "-p",
                    "/clock"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=limit_s, check=False)

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Topics, services and the master listen on the loopback address alone. Only roscpp's XML-RPC server
-of each C++ node listens on all addresses, which ROS_IP does not change (docs/security.md)."""
+"""Topics, services and the master listen on the loopback address alone. The exception is the
+XML-RPC server of each C++ node: it listens on all addresses, whatever ROS_IP is
+(docs/security.md)."""
 import os
 import pathlib
 import sys

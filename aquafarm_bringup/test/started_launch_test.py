@@ -23,8 +23,8 @@ START_LIMIT_S = 60
 LIMIT_S = 60
 HOLD = 10
 CLAIM_TIMEOUT_S = 10
-# A ship that cannot deliver all devices in an episode of random actions, and a self-propelled
-# device.
+# A farm with a self-propelled device and a ship. With random actions, the ship cannot deliver all
+# devices in one episode.
 FERRY = """# SPDX-License-Identifier: BSD-3-Clause
 name: ferry
 grid: {width: 5, height: 5}
@@ -43,7 +43,7 @@ def call(name, kind, **fields):
 
 
 def state():
-    """Current state of farm 0, or None while there is no sim node."""
+    """Returns the current state of farm 0, or None while there is no sim node."""
     try:
         return call("get_state", GetState).state
     except (rospy.ServiceException, OSError):
@@ -51,7 +51,7 @@ def state():
 
 
 def pid_of(node):
-    """Process id of a node, or 0 while there is none."""
+    """Returns the process id of a node, or 0 while the node does not run."""
     try:
         return xmlrpc.client.ServerProxy(
             rosgraph.Master("/started_launch").lookupNode(node)).getPid("/started_launch")[2]
@@ -95,7 +95,7 @@ class StartedLaunchTest(unittest.TestCase):
         ranch = self.start("agents", f"scenario:={scenario}", "late_s:=20")
         for silence_s in (CLAIM_TIMEOUT_S + 1, 0):
             home = self.pause_with_the_device_home(ranch)
-            time.sleep(silence_s)  # it sends no commands
+            time.sleep(silence_s)  # the node of the device sends no commands meanwhile
             claim = call("ship_1/claim", Claim)
             self.assertEqual((Outcome.CLAIMED, "/aquafarm/agent_1"), (claim.code, claim.holder))
             call("pause", Pause, paused=False)

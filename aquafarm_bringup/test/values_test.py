@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import numpy as np
 import roslib.packages
@@ -23,8 +24,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"
 from aquafarm_report import values_topics  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 
-from aquafarm_report.values import (ValuesError, compare, device_relation, draw_map,  # noqa: E402
-                                    draw_places, draw_relation, headline, make, read, verdict)
+from aquafarm_report.values import (ValuesError, compare, device_relation, draw,  # noqa: E402
+                                    draw_map, draw_places, draw_relation, headline, make, read,
+                                    verdict)
 
 
 def slope(height=12, width=14):
@@ -149,6 +151,21 @@ class ValuesTest(unittest.TestCase):
         self.assertIn("falls with depth (−1.00)", found)
         self.assertNotIn("flat", found, "a constant layer has no rank correlation")
         self.assertIn("distance to a device (", found)
+
+    def test_a_long_headline_stays_inside_the_picture(self):
+        values = slope()
+        text = {"cell_size_m": 1000.0, "devices": [[0, 0]], "episodes": 1, "episode": 0,
+                "policy": "planner", "scenario": "paper"}
+        layers = [("warmth", "degC", values), ("depth", "m", -values)]
+        self.addCleanup(pyplot.close, "all")
+        with unittest.mock.patch.object(pyplot, "close"), tempfile.TemporaryDirectory() as folder:
+            draw(text, values, layers, [compare(values, layer[2]) for layer in layers],
+                 pathlib.Path(folder) / "values.png")
+        figure = pyplot.gcf()
+        title = next(one for one in figure.texts if "rank correlation" in one.get_text())
+        box = title.get_window_extent(figure.canvas.get_renderer())
+        self.assertLess(box.x1, figure.bbox.width)
+        self.assertGreater(title.get_text().count("\n"), 0)
 
     def test_the_lowest_returns_do_not_flatten_the_colours_of_the_others(self):
         values = slope()

@@ -95,7 +95,7 @@ def main():
     for path, text in headers.items():
         header = target / f"{path}.h"
         header.parent.mkdir(parents=True, exist_ok=True)
-        if not header.is_file() or header.read_text("utf-8") != text:  # keeps dates
+        if not header.is_file() or header.read_text("utf-8") != text:  # keeps old dates
             header.write_text(text, "utf-8")
 
 

@@ -5,8 +5,8 @@
 
     python3 cleanrl_ppo.py [--scenario paper] [--steps 1500000] [--farms 64] [--seed 1]
 
-Install first: pip install './aquafarm_gym[sb3]' (includes torch). The farms step together in C++.
-The tensor of features shares the memory that they write.
+Install first: pip install './aquafarm_gym[sb3]' (includes torch). The farms step together in C++
+and write their features directly into the memory of a tensor.
 """
 import argparse
 import time
@@ -79,7 +79,7 @@ class Agent(nn.Module):
 
 
 def orthogonal(layer, gain):
-    """Initialises a layer with orthogonal weights and no bias."""
+    """Initialises a layer with orthogonal weights and biases of 0."""
     nn.init.orthogonal_(layer.weight, gain)
     nn.init.zeros_(layer.bias)
     return layer

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of the conversion of bags to Minari datasets: python3 bags_test.py, with rosbags and minari
-installed (pip install './aquafarm_gym[bags]'); tools/check_python runs it."""
+"""Tests of the conversion of bags to Minari datasets. tools/check_python runs this file.
+
+It needs rosbags and minari (pip install './aquafarm_gym[bags]').
+"""
 import contextlib
 import io
 import os
@@ -53,7 +55,7 @@ class BagsTest(unittest.TestCase):
         self.assertTrue(episode.terminations[-1])
         env = again.recover_environment().unwrapped
         self.assertEqual(env.farms.name, "tiny")
-        # Seeds of evaluations are above those that environments accept, so the farms start directly.
+        # Seeds of evaluations are larger than env.reset accepts, so the farms are reset directly.
         recorded = next(bags.read_episodes(BAG))
         env.reset(seed=1)
         env.farms.reset(recorded.seed, recorded.episode)

@@ -46,7 +46,7 @@ class EnvTest(unittest.TestCase):
         self.assertTrue(data_equivalence(one, other, exact=True), f"{one}\n{other}")
 
     def test_drawn_seeds_fit_a_signed_64_bit_number(self):
-        for _ in range(20):  # numpy draws 128 bits: without a limit one in two is too large
+        for _ in range(20):  # NumPy draws 128 bits, so most seeds need the limit
             for env in (FarmEnv(), FarmVectorEnv(2), FarmParallelEnv()):
                 env.reset()
                 self.assertTrue(0 <= env._episodes.seed < 2**63, env._episodes.seed)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of the examples in short form: each learns a small farm. tools/check_python runs it.
+"""Tests of the examples in short form: each learns a small farm. tools/check_python runs this file.
 
     python3 examples_test.py [--venv FOLDER]
 
@@ -23,7 +23,7 @@ if not WHY_NOT:
 
 SHORT = {"rollout": 1024, "batch": 128}  # many updates in few steps
 
-# A farm of 4 x 4 cells; a red tide near it ends no episode before its step limit.
+# A farm of 4 x 4 cells near a red tide. The red tide ends no episode before the step limit.
 SMALL = """
 name: small
 grid: {width: 4, height: 4, cell_size_m: 1000}

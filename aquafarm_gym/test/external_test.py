@@ -9,6 +9,7 @@ import csv
 import io
 import json
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -25,7 +26,7 @@ if not WHY_NOT:
     from aquafarm_gym import external
 
 
-# Nothing in it is drawn: all episodes start alike.
+# The layout is fixed and there are no disasters, so all episodes start alike.
 STILL = """
 name: still
 grid: {width: 7, height: 6}
@@ -142,6 +143,16 @@ class ExternalTest(unittest.TestCase):
             code, said = self.learn(scenario)
             self.assertEqual((code, said.count("\n")), (2, 1), said)
             self.assertIn(words, said)
+
+    def test_numbers_out_of_range_end_with_code_2_and_what_is_expected(self):
+        for words in (("--seed", "-1"), ("--seed", str(2**63)), ("--episodes", "0"),
+                      ("--evaluation-episodes", "many")):
+            done = subprocess.run([sys.executable, "-c", "from aquafarm_gym import external; "
+                                   "external.main(None)", "paper", "--run-dir", self.run_dir,
+                                   *words], capture_output=True, text=True, check=False, timeout=60)
+            self.assertEqual(2, done.returncode, words)
+            self.assertIn(f"argument {words[0]}: got '{words[1]}', expected a whole number from ",
+                          done.stderr)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of the curves of runs: python3 logs_test.py, with tensorboard (and wandb) installed;
-tools/check_python runs it."""
+"""Tests of the curves of runs. tools/check_python runs this file.
+
+It needs tensorboard; the test of Weights & Biases also needs wandb.
+"""
 import contextlib
 import importlib.util
 import io
@@ -26,7 +28,7 @@ def has(name):
 
 
 def write_run(folder, rows, mode="w"):
-    """Writes metrics.csv with rows k = first … last of return k and loss nan for even k."""
+    """Writes metrics.csv with a row for each k in `rows`: return k, and loss k (NaN for even k)."""
     folder.mkdir(exist_ok=True)
     with open(folder / "metrics.csv", mode, encoding="utf-8") as file:
         if mode == "w":
@@ -58,7 +60,7 @@ class TensorBoardTest(unittest.TestCase):
         self.assertEqual(logs.log_runs(runs, window=4), [2, 1])
         seen = read(runs[0])
         self.assertEqual(seen["episode/return"], [(40, 2.5), (70, 6.0)])
-        self.assertEqual(seen["learner/loss"], [(40, 2.0), (70, 6.0)])  # without those that are NaN
+        self.assertEqual(seen["learner/loss"], [(40, 2.0), (70, 6.0)])  # without NaN
         self.assertEqual(seen["episode/success_rate"][0], (40, 0.5))
         self.assertEqual(set(seen), {"episode/return", "episode/success_rate", "learner/loss"})
         logs.log_runs(runs, window=4)  # a second call replaces the first

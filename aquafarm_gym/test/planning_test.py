@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of planners and saved policies from Python, which need no package from PyPI.
+"""Tests of planners and saved policies from Python. They need no package from PyPI.
 
 The returns of `EVALUATED` are those that aquafarm_evaluate writes for the same episodes
 (--episodes 5 --farms 5 --seed 3 --max-steps 300).
@@ -54,7 +54,7 @@ class PlanningTest(unittest.TestCase):
                                        rtol=1e-6, err_msg=name)
 
     def test_a_network_plays_as_in_aquafarm_evaluate(self):
-        """On this machine: another processor may round otherwise and choose another move."""
+        """Runs both programs here, because another processor may round differently."""
         program = evaluate_program()
         if program is None:
             self.skipTest("aquafarm_evaluate is not built here")
@@ -151,7 +151,7 @@ class PlanningTest(unittest.TestCase):
 
 
 def evaluate_program():
-    """Returns the path of aquafarm_evaluate, None if it is not built here."""
+    """Returns the path of aquafarm_evaluate; None if it is not built here."""
     try:
         import roslib.packages
         found = roslib.packages.find_node("aquafarm_agents", "aquafarm_evaluate")

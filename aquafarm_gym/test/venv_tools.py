@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A virtual environment for tests that need packages from PyPI.
 
-A test program that calls enter_venv() continues in the Python of the virtual environment in the
-folder given by its argument --venv, which is created if necessary. Without access to PyPI the
-test's cases are skipped with a message. Without --venv the running Python is used.
+enter_venv() restarts the test program with the Python of the virtual environment that the argument
+--venv FOLDER names. It creates the environment if necessary. Without access to PyPI, all cases are
+skipped with a message. Without --venv, the program continues with the running Python.
 """
 import importlib.util
 import os
@@ -20,7 +20,8 @@ LIMIT_S = 150
 
 
 def enter_venv():
-    """Continues in the virtual environment; returns the reason if it cannot, "" if it is inside."""
+    """Restarts this program in the virtual environment. Returns "" if it already runs there, or if
+    there is no --venv and the packages are installed. Else returns why the tests cannot run."""
     if "--venv" not in sys.argv:
         missing = [name for name in ("gymnasium", "pettingzoo")
                    if importlib.util.find_spec(name) is None]
@@ -46,7 +47,8 @@ def enter_venv():
 
 
 def run_tests(name, cases, why_not):
-    """Runs the cases of a test program with rostest if it was started by rostest, else unittest."""
+    """Runs the cases of a test program. Uses rostest if rostest has started the program, else
+    unittest."""
     results = [one.split("xml:")[1] for one in sys.argv if one.startswith("--gtest_output=xml:")]
     if not results:
         suite = unittest.defaultTestLoader.loadTestsFromTestCase(cases)

@@ -28,13 +28,13 @@ constexpr double kLookPeriod_s = 0.05;
 constexpr std::chrono::seconds kEndLimit{
     2};  // from the shutdown of a connection to the end of its call
 
-/// The ranch is away or does not respond: the file is sent again.
+/// Thrown if the ranch is away or does not respond. The file is then sent again.
 class NoAnswer : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A call with the data of its thread, which may outlive the wait for it.
+/// A service call and the data of its thread. The thread may outlive the wait for the call.
 struct Call {
   ros::ServiceClient client;
   aquafarm_msgs::SetDisaster message;
@@ -44,9 +44,9 @@ struct Call {
 struct BulletinParams {
   std::string folder;
   std::string storm;          // empty: the only storm of the file
-  double period_s{1.0};       // between checks of the folder
-  double call_limit_s{10.0};  // until an unresponsive ranch counts as away
-  int id{0};                  // of the disaster that the bulletins replace
+  double period_s{1.0};       // time between checks of the folder
+  double call_limit_s{10.0};  // time after which an unresponsive ranch counts as away
+  int id{0};                  // id of the disaster that the bulletins replace
   bool forecast_only{false};  // ships receive the forecasts; the disaster keeps its track
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What going through ROS costs: rates of an empty service, of one ship's commands and of joint
-// steps of many farms, each in a process of its own, persistent connections, in turns.
+// Measures the cost of ROS: the rates of an empty service, of commands of one ship, and of joint
+// steps of 64 farms. The servers run in separate processes, and connections are persistent. The
+// three measurements alternate.
 #include <aquafarm_msgs/Move.h>
 #include <aquafarm_msgs/Outcome.h>
 #include <aquafarm_msgs/Reset.h>
@@ -41,7 +42,7 @@ constexpr double kStartLimit_s = 30.0;
 constexpr int kFarms = 64;
 constexpr const char* kEmpty = "empty";
 
-/// A process that is ended with this one.
+/// A child process that ends with this process.
 class Child {
  public:
   explicit Child(const std::vector<std::string>& command) : pid_(fork()) {
@@ -84,7 +85,7 @@ void WaitForMaster() {
   }
 }
 
-/// Calls a service over one connection that is kept.
+/// Calls a service over a persistent connection.
 template <typename Service>
 class Client {
  public:
@@ -106,7 +107,7 @@ class Client {
   ros::ServiceClient client_;
 };
 
-/// Calls a second, of `call` done over and over for a while.
+/// Repeats `call` for about kRound_s. Returns the number of calls per second.
 double RateOf(const std::function<void()>& call) {
   const Clock::time_point start = Clock::now();
   int calls = 0;
@@ -131,7 +132,7 @@ int ServeEmpty() {
   return 0;
 }
 
-/// Drives ship 0 of the sim node at random, every command for its own step.
+/// Sends random moves to ship 0 of the sim node. Each command names its step.
 class ShipDriver {
  public:
   explicit ShipDriver(ros::NodeHandle& node)
@@ -161,7 +162,7 @@ class ShipDriver {
   aquafarm::RandomStream random_{{1, 0, aquafarm::RngStream::kExploration, 0}};
 };
 
-/// Steps many farms at once at random, with tabular indices.
+/// Steps kFarms farms with random actions and requests tabular indices.
 class FarmsDriver {
  public:
   explicit FarmsDriver(ros::NodeHandle& node)

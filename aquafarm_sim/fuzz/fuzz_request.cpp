@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target for service requests: the first byte selects the service, the rest is the serialised
-// request, which the server of a ranch with one ship executes. The server must answer with a code;
-// after a request its state can be saved and loaded (tried after every hundredth: it takes most of
-// the time).
+// Fuzz target for service requests. The first byte selects the service, and the rest is the
+// serialised request. The server of two farms executes it and must answer with a code. After every
+// hundredth input, its state must be saved and loaded without an error. This check takes most of
+// the time.
 #include <ros/serialization.h>
 
 #include <cstddef>
@@ -21,7 +21,7 @@ namespace {
 
 using aquafarm_sim::FarmServer;
 
-constexpr std::int32_t kMaxFarms = 64;  // more take long
+constexpr std::int32_t kMaxFarms = 64;  // more farms take too long
 
 std::unique_ptr<FarmServer> MakeServer() {
   aquafarm_sim::ServerOptions options;
@@ -108,7 +108,7 @@ void Execute(FarmServer& server, std::uint8_t service, const std::vector<std::ui
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static std::unique_ptr<FarmServer> server = MakeServer();
   static std::uint64_t inputs = 0;
-  if (++inputs % 1000 == 0) server = MakeServer();  // a finding depends on few inputs
+  if (++inputs % 1000 == 0) server = MakeServer();  // so a finding depends on few inputs
   if (size == 0) return 0;
   try {
     std::vector<std::uint8_t> bytes(data + 1, data + size);

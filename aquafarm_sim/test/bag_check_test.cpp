@@ -256,7 +256,8 @@ std::string MessagesOf(const std::string& path) {
   return all;
 }
 
-// Flips one bit in each of `count` bytes from `begin` on; each flip gives one bag.
+// Makes `count` bags from a bag, each with one flipped bit. The bits are spread evenly over the
+// bytes from `begin` to the end.
 void FlipBits(const std::string& bag, std::size_t begin, std::size_t count) {
   std::ifstream file(bag, std::ios::binary);
   std::stringstream content;
@@ -276,7 +277,7 @@ void FlipBits(const std::string& bag, std::size_t begin, std::size_t count) {
   }
 }
 
-// The compressed chunk follows the file's header of 4 kB and is most of the rest of the file.
+// The compressed chunk follows the header of 4 kB and makes up most of the file.
 TEST_F(EpisodeBag, AFlippedBitAnywhereInTheRecordingIsFound) { FlipBits(OneBag(), 4200, 60); }
 
 // No checksum protects the lengths, offsets and names that rosbag's reader trusts.

@@ -205,7 +205,7 @@ TEST(Storms, AreTheSameThereAndBack) {
   EXPECT_EQ(ToMsg(FromMsg(again)), again);
 }
 
-// Compares numbers that a message holds in single precision.
+// Compares numbers that a message stores in single precision.
 void ExpectNear(const std::vector<float>& a, const std::vector<float>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i)

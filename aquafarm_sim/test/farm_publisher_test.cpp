@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order of messages for a subscriber that comes while a farm is stepped. The thread of roscpp
-// that sends messages is held until several are published, as it happens on a busy machine.
+// The order of messages for a subscriber that connects while a farm is stepped. The roscpp thread
+// that sends messages is stopped until several messages are published, as on a busy machine.
 #include "aquafarm_sim/node/farm_publisher.h"
 
 #include <arpa/inet.h>
@@ -34,7 +34,7 @@ std::string Frame(const std::string& content) {
   return std::string(reinterpret_cast<const char*>(&size), sizeof size) + content;
 }
 
-/// A subscriber of a topic of this process, on a connection of its own: roscpp does not use one
+/// A subscriber of a topic of this process. It has its own connection, because roscpp uses none
 /// inside a process.
 template <typename Message>
 class Subscriber {
@@ -93,7 +93,7 @@ class Subscriber {
   int socket_;
 };
 
-/// Holds the thread of roscpp that sends messages while it exists.
+/// Stops the roscpp thread that sends messages, until this object is destroyed.
 class HeldSender {
  public:
   HeldSender() {
@@ -127,7 +127,8 @@ class FarmPublisherTest : public ::testing::Test {
     publisher_ = std::make_unique<FarmPublisher>(ros::NodeHandle(), params_, *ranch_);
   }
 
-  /// Starts two episodes and lets the publisher greet its new subscriber, while no message is sent.
+  /// Starts two episodes and lets the publisher greet its new subscriber. No message is sent
+  /// meanwhile.
   /// @returns the time of the last episode's start
   ros::Time PublishWhileHeld() {
     std::future<void> greeting;

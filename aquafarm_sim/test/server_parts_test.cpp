@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of FarmServer, each alone.
+// Tests of the parts of FarmServer.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -212,8 +212,8 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
   return found;
 }
 
-/// Warns about requested content that the bag lacks if a picture can be drawn without it. Also
-/// warns about a bag of another version.
+/// Warns about missing steps, about a bag of another version, and about requested values or moves
+/// that the bag lacks.
 void WarnOfMissing(const Request& request, const Found& found) {
   if (found.gaps > 0) {
     std::fprintf(stderr, "render: %s: %s\n", Name(request).c_str(),

@@ -17,7 +17,7 @@ namespace {
 using visualization_msgs::Marker;
 using Key = std::pair<std::string, int>;
 
-// A farm of 25 x 25 cells of 1 km with a device in the outer ring and one far away.
+// A farm of 25 x 25 cells of 1 km. One device is in the outer ring, and one is far away.
 struct Scene {
   aquafarm_msgs::FarmSpec spec = test::MakeSpec();
   aquafarm_msgs::FarmState state = test::MakeState();
@@ -31,7 +31,7 @@ struct Scene {
     state.disasters[0].risks = {-20.0F, -5.0F};
   }
 
-  // The disaster's track in ten steps from x = -8 along y = 12.
+  // Sets the track of the disaster: from (-8, 12) to (x, 12) in ten steps.
   void SetTrackTo(int x) {
     state.step = 0;
     spec.scenario_yaml = R"(
@@ -282,8 +282,8 @@ disasters:
   EXPECT_EQ(alarm.text,
             "typhoon: gale over F0 and F10 now, storm in 4.0 h, Sun 04:16 UTC+8,\n"
             "hurricane force in 10 h");
-  // whole_view.cpp leaves 3.5 % of the farm on its right; on the screen a letter was 0.40 of the
-  // height wide.
+  // whole_view.cpp leaves 3.5 % of the farm free on its right. On the screen, letters are 0.40 of
+  // their height wide on average.
   const double line_m = 0.40 * alarm.scale.z * double(alarm.text.find('\n'));
   EXPECT_LT(line_m, 1.07 * 25000.0);
 }

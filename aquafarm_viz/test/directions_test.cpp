@@ -115,7 +115,8 @@ TEST(DeviceLabels, AreMarkersOfDeployedDevicesOnlyIfTheLayerIsOn) {
   for (const std::size_t id : {1U, 2U}) EXPECT_EQ(markers[id].action, Marker::DELETE);
 }
 
-// Returns the pixels that a layer changes, by the compass direction from the centre of a cell.
+// Returns the number of pixels that a layer changes near a cell, by octant: the bearing of its
+// middle, seen from the centre of the cell [degrees].
 std::map<int, int> ChangedAround(const aquafarm_msgs::FarmSpec& spec, const std::string& layer,
                                  int x, int y) {
   auto state = test::MakeState();
@@ -165,7 +166,7 @@ TEST(Image, LabelsDeployedDevicesToTheirRight) {
   const auto changed = ChangedAround(spec, "labels", deployed.x, deployed.y);
   int pixels = 0;
   for (const auto& [bearing, count] : changed) {
-    EXPECT_TRUE(bearing >= 45 && bearing <= 135) << bearing;  // of the centre of the octant
+    EXPECT_TRUE(bearing >= 45 && bearing <= 135) << bearing;
     pixels += count;
   }
   EXPECT_GT(pixels, 20);

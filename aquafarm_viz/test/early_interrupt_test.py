@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ctrl-C ends viz_node at whatever moment of its start it comes."""
+"""Ctrl-C ends viz_node also during the first 0.6 s after its start."""
 import signal
 import subprocess
 import sys

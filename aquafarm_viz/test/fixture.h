@@ -183,7 +183,7 @@ inline aquafarm_msgs::PolicyChoice MakeChoice() {
   return choice;
 }
 
-/// Makes the first index entry of a bag invalid, which the reader of rosbag does not notice.
+/// Makes the first index entry of a bag invalid. The reader of rosbag does not notice this.
 inline void DamageIndex(const std::string& path) {
   std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
   std::stringstream content;

@@ -335,8 +335,8 @@ TEST(Image, ShowsByArrowheadsWhereAShipCameFrom) {
     for (int x = 0; x < grey.cols; ++x) heights.push_back(cv::countNonZero(grey.col(x) > 20));
     return heights;
   };
-  // A head is highest where the ship came from. Returns the largest rise and fall from left to
-  // right.
+  // Returns the largest rise and fall of the heights from left to right. An arrowhead is highest at
+  // its rear end, where the height changes most.
   const auto steepest = [](const std::vector<int>& heights) {
     std::vector<int> changes(heights.size());
     std::adjacent_difference(heights.begin(), heights.end(), changes.begin());

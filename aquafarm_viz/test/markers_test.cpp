@@ -43,7 +43,7 @@ TEST(SpecMarkers, HaveAShoreLineWhereLandMeetsWater) {
   auto spec = test::MakeSpec();
   spec.islands = {test::MakeCell(5, 5), test::MakeCell(6, 5), test::MakeCell(0, 9)};
   const Marker shore = ByKey(SpecMarkers(spec, false)).at({"shore", 0});
-  // Two cells next to each other have six borders with water, one at the farm's edge has three.
+  // Two neighbouring cells have six borders with water. A cell at the edge of the farm has three.
   EXPECT_EQ(shore.points.size(), 6U * 9U);
   for (const auto& point : shore.points) {
     EXPECT_FALSE(std::abs(point.x - 5500.0) < 100.0 && std::abs(point.y - 5000.0) < 300.0)
@@ -51,7 +51,7 @@ TEST(SpecMarkers, HaveAShoreLineWhereLandMeetsWater) {
   }
 }
 
-// The texts of the axes with their places in metres, the longitudes first.
+// Returns the position (x, y) of each text of the axes [m].
 std::map<std::string, std::pair<double, double>> AxisTexts(const aquafarm_msgs::FarmSpec& spec) {
   std::map<std::string, std::pair<double, double>> texts;
   for (const auto& marker : SpecMarkers(spec, false).markers) {
@@ -192,7 +192,7 @@ TEST(StateMarkers, HaveRingsAtTheRadiiOfTheDisaster) {
   EXPECT_EQ(markers.at({"ring", 3}).action, Marker::DELETE);
 }
 
-// The corners of a marker's triangles in cells of the farm.
+// Returns the corners of a marker's triangles in cells of the farm.
 std::vector<cv::Point2d> Corners(const Marker& marker, double cell_m) {
   std::vector<cv::Point2d> corners;
   for (const auto& point : marker.points) {
@@ -344,8 +344,8 @@ TEST(StateMarkers, StayBelowTheHeightAtWhichRvizCutsOff) {
 }
 
 TEST(StateMarkers, HaveTextOfElevenPixelsInAWindowOf1280x720) {
-  // There the view of the whole farm is about 600 pixels high; whole_view.cpp adds 29 % for the
-  // lines above and below the farm.
+  // In this window the view is about 600 pixels high. It contains the farm and the lines above and
+  // below it: 29 % of the side of the farm are assumed for these, whole_view.cpp leaves 34.5 %.
   constexpr double kView_px = 600.0 / 1.29;
   // Measured on the screen: capitals have 0.6 of the scale, and 0.69 of the size of Liberation
   // Sans.

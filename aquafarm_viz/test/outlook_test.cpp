@@ -82,7 +82,7 @@ TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
             "typhoon, risk -5, reaches F3 in 10 steps");
 }
 
-// The track of kRecorded with the winds of its rings.
+// Returns kRecorded with the winds of its rings.
 std::string WithWinds(const std::string& winds) {
   return std::string(kRecorded).replace(std::string(kRecorded).find("    track:"), 0,
                                         "    ring_winds_kt: " + winds + "\n");
@@ -181,13 +181,13 @@ TEST(Outlook, StrengthHasMetresPerSecondAndKnots) {
 TEST(Outlook, NamesNoWindThatIsNotGiven) {
   Outlooks scene;
   scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
-  scene.state.disasters[0].radii = {2.0F, 5.0F, 10.0F};  // of a bulletin with other rings
+  scene.state.disasters[0].radii = {2.0F, 5.0F, 10.0F};  // from a bulletin with other rings
   scene.state.disasters[0].risks = {-20.0F, -10.0F, -5.0F};
   EXPECT_TRUE(scene.course().ring_winds_kt.empty());
   scene.state.disasters[0].radii = {5.0F, 10.0F};
   scene.state.disasters[0].risks = {-20.0F, -5.0F};
   EXPECT_EQ(scene.course().ring_winds_kt.size(), 2U);
-  scene.state.disasters[0].y = 20.0F;  // not where its track has it
+  scene.state.disasters[0].y = 20.0F;  // away from its track
   EXPECT_TRUE(scene.course().ring_winds_kt.empty());
 }
 
@@ -313,7 +313,7 @@ TEST(Outlook, IsInTheHeadLineEvenWhereThereIsLittleSpace) {
 
 TEST(Outlook, SaysUntilWhenItIsKnown) {
   Outlooks scene;
-  scene.state.disasters[0].x = 212.0F;  // it arrives after the 60 steps of a present course
+  scene.state.disasters[0].x = 212.0F;  // it arrives after the 60 steps of an extrapolated course
   EXPECT_FALSE(IsInDanger(scene.outlook()));
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
             "no danger to devices known until +3.0 h");
@@ -442,7 +442,7 @@ TEST(Course, HasAConeWhereForecastsHaveAnError) {
   EXPECT_GT(cv::norm(draw(""), draw("view: {forecast_error_km: [48, 96]}\n")), 1000.0);
 }
 
-// The number of separate parts of a map that a drawing changes.
+// Returns the number of separate parts of a map that a drawing changes.
 template <typename Draw>
 int CountParts(const Layout& layout, Draw draw) {
   cv::Mat map(layout.map.size(), CV_8UC3, cv::Scalar::all(0));

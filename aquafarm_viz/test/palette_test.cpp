@@ -50,7 +50,7 @@ cv::Vec3f Lab(Rgb color, const cv::Matx33d& vision) {
   return lab(0, 0);
 }
 
-// The least difference (CIE76) of two colours over all kinds of vision.
+// Returns the smallest difference (CIE76) of two colours over all kinds of vision.
 double Difference(Rgb a, Rgb b) {
   double least = 1e9;
   for (const cv::Matx33d& vision : kVision) {

@@ -190,7 +190,7 @@ TEST(PlanText, DevicesHaveTheirOddsAndDeadlines) {
   EXPECT_EQ(PlanDevices(*plan)[1], (PlanRow{"D2", "unknown", "unknown", "unknown", "unknown"}));
 }
 
-// A ship with a device aboard has orders although the winds are unknown; they promise nothing.
+// A ship with a device aboard has orders even if the winds are unknown, but no chances.
 TEST(PlanText, ChancesAreUnknownIfTheWindsAre) {
   const auto plan = Plan();
   plan->result = aquafarm_msgs::RescuePlan::STORM_UNKNOWN;
@@ -253,9 +253,9 @@ TEST(PlanWords, AShipAtSeaIsNeverOrderedToStay) {
   ship.cell.x = 3;
   EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "stay");
   ship.aboard = {1};
-  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "stay, no port in reach");
+  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "stay, no safe way to a port");
   ship.cell.x = 4;
-  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "no port in reach");
+  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "no safe way to a port");
 }
 
 TEST(RanchModel, APlanThatFollowsTheRanchHasItsTime) {

@@ -84,7 +84,7 @@ TEST(Region, ShowsATrackOnlyWhereItIsTheDisasters) {
   auto spec = test::MakeSpec();
   auto state = test::MakeState();
   state.step = 0;
-  state.ships.clear();  // leaves room for the inset
+  state.ships.clear();  // leaves space for the inset
   state.disasters = {test::MakeDisaster(0, -90.0F, 12.0F), test::MakeDisaster(1, 100.0F, -200.0F)};
   const cv::Mat without = Panel(DrawFarm(spec, state, kRegionSize));
   spec.scenario_yaml = kTrack;
@@ -334,7 +334,7 @@ TEST(Rings, HaveAPatternForEachKind) {
     state.disasters[0].kind = kind;
     const cv::Mat image = DrawFarm(spec, state, kRegionSize);
     const MapPlace place = PlaceMap(25, 25, kRegionSize);
-    const cv::Point2d at = place.view.ToPixel(19.0, 19.0);  // apart from the sign at the centre
+    const cv::Point2d at = place.view.ToPixel(19.0, 19.0);  // away from the sign at the centre
     drawn.push_back(image(place.map)(cv::Rect(int(at.x) - 14, int(at.y) - 14, 28, 28)).clone());
     for (std::size_t i = 0; i + 1 < drawn.size(); ++i) {
       EXPECT_GT(cv::norm(drawn[i], drawn.back()), 100.0) << i << " and " << int(kind);

@@ -24,7 +24,7 @@ class Replay : public testing::Test {
   Replay() : path_(fs::temp_directory_path() / ("replay_test_" + std::to_string(getpid()))) {}
   ~Replay() override { fs::remove(path_); }
 
-  // Writes episodes 12 and 14 with steps 0, 2, 4 … 98, a step per 0.1 s, and observations.
+  // Writes episodes 12 and 14 with steps 0, 2, 4 … 98, two steps per 0.2 s, and observations.
   std::string MakeBag() {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     double seconds = 1.0;

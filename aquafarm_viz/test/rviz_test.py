@@ -41,7 +41,7 @@ WANTED = {
     "outer ring": (0xff, 0xd4, 0x3b),
 }
 ROUTE = {"route, a thin line over the sea": (0x57, 0x97, 0xc5)}
-CHOICE = {"choice of the other policy": (0xff, 0x4f, 0xd8)}
+CHOICE = {"choice of the other policy": (0x4d, 0xe3, 0xff)}
 # Colours of CurveWidget in the panel.
 PANEL = {
     "back of the curve": (0x10, 0x1d, 0x2a),
@@ -86,7 +86,7 @@ def corner_state(spec, step, outside=False):
 
 
 def values():
-    """Returns V of each cell (max in the north-east) as a grid and as points; all moves go north."""
+    """Returns V (max in the north-east) as a grid and as points. All moves go north."""
     grid = OccupancyGrid()
     grid.header.frame_id = "map"
     grid.info.width = grid.info.height = SIDE
@@ -238,10 +238,10 @@ class RvizTest(unittest.TestCase):
                 self.send("state", corner_state(spec, step))
                 time.sleep(0.5)
                 picture = screen(frame_buffer)
-                absent = missing(picture[VIEW], devices, tolerance=8)  # the legend is yellow too
+                absent = missing(picture[VIEW], devices, tolerance=8)  # excludes blended pixels
             self.keep(picture, "size_%d" % episode)
             self.assertFalse(absent, "a farm of %d x %d cells of %g m" % size)
-            # Clear the picture, so that it cannot pass for that of the next farm.
+            # Removes the devices, so that this picture is not taken for one of the next farm.
             end = time.monotonic() + LIMIT_S
             while len(absent) < len(devices) and time.monotonic() < end:
                 step += 1
@@ -251,7 +251,7 @@ class RvizTest(unittest.TestCase):
             self.assertEqual(set(devices), set(absent), "devices that are gone are seen")
 
     def test_watch_shows_the_ranch_and_the_panel(self):
-        # The line has two spaces in a row; in rviz's own width they are 2 heights wide.
+        # The line has two spaces in a row. With rviz's default width they are 2 heights wide.
         self.show("watch", WANTED, lambda view: widest_space(view) < 1.5)
 
     def test_train_shows_values_and_best_moves_too(self):

@@ -38,14 +38,14 @@ bool AnswerSoon(Pause::Request&, Pause::Response& response) {
   return response.ok = true;
 }
 
-// Answers with an array that states a gibibyte and contains nothing.
+// Answers with an array whose stated length is a gibibyte, and which contains nothing.
 class Overstater : public ros::ServiceCallbackHelper {
  public:
   bool call(ros::ServiceCallbackHelperCallParams& params) override {
     aquafarm_msgs::SaveState::Response response;
     response.ok = true;
     params.response = ros::serialization::serializeServiceResponse(true, response);
-    const std::uint32_t stated = 1U << 30U;  // the length of the array is in front of the hash
+    const std::uint32_t stated = 1U << 30U;  // the length of the array precedes the hash
     std::memcpy(params.response.buf.get() + params.response.num_bytes - sizeof(response.hash) -
                     sizeof(stated),
                 &stated, sizeof(stated));

@@ -153,7 +153,7 @@ TEST(Signs, OfAShipStandOnWaterNextToAPort) {
   state.ships.front().y = cell.y;
   spec.rocks.clear();
   spec.islands.clear();
-  for (int gap = 0; gap < 4; ++gap) {  // land on three of the four sides
+  for (int gap = 0; gap < 4; ++gap) {  // land in three of the four diagonal cells
     spec.islands.clear();
     const std::array<cv::Point, 4> sides{cv::Point(-1, -1), {1, -1}, {-1, 1}, {1, 1}};
     for (int side = 0; side < 4; ++side) {
@@ -211,7 +211,7 @@ TEST(Signs, OfRingsHaveTheirKnotsInANarrowPanelToo) {
   }
 }
 
-// Returns the distance of a pixel from each ring of a disaster at y = 8, the nearest ring first.
+// Returns the distances of a pixel from the rings of a disaster at y = 8, ascending.
 std::vector<double> FromRings(cv::Point2d pixel, const aquafarm_msgs::DisasterState& disaster,
                               const Layout& layout) {
   const double away = cv::norm(pixel - layout.view.ToPixel(double(disaster.x), 8.0));

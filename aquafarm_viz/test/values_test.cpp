@@ -118,8 +118,8 @@ TEST(Values, RefusesACloudOfAnotherKind) {
             "values/points: field x: got type 7 at byte 0, expected type 7 within point_step");
 }
 
-// Max difference, of 255. An edge is blended from many strokes, and OpenCV rounds after each
-// stroke. A cached drawing is blended and rounded only once.
+// Max difference of a colour channel, in [0, 255]. An edge is blended from many strokes, and OpenCV
+// rounds after each stroke. A cached drawing is blended and rounded only once.
 constexpr double kRounding = 12.0;
 
 // A painter caches the drawing of values. It must never show the cache for other values.
@@ -151,13 +151,13 @@ TEST(Values, APainterDrawsThemAsOneThatHasDrawnNothingElse) {
       EXPECT_GT(cv::norm(draw(painter, *farm, &turned, layers), draw(away, *farm, &values, layers),
                          cv::NORM_INF),
                 2 * kRounding);
-      draw(painter, farm == &spec ? other : spec, nullptr, layers);  // with another background
+      draw(painter, farm == &spec ? other : spec, nullptr, layers);  // with a different background
     }
   }
 }
 
-// In cells of whole pixels the cached symbols are at the exact position, in other cells at the
-// nearest pixel.
+// If the size of a cell is an integer, cached symbols are at the exact position. If not, they are
+// at the nearest pixel.
 TEST(Values, SignsPutOnAMapAreThoseDrawnOnIt) {
   for (const int side : {10, 25, 33, 100, 500}) {
     auto values = ReadValues(test::MakeCloud(side), test::MakeSpec(side));

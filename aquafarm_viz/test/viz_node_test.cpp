@@ -25,7 +25,7 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-// Publishes messages in place of the sim node, without /clock: the node must not need it.
+// Publishes messages in place of the sim node, but no /clock: viz_node must not need it.
 class VizNodeTest : public testing::Test {
  protected:
   static constexpr double kLimit_s = 60.0;
@@ -137,7 +137,7 @@ TEST_F(VizNodeTest, PublishesEachShipsRouteAsAPathInMetres) {
 struct MarkerCount {
   std::map<std::string, int> delete_all;  // by episode, as written in the status
   std::set<std::string> spaces;
-  std::string status;  // from "episode" on: the text begins with the clock
+  std::string status;  // without the clock, with which the text begins
   void Take(const MarkerArray& array) {
     int here = 0;
     for (const auto& marker : array.markers) {

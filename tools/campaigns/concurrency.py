@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs two trainings at the same time, each with its own sim node on one master. One sim node has 200
-subscribers that read and one that never reads. The results must equal those of a training that runs
-alone, and the memory of that sim node must grow by less than 64 MiB."""
+subscribers that read and one that never reads. The memory of this sim node must grow by less than
+64 MiB. The results must equal those of a training that runs alone."""
 import contextlib
 import pathlib
 import select

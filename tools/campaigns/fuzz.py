@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gives mutated and huge files to readers. The fuzz targets read mutated samples, which libFuzzer
-makes if the targets were built with AQUAFARM_FUZZ, else fuzz/mutate.cpp. The program
+"""Gives mutated and huge files to readers. The fuzz targets read mutated samples. libFuzzer makes
+them if the targets were built with AQUAFARM_FUZZ; otherwise fuzz/mutate.cpp makes them. The program
 aquafarm_scenario reads huge files."""
 import json
 import os
@@ -77,8 +77,7 @@ def run_target(campaign, name, seed, place):
 
 
 def bulletin(points):
-    """Returns a bulletin with a storm of `points` points. All have the same time: it is
-    invalid."""
+    """Returns an invalid bulletin: a storm of `points` points that all have the same time."""
     point = json.dumps({"time": "2021-07-25T14:00:00", "lat": 30, "lng": 122, "pressure": 50})
     return ('[{"tfbh": "202106", "points": [' + ",\n".join([point] * points) + "]}]").encode()
 

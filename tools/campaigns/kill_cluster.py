@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Kinds of the campaign kill for programs that consist of several processes.
 
-ranks      kills one rank of a training in several ranks, which must then end with exit code 6, and
-           resumes the training with a random number of ranks
+ranks      kills one rank of a training in several ranks. The training must then end with exit code
+           6. It is resumed with a random number of ranks
 workers    kills and replaces a worker or the scheduler of a benchmark on two Dask workers while the
            benchmark continues. Its tables must equal those of an undisturbed benchmark
 """
@@ -16,7 +16,7 @@ from campaigns import common, kill, ros
 RANK_LOST = 6        # exit code
 BAD_INPUT = 2        # exit code
 NO_SCHEDULER = "which does not answer within"  # error of a client that never reached its scheduler
-KILLS = 5            # max kills of one run unless --kills is given; then the run may end by itself
+KILLS = 5            # max kills of one run without --kills; after them the run is not disturbed
 STOP_S = 30.0        # max time for the other ranks to stop on an idle machine
 BUSY_STOP_S = 180.0  # the same for a busy machine, which starts processes more slowly
 STARTS = 5           # max starts of a benchmark whose scheduler is killed before the first contact

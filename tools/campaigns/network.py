@@ -6,8 +6,8 @@ proxy         a proxy delays and cuts service calls, and repeats them at once or
               second master passes calls on to the real one and returns the address of the proxy
 stop_sim      the sim node is stopped (SIGSTOP) for --stop-seconds, longer than a call may take
 stop_trainer  the trainer is stopped for the same time
-master        the master is killed and started again at its port. It no longer knows the services,
-              so connections must stay open
+master        the master is killed and started again at its port. The new master has no registered
+              services, so the trainer must keep its open connections
 """
 import contextlib
 import pathlib

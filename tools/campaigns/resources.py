@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs programs with too little disk space, permissions, descriptors or memory. Each must succeed,
-or end with an exit code and a readable line, and leave no partial file."""
+"""Runs programs with a full disk, in a read-only folder, or with few descriptors or little memory.
+Each must succeed, or end with an exit code and a readable line. It must leave no partial file."""
 import contextlib
 import os
 import pathlib
@@ -53,8 +53,8 @@ def small_disk(folder, kilobytes):
 
 
 def of_memory_group():
-    """Returns the folder of the memory control group of this process, in version 1 or 2; None if
-    there is none."""
+    """Returns the folder in which memory_group makes a control group: the root in version 1, the
+    group of this process in version 2. None if neither exists."""
     for line in pathlib.Path("/proc/self/cgroup").read_text().splitlines():
         _, controllers, path = line.split(":", 2)
         if controllers == "memory":

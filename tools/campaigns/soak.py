@@ -80,8 +80,8 @@ def lockstep(campaign, steps):
 
 
 def run(campaign):
-    """Runs the kinds with one seed after another. campaign.count is the number of steps in
-    millions. If the kind random takes part, only its steps count."""
+    """Runs the kinds with one seed, then with the next seed, and so on. campaign.count is the
+    number of steps in millions. If the kind random takes part, only its steps count."""
     kinds = campaign.kinds([*KINDS, "ros"]) if campaign.only else list(KINDS)
     steps, seed = 0, campaign.seed
     while campaign.more(steps // MILLION):

@@ -2,8 +2,8 @@
 # shellcheck shell=bash disable=SC2154,SC2034
 # Builds the workspace and the ROS-free cores; sourced by ./aquafarm.
 
-# is_made_from FOLDER SOURCES [LINE]: true if cmake has configured a folder for these sources and
-# its cache has this line. It is false after a checkout was copied or moved.
+# is_made_from FOLDER SOURCES [LINE]: true if cmake has configured FOLDER for SOURCES and the cache
+# in FOLDER has LINE. False after a checkout was copied or moved: the cache has absolute paths.
 is_made_from() {
   grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$2" "$1/CMakeCache.txt" &&
     { [[ $# == 2 ]] || grep -qsxF "$3" "$1/CMakeCache.txt"; }

@@ -9,8 +9,8 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TOOL = ROOT / "tools" / "energy_of_learners.py"
-# The folder of the run keeps its arguments. A policy of weight w uses 100 - w kWh and has a return
-# of 200 - w before the energy is paid.
+# Each training appends its arguments to the file `calls`. A policy of weight w uses 100 - w kWh and
+# has a return of 200 - w without the term of energy.
 TRAIN = """#!/bin/bash
 echo "$*" >>calls
 while [[ $1 != -d ]]; do shift; done

@@ -26,7 +26,7 @@ class TestRun(unittest.TestCase):
     """Runs the stages with programs that are replaced: nothing is built."""
 
     def run_with(self, fast, **codes):
-        """Returns the exit code, the commands and the results; codes: of programs by name."""
+        """Returns (exit code, commands, results) of a run. codes: exit codes of programs by name"""
         with tempfile.TemporaryDirectory() as folder:
             results = pathlib.Path(folder, "results")
             commands = []

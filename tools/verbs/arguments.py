@@ -83,7 +83,9 @@ def policy_of(ranch):
     try:
         keys = yaml.safe_load(pathlib.Path(ranch).read_text(encoding="utf-8"))
         agents = (keys.get("ships") or {}).get("count", 1)
-        agents += ((keys.get("layout") or {}).get("devices") or {}).get("self_propelled", 0)
+        devices = (keys.get("layout") or {}).get("devices") or {}
+        agents += devices.get("self_propelled", 0)
+        agents += sum(bool(site.get("self_propelled")) for site in devices.get("sites") or ())
         return "planner" if agents > 1 else "generalist"
     except (OSError, ValueError, AttributeError, TypeError, yaml.YAMLError):
         return "generalist"
@@ -151,8 +153,8 @@ def defaults_of_training(launch, given, newest, now):
         taken["run_dir"] = run
     if launch == "train" and resumes:
         of_run = arguments_of_run(run)
-        # Another algorithm than that of the run is refused later. The options of the run are not
-        # added then, because the message would name them instead.
+        # If the user gives another algorithm than that of the run, it is refused later. Here the
+        # options of the run are left out, so that the error message does not name them instead.
         is_other = given.get("algorithm") not in (None, "", of_run.get("algorithm"))
         for name, value in of_run.items():
             if given.get(name) or (is_other and name in ("options", "exploration")):
@@ -166,8 +168,8 @@ def defaults_of_training(launch, given, newest, now):
 
 
 def default_arguments(launch, words):
-    """Returns arguments that the user has not given, such as output folders. Their paths are in
-    the present folder, not in ROS_HOME."""
+    """Returns arguments that the user has not given. Output folders are in the present folder, not
+    in ROS_HOME."""
     given = {name: value for name, _, value in (word.partition(":=") for word in words)}
     now = datetime.datetime.now().strftime("%Y%m%d-%H%M%S")
     here, newest, taken = os.getcwd(), newest_run(), {}

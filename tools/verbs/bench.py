@@ -31,8 +31,8 @@ def show(command, out=None, env=None):
 
 
 def reference_python():
-    """Returns the Python of a virtual environment with the packages that come from PyPI, and makes
-    the environment if it does not exist. Returns None if PyPI is out of reach."""
+    """Returns the Python of a virtual environment that contains the packages WANTED. Makes the
+    environment if it does not exist. Returns None if PyPI is out of reach."""
     venv, log = WS / "bench_venv", WS / "bench_venv.log"
     ready = venv / "ready"
     if not ready.is_file() or ready.read_text(encoding="utf-8") != " ".join(WANTED):

@@ -31,8 +31,8 @@ def without_verbose(words):
 
 
 def refuse_unknown(launch, words):
-    """Ends this process if the launch file lacks one of the arguments, which roslaunch would
-    ignore. check_arguments prints the reason."""
+    """Ends this process if the launch file lacks one of the arguments. check_arguments prints the
+    reason. (roslaunch ignores unknown arguments.)"""
     code = run_child([PYTHON, CHECK_ARGUMENTS, LAUNCH_FILES / f"{launch}.launch", *words],
                      stdout=subprocess.DEVNULL)
     if code != 0:
@@ -40,8 +40,8 @@ def refuse_unknown(launch, words):
 
 
 def refuse_a_second_ranch(words):
-    """Raises Refused if a ranch of the same name runs on a shared master, as a second one would
-    end it."""
+    """Raises Refused if a ranch of the same name runs on a shared master: starting a second one
+    ends the first."""
     ns = dict(map(arguments.split, words)).get("ns", "aquafarm")
     try:
         listed = subprocess.run(["rosnode", "list"], stdout=subprocess.PIPE, text=True,
@@ -64,8 +64,8 @@ def complete(launch, words):
 
 
 def read_end(exit_file, code, launch):
-    """Returns the exit code and the reason that the first node to end has written to `exit_file`:
-    roslaunch returns 0 even when a required node failed."""
+    """Returns (exit code, reason) of a launch. They are in `exit_file`, which the first node that
+    ended has written: roslaunch itself returns 0 even when a required node failed."""
     lines = exit_file.read_text(encoding="utf-8").splitlines() if exit_file.is_file() else []
     exit_file.unlink(missing_ok=True)
     if lines:

@@ -16,7 +16,7 @@ hosts.""",
     "evaluate": """Plays a policy greedily over many episodes and reports return and success. Without policy:=… it plays
 the newest run under ./runs, or the shipped policy generalist if there is no run.
 ./aquafarm evaluate RANCH.yaml plays generalist on that ranch, without a training (planner, if it
-has several ships);
+has several ships or self-propelled devices);
 ./aquafarm evaluate RUN plays the policy of that run folder.""",
     "benchmark": """Trains every learner several times, measures them as the paper does (§4.2), and writes figures and a
 table with the paper's Table 1 next to the results. After Ctrl-C or a kill the same command resumes.""",
@@ -48,7 +48,7 @@ report, values, ask, verify, test, bench or --help"""
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that refuses wrong arguments with one line, as all programs of aquafarm do."""
+    """A parser that refuses wrong arguments with one line and without the usage."""
 
     def __init__(self, verb, expected, description):
         super().__init__(prog=f"./aquafarm {verb}", description=description, allow_abbrev=False)

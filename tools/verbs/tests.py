@@ -217,7 +217,7 @@ def core_step(core, fast):
 
 
 def ros_step(log, fast):
-    # Two at a time were tried on two cores. A rostest waits for most of its time.
+    # Measured with two at a time on two cores. A rostest waits for most of its time.
     jobs = min(2, len(os.sched_getaffinity(0)))
     return Step("tests through ROS",
                 [ROOT / "tools/run_ros_tests", WS / "build", log, "--jobs",

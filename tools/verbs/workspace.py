@@ -12,7 +12,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WS = pathlib.Path(os.path.realpath(os.environ.get("AQUAFARM_WS") or ROOT / ".ws"))
-PYTHON = "/usr/bin/python3"  # Debian's ROS belongs to it
+PYTHON = "/usr/bin/python3"  # the one for which Debian's ROS packages are built
 CHECK_ARGUMENTS = ROOT / "aquafarm_bringup" / "scripts" / "check_arguments"
 WRONG_ARGUMENT = 2
 INTERRUPTED = 130
@@ -113,8 +113,9 @@ def is_port_open(port):
 
 
 def enter_ros():
-    """Adds the ROS environment of the built workspace to that of this process. Returns whether
-    ROS_MASTER_URI was set, so that the master may already run; otherwise chooses a free port."""
+    """Adds the ROS environment of the built workspace to that of this process. If ROS_MASTER_URI is
+    set, returns True: its master may already run. Else sets it to a free port and returns
+    False."""
     sourced = subprocess.run(["bash", "-c", 'source "$0" && exec env -0', WS / "devel/setup.bash"],
                              stdout=subprocess.PIPE, check=False)
     if sourced.returncode != 0:

@@ -99,7 +99,8 @@ struct ScenarioChoice {
   std::int32_t max_steps{};  ///< step limit of an episode; 0: the scenario's own
   bool tokens{};             ///< whether to observe by entity tokens even if the scenario does not
 
-  /// Loads the scenario and applies the options. @throws InputError as FindScenario
+  /// Loads the scenario and applies the options.
+  /// @throws InputError in the same cases as FindScenario
   std::shared_ptr<const Scenario> Load() const {
     Scenario scenario = FindScenario(name, folder);
     if (tokens && !scenario.view.tokens) {
@@ -120,9 +121,9 @@ inline void AddScenarioOptions(CLI::App& app, ScenarioChoice& choice) {
   app.add_option("--scenarios", choice.folder, "folder of the shipped scenarios");
 }
 
-/// Runs `body`, which parses the arguments, runs the program and returns its exit code. An
-/// exception is printed as one line, and the exit code of bad input, storage or an internal error
-/// is returned.
+/// Runs `body`, which parses the arguments, runs the program and returns its exit code. If `body`
+/// throws, prints the error to stderr and returns the exit code of bad input, storage or an
+/// internal error. For --help, prints the help and returns 0.
 template <typename Body>
 int RunWithExitCodes(const CLI::App& app, Body body) {
   try {

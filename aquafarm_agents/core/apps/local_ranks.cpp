@@ -44,6 +44,7 @@ int FreePort() {
 }
 
 // Starts rank `rank` of this program with the variables of torchrun. A rank ends with its parent.
+// Returns its process id, or -1 if it cannot be started.
 pid_t StartRank(int rank, int ranks, int port, char** argv) {
   const pid_t parent = getpid();
   const pid_t child = fork();
@@ -86,7 +87,7 @@ class LocalRanks {
     }
   }
 
-  // Waits for the end of all ranks. Returns the exit code of the first that failed.
+  // Waits for the end of all ranks. Returns the exit code of the first that failed, else 0.
   int Wait() {
     while (running() > 0) {
       if (stop_requested && !is_forwarded_) {

@@ -46,7 +46,7 @@ GeoPoint Place(const std::string& option, const std::string& text) {
                    "', expected a latitude in [-90, 90] and a longitude in [-360, 360]");
 }
 
-// Parses "+6h", "6h" or "90min".
+// Returns the seconds of "+6h", "6h" or "90min". Throws InputError for other texts.
 double Seconds(const std::string& option, const std::string& text) {
   const std::size_t from = !text.empty() && text[0] == '+' ? 1 : 0;
   const std::size_t unit = text.find_first_not_of("0123456789.", from);
@@ -81,7 +81,7 @@ std::shared_ptr<const Scenario> LoadRanch(Arguments& arguments) {
   return std::make_shared<const Scenario>(built.scenario);
 }
 
-// Adds a note with the chosen ports if none were given.
+// With --coast, adds a note with the chosen ports if no ports were given.
 void NoteChosenPorts(const Arguments& arguments, RescueCase& rescue) {
   if (arguments.coast.empty() || !arguments.ports.empty()) return;
   std::string places;

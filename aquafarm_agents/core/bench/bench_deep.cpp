@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measures farm steps and updates per second of DQN and LSTM-DQN on paper.yaml with 16 farms and
 // one thread. The observations are the plain feature vector (43 values), as in the references of
-// tools/bench_reference.py, or also contain route distances and lookahead risks (81 values).
+// tools/bench_reference.py. In the benchmarks named AllFeatures they also contain route distances
+// and lookahead risks (81 values).
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -71,7 +72,7 @@ void Print(const std::string& name, double steps, double steps_per_update) {
 int main(int argc, char** argv) {
   aquafarm::bench::MetricReporter reporter;
   if (!aquafarm::bench::RunMedians(argc, argv, reporter)) return 2;
-  using namespace aquafarm::agents;  // NOLINT: this file speaks of nothing else
+  using namespace aquafarm::agents;  // NOLINT: for Print
   Print("dqn", reporter.median("Dqn"), 4.0);
   Print("dqn_all_features", reporter.median("DqnAllFeatures"), 4.0);
   Print("lstm_dqn", reporter.median("LstmDqn"), 16.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target for the lists of a rescue: the first byte, d or s, selects devices or ships. The
-// ranch and its storm are those of Typhoon In-Fa.
+// Fuzz target for the lists of a rescue. The first byte selects the list: s for ships, any other
+// byte for devices. The ranch and its storm are those of Typhoon In-Fa.
 #include <unistd.h>
 
 #include <cstddef>
@@ -26,7 +26,8 @@ agents::RescueRequest OfInFa() {
   return request;
 }
 
-/// The case without devices and ships; the storm is read once.
+/// Returns the case without devices, ships and ports. It is made once, because reading the storm
+/// takes time.
 agents::RescueCase WithoutFleet() {
   agents::RescueCase rescue =
       agents::MakeRescueCase(std::make_shared<const Scenario>(

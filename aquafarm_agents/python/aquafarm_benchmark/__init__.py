@@ -4,7 +4,7 @@
 cli           the program aquafarm_benchmark
 protocol      the learners, the length of their trainings, and the paper's results
 runs          executes trainings and evaluations in parallel; they can be resumed
-cluster       the Dask workers that execute them: on this machine, of a scheduler, or by Slurm
+cluster       the Dask workers that execute them: on this machine, of a scheduler, or of Slurm
 worker        the part of a run that executes on a worker
 measures      convergence, stability, EA, interquartile means and intervals
 losses        losses of money in evaluated episodes

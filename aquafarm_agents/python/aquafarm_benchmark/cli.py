@@ -5,7 +5,6 @@ import fcntl
 import json
 import os
 import pathlib
-import platform
 import re
 import shlex
 import shutil
@@ -15,7 +14,7 @@ import sys
 import tempfile
 import time
 
-from aquafarm_benchmark import cluster, human, results, runs
+from aquafarm_benchmark import cluster, human, output, results, runs
 from aquafarm_benchmark.protocol import FARMS, OPTIMUM, PROFILES, REFERENCES, Contestant
 
 _OK, _FAILED, _BAD_INPUT, _STORAGE, _INTERRUPTED = 0, 1, 2, 3, 130
@@ -79,6 +78,7 @@ def _parser():
                         help="a learner of another package as a row: a program that trains and "
                         "evaluates as aquafarm_gym.external describes, or a shared library (.so) "
                         "that registers NAME; may be repeated")
+    parser.add_argument("--tables-only", action="store_true", help="draw no figures")
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of aquafarm_train and aquafarm_evaluate (default: the "
                         "workspace's, or those on PATH)")
@@ -87,7 +87,7 @@ def _parser():
 
 def parse(arguments):
     """Parses the arguments. If runs, episodes, evaluation_episodes or max_steps is 0 or absent, the
-    profile sets it. Raises BadInput."""
+    profile sets it. Raises BadInput or cluster.BadScheduler."""
     options = _parser().parse_args(arguments)
     if options.profile not in PROFILES:
         raise BadInput(f"profile: got '{options.profile}', expected one of: "
@@ -154,8 +154,8 @@ def _load_in_programs(contestants):
 
 def _own_packages(program):
     """Returns the words to put before the command of a program. They are empty unless the program
-    belongs to a virtual environment that contains aquafarm_core. There they remove the workspace
-    from PYTHONPATH, because it would hide packages of the environment."""
+    belongs to a virtual environment that contains aquafarm_core. For such a program they remove the
+    workspace from PYTHONPATH, because it would hide packages of the environment."""
     home = pathlib.Path(shutil.which(program) or program).parent.parent
     if not (home / "pyvenv.cfg").is_file() or not any(
             home.glob("lib/python*/site-packages/aquafarm_core")):
@@ -379,8 +379,13 @@ def run(options):
             for number in range(1, len(people) + 1)]
     seconds = time.monotonic() - start
     settings.update(jobs=options.jobs, wall_s=round(seconds, 1) if is_whole else None)
-    _conclude(folder, [one for one in contestants if one.name in found], found, settings, people)
-    print(f"took {runs.describe_seconds(seconds)}; tables and figures are in {folder}")
+    contestants = [one for one in contestants if one.name in found]
+    everyone, rows = output.tabulate(folder, contestants, found, settings, people)
+    if not options.tables_only:
+        output.draw(folder, everyone, found, rows)
+    print(results.table(rows) + results.money_table(rows))
+    what = "tables" if options.tables_only else "tables and figures"
+    print(f"took {runs.describe_seconds(seconds)}; {what} are in {folder}")
 
 
 def _run_jobs(jobs, options, folder):
@@ -390,68 +395,6 @@ def _run_jobs(jobs, options, folder):
                  f"on the scheduler {options.scheduler}")
         _say(f"{len(jobs)} runs, {place}, in {folder}")
         return runs.run_all(jobs, workers, _say)
-
-
-def _summarise(one, of_one, best, settings, people):
-    """Returns the row of a contestant. best: run of the optimum; None if there is no such run"""
-    is_human = one.name == human.HUMAN.name
-    yardstick = None
-    if best is not None:
-        # A contestant is compared with the optimum of the episodes that it played.
-        table = best["folder"] / "evaluation.csv"
-        yardstick = (
-            human.optimum_of_the_same(people, settings["evaluation_seed"], table) if is_human
-            else results.mean_return(table, of_one[0]["evaluation"]["episodes"]))
-    row = results.summarise(one, of_one, yardstick, settings["episodes"])
-    if is_human:
-        human.add_intervals(row, people)
-    return row
-
-
-def _conclude(folder, contestants, found, settings, people):
-    # Imported here, because matplotlib takes a second to load, which would delay --help.
-    from aquafarm_benchmark import figures, route_figure
-
-    everyone = [*contestants, *([human.contestant(people)] if people else []),
-                *([OPTIMUM] if OPTIMUM.name in found else [])]
-    best = found[OPTIMUM.name][0] if OPTIMUM.name in found else None
-    rows = [_summarise(one, found[one.name], best, settings, people) for one in everyone]
-    results.add_ea(rows)
-    settings = dict(settings, machine={
-        "processor": _processor(), "cores": os.cpu_count(), "load": os.getloadavg(),
-        "OPENBLAS_CORETYPE": os.environ.get("OPENBLAS_CORETYPE")})
-    results.write(folder, settings, rows, found)
-
-    pictures = folder / "figures"
-    pictures.mkdir(exist_ok=True)
-    trained = [one for one in contestants if one.learns]
-    references = {one.label: row["return_per_episode"] for one, row in zip(everyone, rows)
-                  if one.name in ("planner", OPTIMUM.name)}
-    if trained:
-        figures.draw_rewards(pictures / "rewards.png", trained, found, references)
-        figures.draw_average_rewards(pictures / "average_rewards.png", trained, found, references)
-        figures.draw_square_error(pictures / "mean_square_error.png", trained, found)
-        figures.draw_repeated(pictures / "repeated_trainings.png", trained, found, references)
-        per_step = {one.label: row["return_per_step"] for one, row in zip(everyone, rows)
-                    if one.name == OPTIMUM.name}
-        figures.draw_mean_score(pictures / "mean_score.png", trained, found, per_step)
-    figures.draw_evaluation(pictures / "evaluation.png", everyone, rows)
-    if any(row["money"] for row in rows):
-        figures.draw_losses(pictures / "losses.png", everyone, rows)
-    for one in everyone:
-        route = folder / "runs" / one.name / "seed_1" / "route.json"
-        if route.is_file():  # people and learners of other packages have no route
-            route_figure.draw_route(pictures / f"route_{one.name}.png", one.label, route)
-    print(results.table(rows) + results.money_table(rows))
-
-
-def _processor():
-    try:
-        lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
-        names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-        return next(names)
-    except (OSError, StopIteration):
-        return platform.processor()
 
 
 def _say(text):

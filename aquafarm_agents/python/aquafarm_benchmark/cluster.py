@@ -168,7 +168,7 @@ class Cluster:
             client.close(timeout=5.0)
 
     def close(self):
-        """Closes the connection, and ends the workers that it started."""
+        """Closes the connection, and ends the workers that this object started."""
         self._close_client()
         if self._made is not None:
             made, self._made = self._made, None

@@ -7,7 +7,8 @@ import numpy as np
 from matplotlib import ticker
 
 from aquafarm_benchmark import losses, measures
-from aquafarm_benchmark.style import explain, label_axes, legible, name_ends, number, plt, save, shade
+from aquafarm_benchmark.style import (explain, label_axes, legible, name_ends, number, plt, save,
+                                      shade, write_note)
 
 _NBSP = "\N{NO-BREAK SPACE}"
 _REACHED = 0.9  # a learner has learnt once it reaches this fraction of the best reference
@@ -49,12 +50,12 @@ def _range_of(axes):
 def _scale_returns(axes):
     """Sets a scale that is linear above 0 and logarithmic below, or only linear if all values have
     the same sign. Returns of the first episodes are very low; on a linear scale they would hide the
-    differences between learners."""
+    differences between learners. Returns what the label of the axis says about the scale."""
     low, top = _range_of(axes)
     if top <= 0.0 or low >= 0.0:
         margin = 0.05 * (top - low)
         axes.set_ylim(low - margin, top + margin)
-        return
+        return ""
     unit = top / 3.0  # where the logarithmic part bends
     axes.set_yscale("function", functions=(
         lambda y: np.where(y < 0.0, -unit * np.log1p(np.maximum(-y, 0.0) / unit), y),
@@ -65,6 +66,7 @@ def _scale_returns(axes):
     axes.set_yticks([*below, *above])
     axes.set_ylim(1.15 * low, 1.07 * top)
     axes.axhspan(1.15 * low, 0.0, color=_LOGARITHMIC, linewidth=0, zorder=0)
+    return "\n(logarithmic below 0)"
 
 
 def _draw_returns(path, find, note, ylabel, plots):
@@ -81,8 +83,7 @@ def _draw_returns(path, find, note, ylabel, plots):
     charts = [(axes, plot(axes), xlabel) for (plot, xlabel), axes in zip(plots, rows[:, 0])]
     explain(figure, find(charts[-1][1]), note)
     for axes, ends, xlabel in charts:
-        label_axes(axes, "", f"{ylabel}\n(logarithmic below 0)", xlabel)
-        _scale_returns(axes)
+        label_axes(axes, "", ylabel + _scale_returns(axes), xlabel)
         axes.yaxis.set_major_formatter(lambda value, _: number(value))
         name_ends(axes, ends)
     save(figure, path)
@@ -237,16 +238,20 @@ def draw_square_error(path, contestants, runs):
                            color=legible(one.colour))
             changes.append((last / first, one.label))
     _equal_decades(all_axes.flat[:len(learners)])
-    for axes in all_axes.flat[len(learners):]:
-        axes.axis("off")
     for axes in all_axes[:, 0]:
         axes.set_ylabel("error [reward²]")
     found = ", ".join(f"{name}{_NBSP}×{ratio:.1f}" for ratio, name in sorted(changes))
-    explain(figure, f"Error of the value estimates at the end, relative to the start: {found}",
-            f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic; the titles "
+    note = (f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic; the titles "
             f"give the first and the last value. {_shading(contestants, runs)} The error is relative "
             "to each learner's own targets and cannot be compared between learners. A policy that "
             "fails can have a low error too.")
+    unused = all_axes.flat[len(learners):]
+    for axes in unused:
+        axes.axis("off")
+    if len(unused):
+        write_note(unused[0], note)
+    explain(figure, f"Error of the value estimates at the end, relative to the start: {found}",
+            "" if len(unused) else note)
     save(figure, path)
 
 

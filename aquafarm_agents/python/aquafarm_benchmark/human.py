@@ -30,8 +30,8 @@ class BadBag(ValueError):
 
 @dataclasses.dataclass
 class Person:
-    """The finished episodes of one person: a row with the keys COLUMNS and ADDED, and a key of the
-    start, for each episode."""
+    """The finished episodes of one person. Each episode has a row with the keys COLUMNS and ADDED,
+    and a key of its start (_start_of)."""
     folder: pathlib.Path
     bags: list
     rows: list

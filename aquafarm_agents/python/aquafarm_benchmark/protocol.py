@@ -88,7 +88,8 @@ _NETWORK = ("device=cpu", "mask_blocked=true", "target_update_interval=25", "ema
             f"learning_rate=harmonic:{_FIRST_RATE}:{{last_rate}}:1")
 _TABLE_EXPLORATION = "epsilon_greedy:linear:1:0.01:0.5"
 
-# The colours of the learners and of planner are those of Okabe and Ito (2008), Color universal design.
+# The colours of the learners and of planner are those of Okabe and Ito (2008), Color universal
+# design.
 _RANDOM = Contestant("random", "RANDOM", "#7f7f7f", cost=0.05, options=("actions=reachable",),
                      paper_row="random")
 _Q_LEARNING = Contestant("q_learning", "Q-learning", "#0072b2", cost=0.02,

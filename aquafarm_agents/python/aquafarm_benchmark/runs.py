@@ -94,10 +94,10 @@ def run_all(jobs, cluster, report, period_s=10.0, complete=is_complete):
 
     Returns {contestant: reason} for the contestants that are not suitable: their first command
     exits with code 2 (invalid input), for example a table on a farm with too many states. Exit code
-    2 is a failure if it comes from a later command, or if the contestant has a complete run. Raises
-    RunFailed if some runs failed, after all others have ended. Raises Interrupted on Ctrl-C, once
-    the programs have saved and exited or _LINGER_S have passed. Raises cluster.Lost if the
-    scheduler does not return.
+    2 is a failure if a later command or a resumed run returns it, or if the contestant has a
+    complete run. Raises RunFailed if some runs failed, after all others have ended. Raises
+    Interrupted on Ctrl-C, once the programs have saved and exited or _LINGER_S have passed. Raises
+    cluster.Lost if the scheduler does not return.
     """
     return _Runs(jobs, cluster, report, complete).run(period_s)
 
@@ -183,7 +183,7 @@ class _Runs:
     def _settle(self, future):
         """Processes the end of a run, or the loss of its worker."""
         job = self._futures.pop(future)
-        if future.status == "cancelled":  # by the loss of the scheduler, or below
+        if future.status == "cancelled":  # by the loss of the scheduler, or by cancel() below
             if job.contestant not in self._declined:
                 self._submit_again(future, job)
             return
@@ -192,8 +192,8 @@ class _Runs:
             return
         try:
             outcome = future.result(timeout=_PERIOD_S)
-        # The result was lost with the worker or the scheduler. Dask raises one of two
-        # CancelledError.
+        # The result was lost with the worker or the scheduler. Dask raises one of two exceptions
+        # with the name CancelledError.
         except (OSError, TimeoutError, CancelledError, futures.CancelledError):
             self._futures[future] = job
             return

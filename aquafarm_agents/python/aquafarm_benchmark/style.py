@@ -10,9 +10,10 @@ from matplotlib import colors, pyplot as plt  # noqa: E402
 
 _DPI = 150
 _LETTERS = 78  # max length of a line of a headline
+_NOTE = {"fontsize": 9.5, "color": "0.35"}
 _NAME_PT = 15.0  # height of a name [pt]
 _NEAR = 0.15  # max distance along x of ends that are named in one column [widths of the axes]
-_INSIDE = 0.78  # highest name of a line that ends inside the axes, below the references
+_INSIDE = 0.78  # max height of the name of a line that ends inside the axes [height of the axes]
 _TEXT = 4.5  # min contrast ratio of names on white (WCAG 2.1, 1.4.3)
 plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False,
                      "axes.titlelocation": "left"})
@@ -26,10 +27,15 @@ def save(figure, path, dpi=_DPI):
 
 def explain(figure, finding, note):
     """Writes the finding above a figure, in bold, and the note below it."""
-    figure.suptitle("\n".join(textwrap.wrap(finding, _LETTERS, break_on_hyphens=False)), fontsize=12.5, weight="bold",
-                    x=0.01, ha="left")
-    figure.supxlabel("\n".join(textwrap.wrap(note, 1.25 * _LETTERS)), fontsize=9.5, color="0.35",
-                     x=0.01, ha="left")
+    lines = textwrap.wrap(finding, _LETTERS, break_on_hyphens=False)
+    figure.suptitle("\n".join(lines), fontsize=12.5, weight="bold", x=0.01, ha="left")
+    figure.supxlabel("\n".join(textwrap.wrap(note, 1.25 * _LETTERS)), x=0.01, ha="left", **_NOTE)
+
+
+def write_note(axes, note):
+    """Writes a note into axes of a third of a figure's width that have no chart."""
+    axes.text(0.0, 1.0, "\n".join(textwrap.wrap(note, 0.42 * _LETTERS)), va="top",
+              linespacing=1.4, transform=axes.transAxes, **_NOTE)
 
 
 def label_axes(axes, title, ylabel, xlabel="episode"):

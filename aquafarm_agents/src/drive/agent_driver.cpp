@@ -35,7 +35,7 @@ using aquafarm::InputError;
 using aquafarm_msgs::FarmState;
 using aquafarm_msgs::Outcome;
 
-// After this time without a new observation, the command for the last one is repeated.
+// After this time without a new observation, the command for the last observation is repeated.
 constexpr double kSilence_s = 2.0;
 constexpr std::uint32_t kQueue = 10;
 
@@ -145,8 +145,8 @@ class AgentDriver::Impl {
     over_.push_back(message);
   }
 
-  // Waits for a new observation. Returns the last one again if its command must be repeated; null
-  // if no observation arrives within kSilence_s.
+  // Waits for a new observation. Returns the last one again if its command must be repeated.
+  // Returns null if no observation arrives within kSilence_s, or if the driver is stopped.
   FarmState::ConstPtr WaitForObservation() {
     const ros::WallTime start = ros::WallTime::now();
     while (!Stopped()) {

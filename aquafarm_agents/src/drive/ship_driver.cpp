@@ -182,7 +182,7 @@ class ShipDriver::Impl {
   ServiceLink get_;
   ServiceLink save_;
   ServiceLink reset_;
-  std::optional<ShipClaim> claim_;  // nullopt if it drives all ships
+  std::optional<ShipClaim> claim_;  // set while Drive steers a single ship
   std::vector<std::int32_t> ships_;
   std::vector<std::unique_ptr<ServiceLink>> commands_;  // one per ship
   std::unique_ptr<LocalEnvironment> mirror_;

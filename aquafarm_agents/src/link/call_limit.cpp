@@ -61,8 +61,9 @@ void CallLimit::Watch() {
     if (lock.WaitUntil(ended_, Clock::now() + kLook)) continue;  // woken by the destructor
     if (armed_ == nullptr || Clock::now() - since_ < limit_) continue;
     ros::ServiceClient* const client = armed_;
-    // Drops the connection, which aborts the call. Rarely this is a deadlock: the call waits for a
-    // lock of the connection, and the thread that closes the connection waits for the call.
+    // Drops the connection, which aborts the call. In rare cases this causes a deadlock: the call
+    // waits for a lock of the connection, and the thread that closes the connection waits for the
+    // call.
     EndUnlessDone([client] { client->shutdown(); }, kLastLooks);
     armed_ = nullptr;
   }

@@ -34,7 +34,8 @@ static_assert(int{StepResult::TERMS} == int{aquafarm::kTermsField});
 // Max number of restarts without a completed episode. More restarts mean that another client uses
 // the farms at the same time.
 constexpr int kMaxRestarts = 20;
-// Observation types that the sim node computes. Others are computed here from saved states.
+// Observation types that the sim node computes. This class fills StepResults::states itself, with
+// copies of the farms made from saved states.
 constexpr int kFarmObservationTypes =
     aquafarm::agents::kIndexBit | aquafarm::agents::kFeaturesBit | aquafarm::agents::kPlanesBit;
 
@@ -166,7 +167,7 @@ const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions
   }
   Take(step_.response.result);
   if (!results_.finished.empty()) restarts_ = 0;
-  for (const EpisodeSummary& ended : results_.finished) {  // the farm's next one is total later
+  for (const EpisodeSummary& ended : results_.finished) {  // its farm now plays episode + total
     next_episode_ =
         std::max(next_episode_, ended.episode + static_cast<std::uint64_t>(share_.total) + 1);
   }

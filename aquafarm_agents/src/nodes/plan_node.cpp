@@ -300,11 +300,10 @@ class PlanNode {
 
   void Work(const PlanInputs& inputs) {
     try {
-      const bool had_plan = keeper_.plan().plan.result != RescuePlan::NONE;
       if (!keeper_.Update(inputs)) return;
       PlanMessages messages = keeper_.plan();
       Publish(messages);
-      Report(messages.plan, had_plan);
+      Report(messages.plan);
       const aquafarm::MutexLock lock(shown_mutex_);
       shown_ = std::move(messages.plan);
     } catch (const std::exception& error) {
@@ -331,10 +330,10 @@ class PlanNode {
   }
 
   // Logs an outcome once; a throttle would use /clock, which may stand still.
-  void Report(const RescuePlan& plan, bool had_plan) {
+  void Report(const RescuePlan& plan) {
     if (plan.fault != told_fault_ && !plan.fault.empty()) ROS_WARN("plan: %s", plan.fault.c_str());
     told_fault_ = plan.fault;
-    if (plan.text == told_text_ && had_plan) return;
+    if (plan.text == told_text_) return;
     told_text_ = plan.text;
     ROS_INFO("plan (%.2f s): %s", plan.compute_s, plan.text.c_str());
   }

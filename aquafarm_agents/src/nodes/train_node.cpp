@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <memory>
 #include <optional>
+#include <regex>
 
 #include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/agents/ranks/process_group.h"
@@ -258,13 +259,16 @@ int End(ExitCode code, const std::string& summary) {
   return static_cast<int>(code);
 }
 
-/// Returns " name:=value", quoted for a shell.
+/// Returns " name:=value" for a shell. The value is in quotes if it contains special characters.
 std::string Argument(const std::string& name, const std::string& value) {
-  const bool is_plain = value.find_first_of(" '") == std::string::npos;
-  return ' ' + name + ":=" + (is_plain ? value : '"' + value + '"');
+  static const std::regex special(R"(["\\$`])");
+  const bool is_plain = value.find_first_of(" '\"\\$`;&|<>()*?#!") == std::string::npos;
+  return ' ' + name +
+         ":=" + (is_plain ? value : '"' + std::regex_replace(value, special, "\\$&") + '"');
 }
 
-/// Returns the launch arguments that resume this run with train.launch, each after a space.
+/// Returns the launch arguments with the settings that a resumed run must repeat, each after a
+/// space.
 std::string Arguments(const agents::RunReport& report, const agents::RunOptions& run) {
   const agents::RunOptions defaults;
   std::string text = Argument("scenario", run.run_dir + "/scenario.yaml");
@@ -281,7 +285,7 @@ std::string Arguments(const agents::RunReport& report, const agents::RunOptions&
   return text;
 }
 
-/// Returns the suggested next command, a line; empty if there is none.
+/// Returns a line that suggests the next command; empty if there is none.
 std::string Next(const agents::RunReport& report, const agents::RunOptions& run) {
   const char* const script = std::getenv("AQUAFARM_LAUNCHER");
   const auto launch = [script](const std::string& name) {

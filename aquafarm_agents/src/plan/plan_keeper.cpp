@@ -109,7 +109,6 @@ bool PlanKeeper::Update(const PlanInputs& inputs) {
   }
   bool has_planned = false;
   if (is_new && inputs.scenario && (!inputs.bulletins.empty() || !inputs.request.storm.empty())) {
-    const std::string good_before = good_;
     refused_ = TryAll(inputs);
     has_planned = refused_.empty() || !good_.empty();
   }

@@ -31,7 +31,7 @@ struct Color {
   float green;
   float blue;
 };
-// The palette of Okabe and Ito (2008), Color universal design, without black.
+// The palette of Okabe and Ito (2008), Color universal design, without black and blue.
 constexpr std::array<Color, 6> kShipColors{{{0.84F, 0.37F, 0.0F},
                                             {0.34F, 0.71F, 0.91F},
                                             {0.80F, 0.47F, 0.65F},
@@ -100,7 +100,8 @@ void AddRoutes(const RescuePlan& plan, const Maker& maker, MarkerArray& array) {
   for (const auto& route : plan.routes) {
     if (route.path.size() < 2) continue;
     Marker line = maker.Line("plan_route", route.ship, ColorOf(route.ship), 0.18);
-    // Shifted by ship, so that two routes through the same cells are both visible.
+    // Three consecutive ships have different shifts, so that their routes through the same cells
+    // are all visible.
     const double shift = 0.12 * maker.unit_cells() * (route.ship % 3 - 1);
     for (const auto& cell : route.path) {
       line.points.push_back(PointAt(plan, cell.x + shift, cell.y + shift, kLine_m));

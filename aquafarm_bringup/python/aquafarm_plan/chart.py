@@ -15,7 +15,7 @@ WIDTH, MAX_HEIGHT = 760.0, 860.0  # max width and height of the drawing [px]
 LEVELS = (10, 50, 90)  # levels of the isolines [%]
 NICE = (1, 2, 5)
 LABEL_SIZE = 18.0  # font size [px]
-MANY_DEVICES = 10  # max number of devices whose labels have two lines
+MANY_DEVICES = 10  # if there are more devices, each label has one line
 
 
 class Frame:
@@ -59,8 +59,9 @@ def chart(plan):
 
 
 def storm_pointer(plan, frame):
-    """Returns an arrow near the border of the map that points to the storm's centre at the start of
-    the plan, with its label. None if the centre is unknown or on the map."""
+    """Returns an arrow near the border of the map and its label. The arrow points to the storm's
+    centre at the start of the plan. None if this centre is unknown or in the inner part of the map,
+    at least 30 px from the border."""
     clock, points = Clock(plan["clock"]), plan["storm"]["points"]
     seconds = [clock.seconds(one["time"]) for one in points]
     if not seconds or not seconds[0] <= 0.0 <= seconds[-1]:

@@ -36,13 +36,13 @@ def main(arguments):
                         "--output",
                         default="plan.html",
                         type=pathlib.Path,
-                        help="page to write (default: plan.html); plan.json and plan.geojson are "
-                        "written to the same folder, under the same name")
+                        help="page to write (default: plan.html); the plan and its routes are "
+                        "written next to it, as plan.json and plan.geojson for plan.html")
     parser.add_argument("--from",
                         dest="source",
                         type=pathlib.Path,
                         metavar="PLAN.json",
-                        help="make the page of a plan file that exists; nothing is planned")
+                        help="make the page of an existing plan file, without planning")
     parser.add_argument("--open", action="store_true", help="open the page, if there is a display")
     parser.add_argument("-h", "--help", action="store_true", help="show this help and exit")
     options, rest = parser.parse_known_args(arguments)

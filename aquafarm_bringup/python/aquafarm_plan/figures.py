@@ -13,7 +13,7 @@ REGION = 330.0  # side of the drawing of the region [px]
 REGION_LABELS = 4  # max number of positions of the storm with a label
 LINE = (1100.0, 104.0)  # width and left margin of the timeline [px]
 HAZARD_HEIGHT, ROW, AXIS = 62.0, 27.0, 48.0  # heights in the timeline [px]
-NEAREST_H = 72  # the timeline is lengthened for a closest approach within this time [h]
+NEAREST_H = 72  # the timeline includes a closest approach within this time [h]
 CURVE = (520.0, 270.0, 58.0, 44.0)  # width, height, left and lower margin of the loss curve [px]
 
 
@@ -68,8 +68,8 @@ def region(plan):
 
 
 def _apart(drawn, least):
-    """Returns the points of a track that are at least `least` pixels apart. The present point and
-    the last one are always included."""
+    """Returns points of a track that are at least `least` pixels apart. The first, the present and
+    the last point are always included."""
     kept = []
     for one in drawn:
         if (not kept or math.dist(one["xy"], kept[-1]["xy"]) >= least or one["is_now"]
@@ -104,8 +104,8 @@ def _region_labels(plan, drawn, rings, box):
 
 
 def _parts(points):
-    """Yields (source, points) of the recorded, forecast and assumed parts of a track. Each part
-    begins at the last point of the previous one."""
+    """Yields (source, points) of the recorded, forecast and assumed parts of a track. A later part
+    begins at the last point of the part before it."""
     for source in ("recorded", "forecast", "assumed"):
         part = [i for i, p in enumerate(points) if p["source"] == source]
         if part:
@@ -113,7 +113,8 @@ def _parts(points):
 
 
 def _region_rings(plan, points, middle, px, px_per_km, clock):
-    """Returns (rings, caption) of the future position of the storm that is nearest to the ranch."""
+    """Returns (rings, caption) of a future position of the storm: of those with a wind radius above
+    0, the one nearest to the ranch."""
     future = [p for p in points if parse_time(p["time"]) > clock.start and any(p["radii_km"])]
     if not future:
         return [], "No rings: no later position has a known wind radius above 0."
@@ -219,8 +220,8 @@ def _nearest(plan, clock, end, x_of):
 
 def _name_ends(plan, rows, clock, right):
     """Adds the text "end" to each row. It follows the last bar and states when the ship is back in
-    port; in the first row it also explains the two shades. It is empty if it would extend beyond
-    `right` [px]."""
+    port. In the first row it also explains the two shades, if there is space. It is empty if it
+    would extend beyond `right` [px]."""
     for i, (row, route) in enumerate(zip(rows, plan["plan"]["routes"])):
         at = f"in port {clock.time(route['orders'][-1]['time'])}" if row["bars"] else ""
         key = "dark: out, light: home"

@@ -26,6 +26,11 @@ def escape(value):
     return str(markupsafe.escape(value))
 
 
+def percent(share, digits=0):
+    """Returns a share as text, for example "98 %"."""
+    return f"{100.0 * share:.{digits}f} %"
+
+
 def embed(path):
     """Returns the content of a file as a data: URL."""
     kind = mimetypes.guess_type(str(path))[0] or "application/octet-stream"

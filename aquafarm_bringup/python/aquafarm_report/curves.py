@@ -19,8 +19,9 @@ CURVES = (("return", "return per episode"), ("success", "success rate"),
 
 
 def smooth(values):
-    """Returns (episodes, means): the moving means over WINDOW episodes, and the last episode of
-    each, counted from 1. Shorter trainings have one mean of all episodes. Means ignore NaN."""
+    """Returns (episodes, means). means: moving means over WINDOW episodes; they ignore NaN.
+    episodes: the last episode of each mean, counted from 1. A shorter training has one mean, over
+    all its episodes."""
     window = min(WINDOW, len(values))
     return np.arange(window, len(values) + 1), known_moving_mean(values, window)
 
@@ -69,8 +70,9 @@ def _library(name):
 
 
 def bend(rows, lines, marks):
-    """Returns the unit of a scale that is linear above 0 and logarithmic below: the first episodes
-    and RANDOM have very low returns. None if no mean is above 0 or no value is below 0."""
+    """Returns the scale parameter `unit` of toScale in curves.js, or None for a linear scale. With
+    a unit, the scale is linear above 0 and logarithmic below, because the first episodes and RANDOM
+    have very low returns. None if no mean is above 0 or no value is below 0."""
     means = [mean for row in rows for mean in row[1:] if mean is not None]
     shown = [*means, *(line["value"] for line in lines),
              *(value for mark in marks for value in mark if value is not None)]

@@ -30,7 +30,7 @@ def share(row):
     value = row.get("share_of_optimum")
     if value is None or math.isnan(value):
         return "–"
-    return "below 0" if value < 0.0 else f"{value:.1%}"
+    return "below 0" if value < 0.0 else blocks.percent(value, 1)
 
 
 def best_learner(rows):
@@ -46,7 +46,7 @@ def table(rows):
     return blocks.table(
         ["learner", "return per episode, 95 % interval", "share of the optimum", "success",
          "episodes, distinct"],
-        [(row["label"], text(row), share(row), f"{row['success_rate']:.1%}",
+        [(row["label"], text(row), share(row), blocks.percent(row["success_rate"], 1),
           f"{row['evaluation_episodes']}, {row['distinct_episodes'] or '–'}")
          for row in by_return(rows)])
 

@@ -21,8 +21,8 @@ class Outcome:
     health: float
 
     def text(self):
-        """Returns the outcome as text, for example "home at step 24, health 100%"."""
-        health = f"health {self.health:.0%}"
+        """Returns the outcome as text, for example "home at step 24, health 100 %"."""
+        health = f"health {blocks.percent(self.health)}"
         if self.home is not None:
             return f"home at step {self.home}, {health}"
         if self.picked_up is not None:
@@ -73,12 +73,12 @@ NAMES = {"temporary_breeding": "temporary", "monitoring": "monitoring",
 
 
 def _share(count, episodes, distinct):
-    """Returns a share and its 95 % interval (Wilson) as "98% [94%, 99%]". The sample size of the
-    interval is the number of distinct initial states, because equal episodes are not independent."""
+    """Returns a share and its 95 % interval (Wilson) as "98 % [94 %, 99 %]". The sample size of
+    the interval is the number of distinct initial states, because equal episodes are not independent."""
     rate = count / episodes
     evidence = max(1, min(distinct or episodes, episodes))
     low, high = wilson_interval(round(rate * evidence), evidence)
-    return f"{rate:.0%} [{low:.0%}, {high:.0%}]"
+    return f"{blocks.percent(rate)} [{blocks.percent(low)}, {blocks.percent(high)}]"
 
 
 def summary_table(summary):
@@ -93,7 +93,7 @@ def summary_table(summary):
         rows.append([f"{kind} ({count:,})" if by_kind else f"F{one['id']} {kind}",
                      *(_share(one[name], count, summary.get("distinct_episodes"))
                        for name in ("delivered", "aboard", "left")),
-                     "–" if health is None else f"{health:.0%}"])
+                     "–" if health is None else blocks.percent(health)])
     return blocks.table(["kind of device (number)" if by_kind else "device", "home",
                          "aboard at the end", "left at sea", "health of devices at home"],
                         rows) if rows else ""

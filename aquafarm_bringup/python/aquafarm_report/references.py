@@ -11,8 +11,8 @@ from aquafarm_benchmark.measures import wilson_interval
 from aquafarm_report import blocks, videos
 
 REFERENCES = (("random", "RANDOM (all actions)"), ("planner", "planner"), ("clairvoyant", "clairvoyant"))
-EPISODES = 100  # max number of episodes of each reference: the first ones of the runs' evaluations
-LIMIT_S = 120  # max duration of the evaluation of each reference
+EPISODES = 100  # a reference plays at most this many, the first ones of the runs' evaluations
+LIMIT_S = 120  # max duration of the evaluation of each reference [s]
 OPTIMUM = "clairvoyant"
 
 
@@ -86,7 +86,7 @@ def success_text(player):
     rate = float(np.mean(column(player, "success")))
     count = max(1, min(player.distinct or 1, len(player.rows)))
     low, high = wilson_interval(round(rate * count), count)
-    return f"{rate:.0%} [{low:.0%}, {high:.0%}]"
+    return f"{blocks.percent(rate)} [{blocks.percent(low)}, {blocks.percent(high)}]"
 
 
 _NO_SHARE = "a return below 0 has no share"
@@ -104,7 +104,7 @@ def share_text(player, optimum):
     if not pairs or total <= 0.0:
         return "–"
     share = sum(one for one, _ in pairs) / total
-    return _NO_SHARE if share < 0.0 else f"{share:.1%} of the optimum"
+    return _NO_SHARE if share < 0.0 else f"{blocks.percent(share, 1)} of the optimum"
 
 
 def difference(one, other):
@@ -172,7 +172,7 @@ def show_tiles(players):
         shown.append((one.label, mean, [line for line in lines if line], one.is_run))
     note = ("<p>Return per episode, success and their 95 % intervals in evaluation episodes of "
             f"seed {videos.SEED}. The planner uses the issued forecast, or the present headings if "
-            "there is none; clairvoyant uses the storm's whole track, and its return is the "
-            "optimum.</p>")
+            "there is none. clairvoyant uses the storm's whole track; for one ship its return is "
+            "the optimum.</p>")
     said = verdict(players)
     return (f"<p><b>{blocks.escape(said)}</b></p>" if said else "") + blocks.players(shown) + note

@@ -31,7 +31,7 @@ def count_text(summary, episodes):
 
 def video_episodes(run, folder, rows):
     """Returns the sections of the best, median and worst episode: videos, outcomes of the devices,
-    and a map. For a family of ranches, the section contains only their results."""
+    and a map. For a family of ranches, it is one section with the results of these episodes."""
     if videos.is_family(run):
         return [blocks.section("Best, median and worst episode", blocks.table(
             ["episode", "result"], [(f"{name}: episode {row['episode']} of seed {videos.SEED}",
@@ -116,11 +116,10 @@ def caption_of(stem):
     return CAPTIONS.get(stem, stem.replace("_", " "))
 
 
-def best_run(benchmark):
-    """Returns the run folder seed_1 of the learner with the highest return. Skips learners without
-    this run folder; None if all are skipped."""
-    results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
-    for row in sorted(results["table"], key=lambda row: -row["return_per_episode"]):
+def best_run(benchmark, rows):
+    """Returns the run folder seed_1 of the best learner. If it has no such folder, returns that of
+    the contestant with the highest return that has one; None if none has."""
+    for row in [intervals.best_learner(rows), *intervals.by_return(rows)]:
         run = benchmark / "runs" / row["name"] / "seed_1"
         if (run / "run.json").is_file():
             return run
@@ -146,7 +145,7 @@ def report_benchmark(benchmark, folder, episodes):
     if (benchmark / "losses.md").is_file():
         losses = [blocks.section("Losses", blocks.markdown_table(
             (benchmark / "losses.md").read_text(encoding="utf-8")))]
-    run = best_run(benchmark)
+    run = best_run(benchmark, results["table"])
     shown = []
     if run is not None:
         name = run.parent.name
@@ -175,7 +174,8 @@ def kind_of(source):
 
 
 def make_text(sources, episodes):
-    """Returns the page of a run or benchmark, or of the comparison of runs. Raises ReportError."""
+    """Returns the page of a run or benchmark, or of the comparison of runs. Raises ReportError if
+    the folders cannot be read or a program fails."""
     try:
         with tempfile.TemporaryDirectory(prefix="aquafarm_report_") as folder:
             work = pathlib.Path(folder)
@@ -190,7 +190,7 @@ def make_text(sources, episodes):
 
 def make(sources, output, episodes=EPISODES):
     """Writes the report of a run or benchmark, or the comparison of runs. Returns its path. Raises
-    ReportError."""
+    ReportError if the report cannot be made or written."""
     sources = [pathlib.Path(source).resolve() for source in sources]
     default = sources[0] / "report.html" if len(sources) == 1 else "comparison.html"
     output = pathlib.Path(output or default).resolve()

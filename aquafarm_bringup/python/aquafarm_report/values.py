@@ -3,6 +3,7 @@
 import json
 import math
 import pathlib
+import textwrap
 
 import matplotlib
 
@@ -15,12 +16,14 @@ from skimage.metrics import structural_similarity  # noqa: E402
 from aquafarm_bringup.files import open_atomically  # noqa: E402
 
 MOST_WINDOW = 7  # max side of the window of the SSIM [cells], the default of scikit-image
-_WEAK = 0.3  # below this rank correlation a headline says that the return hardly changes
+_WEAK = 0.3  # for a smaller absolute rank correlation, the headline says "hardly changes"
 FEWEST_CELLS = 10  # min number of cells for a comparison
 NEXT_TO = 2.0  # max distance at which a cell counts as next to a device or port [cells]
 _COLUMN = 2.9  # width of a map in the figure [inch]
 _GAP = 1.1  # between columns and between rows [inch]
-_TOP = 1.05  # height of the titles [inch]
+_TOP = 1.05  # height of the titles with a headline of one line [inch]
+_LINE = 0.22  # height of a line of the headline [inch]
+_LETTER = 0.11  # mean width of a letter of the headline (bold, 13 points) with a reserve [inch]
 _LOW_COLOUR = "#440154"  # the first colour of viridis
 # viridis without its yellow part, as in other pictures of values
 _VALUE_COLOURS = colors.ListedColormap(pyplot.get_cmap("viridis")(np.linspace(0.0, 0.8, 256)))
@@ -181,7 +184,7 @@ def draw_places(axis, text, km):
 
 def draw_relation(axis, values, layer, result, letter):
     """Plots the return over the value of a layer: a dot for each cell, and a line through the
-    medians of ten groups of cells, which are ordered by the value."""
+    medians of ten groups of cells with similar values of the layer."""
     name, units, field = layer
     known = np.isfinite(values) & np.isfinite(field)
     x, y = field[known], values[known]
@@ -208,23 +211,26 @@ def draw_relation(axis, values, layer, result, letter):
 
 
 def draw(text, values, layers, results, path):
-    """Draws the maps side by side. The chart below each map of the sea shows the return against its
-    value. The chart below the map of returns shows the return against the distance to the nearest
-    device."""
+    """Draws the maps side by side. If there are layers of the sea, a second row has a chart below
+    each map. Below a map of the sea, the chart shows the return against the layer's value. Below
+    the map of returns, it shows the return against the distance to the nearest device."""
     km = text["cell_size_m"] / 1000.0
     height, width = values.shape
     tall = min(1.6, max(0.5, height / width))
     heights = [_COLUMN * tall, 2.4, 0.05] if layers else [_COLUMN * tall, 0.8]
     columns = 1 + len(layers)
     width_in = _GAP * (columns + 0.6) + _COLUMN * columns
-    height_in = sum(heights) + _TOP + _GAP * (len(heights) - 0.6)
+    near = device_relation(values, text)
+    found = textwrap.wrap(headline([*zip(layers, results), *([near] if near else [])]),
+                          int(width_in / _LETTER))
+    top = _TOP + _LINE * (max(1, len(found)) - 1)
+    height_in = sum(heights) + top + _GAP * (len(heights) - 0.6)
     figure, axes = pyplot.subplots(len(heights), columns, squeeze=False,
                                    figsize=(width_in, height_in), height_ratios=heights)
     figure.subplots_adjust(
         left=0.7 * _GAP / width_in, right=1.0 - 0.9 * _GAP / width_in, wspace=_GAP / _COLUMN,
-        top=1.0 - _TOP / height_in, bottom=0.3 * _GAP / height_in,
+        top=1.0 - top / height_in, bottom=0.3 * _GAP / height_in,
         hspace=0.95 * _GAP / (sum(heights) / len(heights)))
-    near = device_relation(values, text)
     draw_map(axes[0][0], values, km, _VALUE_COLOURS, "points", _LOWEST)
     letters = iter("abcdefghijklmnopqrstuvwxyz")
     axes[0][0].set_title(f"({next(letters)}) Return if the ship starts here", fontsize=11)
@@ -243,10 +249,9 @@ def draw(text, values, layers, results, path):
     draw_key(figure, axes)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
-    if found := headline([*zip(layers, results), *([near] if near else [])]):
-        figure.suptitle(found, fontsize=13, weight="bold", x=0.02, y=0.99, ha="left")
+    figure.suptitle("\n".join(found), fontsize=13, weight="bold", x=0.02, y=0.99, ha="left")
     said = verdict(values, text)
-    figure.text(0.02, 1.0 - 0.32 / height_in, "\n".join([
+    figure.text(0.02, 1.0 - (0.1 + _LINE * max(1, len(found))) / height_in, "\n".join([
         *([said] if said else []), f"{text['policy']} on {text['scenario']}, {episodes}"]),
         fontsize=10.5, color="0.25", va="top")
     with open_atomically(path, "wb") as file:

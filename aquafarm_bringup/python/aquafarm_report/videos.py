@@ -8,7 +8,7 @@ import subprocess
 import roslib.packages
 import yaml
 
-LIMIT_S = 300
+LIMIT_S = 300  # default max duration of a program [s]
 FRAMES = 240  # approximate max number of frames of a video
 SIDE = ["--width", "800", "--height", "640"]
 SEED = 1000  # seed of the evaluation episodes, the default of aquafarm_evaluate

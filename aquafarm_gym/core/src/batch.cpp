@@ -36,12 +36,12 @@ std::uint64_t CheckEpisode(py::handle episode) {
   return WholeNumber(episode, "FarmBatch: episode", 0, kAnyNumber, "number episodes from 0");
 }
 
-// Returns the present name of a buffer. Warns if `name` is its name in version 0.1.0.
+// Returns the current name of a buffer. Warns if `name` is a former name, of version 0.1.0.
 std::string CurrentName(const std::string& name) {
   return py::module_::import("aquafarm_core._names").attr("current")(name).cast<std::string>();
 }
 
-// Converts a statistic for Python: to a number, or to the name of an end reason.
+// Converts a statistic for Python. An end reason becomes its name; a number stays the same.
 template <typename T>
 T ForPython(T value) {
   return value;

@@ -16,44 +16,50 @@
 
 namespace aquafarm::python {
 
-/// Returns a summary as a Python dict: numbers by name, and the name of the end reason.
+/// Returns a Python dict with the fields of a summary and the bool `success`. The end reason is a
+/// name.
 pybind11::dict DictOf(const EpisodeSummary& summary);
 
-/// A FarmBatch with NumPy arrays for its results. The batch writes directly into their memory, so
-/// that nothing is copied for Python. Most functions throw std::runtime_error while a call of
-/// another thread runs (Turn).
+/// A FarmBatch of N farms with S agents each, and NumPy arrays for its results. The batch writes
+/// directly into the memory of the arrays, without a copy. Most functions throw std::runtime_error
+/// while a call of another thread runs (Turn).
 class Batch {
  public:
   inline static constexpr std::uint64_t kMaxFarms = 1U << 20U;
   inline static constexpr std::uint64_t kMaxThreads = 1024;
 
+  /// @param farms a whole number in [1, kMaxFarms]
   /// @param write names of the buffers to allocate
-  /// @throws InputError if a number is out of range or a buffer is unknown
+  /// @param threads a whole number in [1, kMaxThreads]
+  /// @throws InputError if a number is out of range or a buffer is unknown, and as FarmBatch
   Batch(std::shared_ptr<const Scenario> scenario, pybind11::handle farms,
         const std::vector<std::string>& write, pybind11::handle threads);
 
-  /// Uses `array` as the buffer `name` from now on. NumPy does not resize it as long as it is used.
-  /// @throws InputError if the buffer is unknown or the type or shape of `array` does not fit
+  /// Uses `array` as the buffer `name` from now on. NumPy refuses to resize an array in use.
+  /// @throws InputError if the buffer is unknown, or if `array` does not fit (Fits)
   void Bind(const std::string& name, const pybind11::array& array);
 
-  /// As FarmBatch::Reset. @throws InputError if a number is out of range
+  /// Does the same as FarmBatch::Reset with stride N.
+  /// @throws InputError also if a number is out of range
   void Reset(pybind11::handle seed, pybind11::handle first_episode);
   /// Starts the next episode in the farms that `mask` (bool [N]) selects.
   /// @throws InputError if the type or shape of `mask` is wrong, or before the first reset
   void StartNext(const pybind11::array& mask);
-  /// Starts episode episodes[i] of the sequence seeds[i] in each farm i that `mask` selects. Both
-  /// lists have N entries. Later episodes of these farms are `stride` apart.
+  /// Starts episode episodes[i] of the sequence seeds[i] in each farm i that `mask` (bool [N])
+  /// selects. Both lists have N entries. The episode numbers of these farms then increase by
+  /// `stride` (at least 1).
   /// @throws InputError if an argument is wrong, or before the first reset
   void Start(const pybind11::array& mask, const pybind11::sequence& seeds,
              const pybind11::sequence& episodes, pybind11::handle stride);
-  /// Takes one step in every farm. @param actions uint8 [N, S], each in [0, kActionCount]
-  /// @throws InputError if the type, shape or range of the actions is wrong, or before the first
-  ///   reset
+  /// Takes one step in every farm. A farm whose episode has ended starts its next episode instead.
+  /// @param actions uint8 [N, S], row-major, each in [0, kActionCount]
+  /// @throws InputError if the actions are wrong, or before the first reset
   void Step(const pybind11::array& actions);
 
-  /// Returns the records of the farms whose episode has ended, as dicts.
+  /// Returns a summary (DictOf) of each farm whose episode has ended, in the order of the farms.
   pybind11::list Finished() const;
-  /// Returns the present state of one farm as text.
+  /// Returns the present state of one farm as text (RenderText).
+  /// @throws InputError if there is no such farm
   std::string Text(pybind11::handle farm) const;
   /// Returns Farm::StartHash of one farm.
   /// @throws InputError if there is no such farm
@@ -65,7 +71,8 @@ class Batch {
     const Turn turn(busy_);
     look(batch_);
   }
-  /// Calls look(encoder, farm) with farm number `farm`, which does not step during the call.
+  /// Calls look(encoder, farm) with one farm. The farm does not step during the call.
+  /// @param farm number of the farm, in [0, N)
   /// @throws std::runtime_error while a call of another thread runs
   template <typename Look>
   void Inspect(std::int32_t farm, Look look) const {
@@ -73,23 +80,24 @@ class Batch {
     look(batch_.encoder(), batch_.farm(farm));
   }
 
-  /// Returns the state of all farms.
+  /// Returns the state of all farms, without their strides.
   pybind11::bytes Save() const;
-  /// Restores saved farms and writes their results.
-  /// @throws InputError if the bytes are damaged or belong to other farms
+  /// Restores saved farms and writes their results. The strides do not change.
+  /// @throws InputError in the same cases as FarmBatch::Load
   void Load(const std::string& bytes);
 
-  /// Returns everything that another process needs to continue this batch; see FromState.
+  /// Returns everything that FromState needs to continue this batch in another process.
   pybind11::tuple State() const;
-  /// Makes a batch from the result of State. @throws InputError if the number of its parts or its
-  /// content is wrong
+  /// Makes a batch from the result of State.
+  /// @throws InputError if the number of parts or a value is wrong
+  /// @throws pybind11::cast_error if a part has the wrong type
   static std::unique_ptr<Batch> FromState(const pybind11::tuple& state);
-  /// Returns whether both have the same scenario, names of buffers and state.
+  /// Returns whether both have the same scenario, buffer names, strides and state of the farms.
   bool Equals(const Batch& other) const;
 
   const FarmBatch& batch() const { return batch_; }
-  /// Returns the scenario. It is not const, because Python has no constant objects; Python code
-  /// cannot change it.
+  /// Returns the scenario for Python. The pointer is not const, because Python has no constant
+  /// objects. Python code cannot change the scenario.
   std::shared_ptr<Scenario> scenario() const {
     return std::const_pointer_cast<Scenario>(scenario_);
   }
@@ -100,8 +108,8 @@ class Batch {
   const Farm& FarmOf(pybind11::handle farm) const;
   const BufferType& TypeOf(const std::string& name) const;
   void Keep(const BufferType& type, pybind11::array array);
-  /// Returns the numbers of the farms that a mask selects. @throws InputError if the mask is not
-  /// bool [N], or before the first reset
+  /// Returns the numbers of the farms that a mask selects.
+  /// @throws InputError if the mask is not bool [N], or before the first reset
   std::vector<std::int32_t> Selected(const pybind11::array& mask) const;
   std::vector<std::string> BufferNames() const;
 
@@ -110,8 +118,8 @@ class Batch {
   FarmBatch batch_;
   std::vector<BufferType> types_;
   std::map<std::string, pybind11::array> buffers_;
-  /// Weak references to the arrays in use, and to the arrays whose memory they use. NumPy does not
-  /// resize an array that has a weak reference, not even with refcheck=False.
+  /// Weak references, by buffer, to the array in use and to each array whose memory it uses. NumPy
+  /// refuses to resize an array that has a weak reference, even with refcheck=False.
   std::map<std::string, std::vector<pybind11::weakref>> guards_;
   BatchOutput output_;
   bool is_reset_{};

@@ -19,17 +19,18 @@ struct BufferType {
 };
 
 /// Returns the arrays that a batch can write, in the order of BatchOutput. The index is missing if
-/// the scenario has too many states for a table.
+/// the scenario has too many states for a table (Encoder::state_count is 0).
 std::vector<BufferType> BufferTypes(const FarmBatch& batch);
 
-/// Returns type and shape as text, such as "uint8 [4, 1, 8, 25, 25]".
+/// Returns a type and a shape as text, such as "uint8 [4, 1, 8, 25, 25]".
 std::string Describe(const std::string& dtype, const std::vector<pybind11::ssize_t>& shape);
 std::string Describe(const pybind11::array& array);
 
-/// Returns whether an array is writable, aligned and row-major, and has this type and shape.
+/// Returns whether an array is writable, aligned and row-major, and has the type and shape of
+/// `type`.
 bool Fits(const pybind11::array& array, const BufferType& type);
 
-/// Sets the pointer `name` of `output` to `data`.
+/// Sets the member `name` of `output` to `data`.
 void Point(BatchOutput& output, std::string_view name, void* data);
 
 }  // namespace aquafarm::python

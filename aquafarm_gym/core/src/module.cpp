@@ -31,8 +31,8 @@ std::string NameOf(int value) {
   return std::string(ToString(static_cast<T>(value)));
 }
 
-// Defines functions by which aquafarm_core checks, when it is imported, that this module and NumPy
-// use the same array layout.
+// Defines functions for _abi.py, which checks at import that this module and NumPy use the same
+// array layout.
 void DefineProbes(py::module_& module) {
   module.def(
       "_made_array",
@@ -49,8 +49,8 @@ void DefineProbes(py::module_& module) {
       py::arg("array"), py::arg("value"), "Writes the last byte of an array in place.");
 }
 
-// Returns the CSV column of each entry of a summary. @param added false for the entries of version
-// 0.1.0, true for those added later
+// Returns the CSV columns of the entries of a summary, by name.
+// @param added false: the entries of version 0.1.0; true: the entries added later
 py::dict ColumnsOfEpisodes(bool added) {
   py::dict columns;
   if (!added) columns["farm"] = "farm";
@@ -127,12 +127,13 @@ void DefineScenario(py::module_& module) {
 void DefineBatch(py::module_& module) {
   py::class_<Batch>(module, "FarmBatch", R"(Many farms of one scenario, stepped together.
 
-`buffers` holds the arrays named in `write`; reset and step write into them and copy nothing.
+`buffers` has the arrays named in `write` or bound later. The batch writes directly into them.
 N farms, S agents: rewards float32 [N, S], terms float32 [N, S, len(TERMS)], energy float32 [N, S]
 (kWh), distance float32 [N, S] (km), outcomes uint8 [N, S], legal uint16 [N, S], active uint8
 [N, S], end_reasons uint8 [N], is_first uint8 [N], hashes uint64 [N], index uint32 [N, S],
-features float32 [N, S, F], planes uint8 [N, S, P, H, W].
-A farm whose reason is not 0 ignores the action of the next step and starts its next episode.)")
+features float32 [N, S, len(feature_names)], planes uint8 [N, S, len(PLANES), height, width].
+A farm whose end reason is not 0 ignores its actions in the next step and starts its next episode.
+Numbers out of range and arrays that do not fit raise ValueError.)")
       .def(py::init([](std::shared_ptr<Scenario> scenario, const py::object& farms,
                        const std::vector<std::string>& write, const py::object& threads) {
              return std::make_unique<Batch>(std::move(scenario), farms, write, threads);
@@ -141,29 +142,30 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
            py::arg("write") = std::vector<std::string>{"rewards", "end_reasons", "is_first"},
            py::arg("threads") = 1)
       .def("bind", &Batch::Bind, py::arg("name"), py::arg("array"),
-           "Makes `array`, such as a part of a replay buffer, the buffer `name` from now on.")
+           "Uses `array` as the buffer `name` from now on, for example a part of a replay buffer.")
       .def(
           "reset", &Batch::Reset, py::arg("seed"), py::arg("first_episode") = 0,
           "Starts the sequence `seed`. Farm i of N starts at episode first_episode + i, then plays "
-          "every N-th.")
+          "every N-th episode.")
       .def("start", &Batch::Start, py::arg("mask"), py::arg("seeds"), py::arg("episodes"),
            py::arg("stride") = 1,
            "Starts episodes[i] of the sequence seeds[i] in the farms that `mask` (bool [N]) "
-           "selects; their later episodes are `stride` apart.")
+           "selects. The episode numbers of these farms then increase by `stride`.")
       .def("start_next", &Batch::StartNext, py::arg("mask"),
            "Starts the next episode in the farms that `mask` (bool [N]) selects.")
       .def("step", &Batch::Step, py::arg("actions"),
            "Takes one step in every farm. actions: uint8 [N, S], each in [0, 10]; 10 holds.")
       .def("finished", &Batch::Finished,
-           "Returns summaries of the episodes that ended in the last step, by farm.")
+           "Returns a list with a dict of statistics for each farm whose episode has ended.")
       .def("text", &Batch::Text, py::arg("farm") = 0,
            "Returns the present state of one farm as text.")
       .def("start_hash", &Batch::StartHash, py::arg("farm") = 0,
            "Returns a hash of layout, ships, devices and disasters of one farm, without seed and "
-           "episode number. Directly after reset it identifies the start of an episode.")
+           "episode number. Directly after reset, it identifies the start of an episode.")
       .def("save", &Batch::Save, "Returns the state of all farms as bytes, also in mid-episode.")
       .def("load", &Batch::Load, py::arg("data"),
-           "Restores saved farms, which continue bit-identically.")
+           "Restores saved farms, which continue bit-identically. The bytes do not contain the "
+           "`stride` of start.")
       .def("__eq__", &Batch::Equals, py::is_operator())
       .def(py::pickle([](const Batch& batch) { return batch.State(); }, &Batch::FromState))
       .def_property_readonly(
@@ -183,7 +185,7 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
 }  // namespace aquafarm::python
 
 PYBIND11_MODULE(_native, module) {
-  module.doc() = "The farm's core: scenarios, and many farms stepped into NumPy arrays.";
+  module.doc() = "Scenarios, batches of farms that write into NumPy arrays, policies, planners.";
   pybind11::register_exception_translator([](std::exception_ptr raised) {
     try {
       if (raised) std::rethrow_exception(raised);

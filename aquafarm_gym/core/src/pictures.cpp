@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of farms. This module contains the drawing code of aquafarm_viz, compiled with plain
-// structs as messages (plain_messages.py), so that it needs neither ROS nor a display.
+// Pictures of farms. This module contains the drawing code of aquafarm_viz. The messages are plain
+// structs (plain_messages.py), so that the module needs neither ROS nor a display.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
@@ -19,7 +19,8 @@
 namespace aquafarm::python {
 namespace py = pybind11;
 
-/// Draws one farm of a batch, with the trails of its ships since the first picture of its episode.
+/// Draws one farm of a batch. The trails and routes of its ships begin at the first picture of an
+/// episode.
 class Painter {
  public:
   Painter(py::handle width, py::handle height, const std::string& layers, const std::string& style)
@@ -27,7 +28,8 @@ class Painter {
         layers_(aquafarm_viz::ParseLayers(layers)),
         painter_(size_, aquafarm_viz::StyleByName(style)) {}
 
-  /// Returns uint8 [height, width, 3], RGB.
+  /// Returns a picture of one farm, uint8 [height, width, 3], RGB.
+  /// @throws InputError if there is no such farm; pybind11::value_error if it cannot be drawn
   py::array_t<std::uint8_t> Draw(const Batch& batch, py::handle farm) {
     const auto last = static_cast<std::uint64_t>(batch.batch().farms()) - 1;
     const auto number = static_cast<std::int32_t>(
@@ -53,7 +55,7 @@ class Painter {
                                         aquafarm_viz::kMaxImageSide, "pass a size in pixels"));
   }
 
-  // Converts the state of the farm to messages. Its constants are converted only for a new episode.
+  // Converts the farm to messages: the state at each call, the constants once per episode.
   void Read(std::int32_t farms, const Encoder& encoder, const Farm& farm) {
     const aquafarm_sim::MessageContext context;
     aquafarm_sim::ToMsg(farm, context, state_);
@@ -84,9 +86,9 @@ PYBIND11_MODULE(_pictures, module) {
   module.attr("LAYERS") = aquafarm_viz::LayerNames();
   py::class_<Painter>(module, "Painter", R"(Draws farms as ./aquafarm render does.
 
-width, height: pixels in [160, 4096]. layers: names in LAYERS, separated by commas, or none.
-style: dark for screens, light for print. A Painter follows one farm: the trails of its ships begin
-at the first picture of an episode.)")
+width, height: pixels in [160, 4096]. layers: names in LAYERS, separated by commas, or "none";
+values and moves are not drawn. style: dark for screens, light for print. Use one Painter per
+farm: a picture of another episode starts the trails of the ships again.)")
       .def(py::init<py::handle, py::handle, const std::string&, const std::string&>(),
            py::arg("width") = 800, py::arg("height") = 640, py::arg("layers") = "trail,risk",
            py::arg("style") = "dark")

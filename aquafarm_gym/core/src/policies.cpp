@@ -86,8 +86,8 @@ std::string& PolicyFolder() {
   return folder;
 }
 
-/// Makes a learned policy. A policy that reads entity tokens also plays on farms whose scenario
-/// does not have them.
+/// Makes a learned policy. A policy that reads entity tokens (docs/generalist.md) also plays on
+/// farms without view.tokens.
 std::unique_ptr<agents::Policy> MakeLearned(Make make, const Checkpoint& checkpoint,
                                             const EnvironmentSpec& spec) {
   if (agents::HasTokens(checkpoint.spec) && !agents::HasTokens(spec)) {
@@ -213,7 +213,7 @@ class BatchPolicy {
   mutable bool busy_{};
 };
 
-/// A planner for farms of one scenario with a single ship.
+/// A planner for the farms of a scenario with one agent.
 class ShipPlanner {
  public:
   ShipPlanner(std::shared_ptr<const Scenario> scenario, bool clairvoyant)
@@ -268,7 +268,7 @@ double BoundOf(const Batch& batch, py::handle farm) {
   return bound;
 }
 
-/// Plans a rescue and returns the content of plan.json, as aquafarm_plan writes it.
+/// Plans a rescue. Returns the content of plan.json, in the format of aquafarm_plan.
 std::string PlanRescue(const std::shared_ptr<Scenario>& scenario,
                        const agents::RescueRequest& request, const std::string& command) {
   using Clock = std::chrono::steady_clock;
@@ -320,9 +320,9 @@ void DefineRescue(py::module_& module) {
 void DefinePolicies(py::module_& module) {
   py::class_<BatchPolicy>(module, "Policy", R"(Chooses the actions of all agents of a batch.
 
-name: planner, clairvoyant, fetch_by_value, do_nothing, random, generalist (docs/generalist.md), or
-a run folder or checkpoint of aquafarm_train (ppo, mappo, q_learning, sarsa). The
-first three see the complete farms.)")
+name: planner, clairvoyant, fetch_by_value, do_nothing, random or generalist (docs/generalist.md);
+or a run folder or checkpoint of ppo, mappo, q_learning or sarsa. planner, clairvoyant and
+fetch_by_value see the complete farms. farms: number of farms of the batch.)")
       .def(py::init([](const std::string& name, std::shared_ptr<Scenario> scenario,
                        const py::object& farms, const py::object& seed) {
              return std::make_unique<BatchPolicy>(name, std::move(scenario), farms, seed);
@@ -333,20 +333,23 @@ first three see the complete farms.)")
       .def("act", &BatchPolicy::Act, py::arg("batch"),
            "Returns the actions of the next step, uint8 [N, S], for FarmBatch.step.")
       .def_property_readonly("values", &BatchPolicy::Values,
-                             "The value estimates V of the last act, float32 [N, S], or None.");
-  py::class_<ShipPlanner>(module, "Planner", R"(Plans exactly for a farm with one ship.
+                             "The value estimates of the last act, float32 [N, S]. None before the "
+                             "first act, or if the policy has no values.");
+  py::class_<ShipPlanner>(module, "Planner", R"(Plans for a farm with one agent.
 
-clairvoyant=True plans with the true future of the disasters: its return is the max of the episode.
-clairvoyant=False plans with the issued forecast, or with the present headings if there is none.)")
+clairvoyant=True plans with the true future of the disasters. The return of the plan is the exact
+max from the present step on. clairvoyant=False plans with the forecast in force. A disaster without
+a forecast is assumed to keep its heading.)")
       .def(py::init([](std::shared_ptr<Scenario> scenario, bool clairvoyant) {
              return std::make_unique<ShipPlanner>(std::move(scenario), clairvoyant);
            }),
            py::arg("scenario"), py::arg("clairvoyant") = true)
       .def("solve", &ShipPlanner::Solve, py::arg("batch"), py::arg("farm") = 0,
-           "Returns the best plan of a farm: (actions uint8 [T], return from now on). There are no "
-           "actions if the episode is over.");
+           "Returns the best plan of a farm from its present step on: (actions uint8 [T], return). "
+           "T is 0 if the episode is over.");
   module.def("team_bound", BoundOf, py::arg("batch"), py::arg("farm") = 0,
-             "Returns an upper bound of the return of a farm at step 0, for several ships.");
+             "Returns an upper bound of the sum of all agents' returns in the episode of a farm, "
+             "which must be at step 0.");
   module.def(
       "_set_policy_folder", [](const std::string& folder) { PolicyFolder() = folder; },
       py::arg("folder"), "Sets the folder of the shipped policies.");

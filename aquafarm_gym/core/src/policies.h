@@ -5,8 +5,8 @@
 
 namespace aquafarm::python {
 
-/// Defines Policy, Planner, team_bound and _plan_rescue. They give access to the planners of
-/// aquafarm_agents, and to its saved policies that do not need libtorch.
+/// Defines Policy, Planner, team_bound, _RescueRequest and _plan_rescue. They give access to the
+/// planners of aquafarm_agents, and to its saved policies that do not need libtorch.
 void DefinePolicies(pybind11::module_& module);
 
 }  // namespace aquafarm::python

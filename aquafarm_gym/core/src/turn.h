@@ -6,8 +6,8 @@
 
 namespace aquafarm::python {
 
-/// Marks an object as busy during a call, so that calls of other threads are rejected. Its
-/// constructor and destructor must run with the GIL. The call may release the GIL in between.
+/// Marks an object as busy during a call, so that calls of other threads are rejected. The thread
+/// must have the GIL in the constructor and the destructor. The call may release it in between.
 class Turn {
  public:
   /// @param busy flag of the object

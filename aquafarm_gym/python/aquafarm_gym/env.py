@@ -32,8 +32,8 @@ class FarmEnv(SingleFarm, gymnasium.Env[Any, Any]):
     aquafarm_core.OUTCOMES), `reason` (index into aquafarm_core.REASONS, 0: the episode continues),
     `is_success`, and `summary`, whose entries are 0 until the episode ends. reset(seed=…) starts
     episode 0 of a sequence of episodes. reset() starts the next episode of the sequence, and
-    reset(options={"episode": k}) its episode k. Copies and pickles of farms in this process
-    continue bit-identically.
+    reset(options={"episode": k}) starts episode k of the sequence. If the farms are in this
+    process, copies and pickles continue bit-identically.
     """
 
     metadata: dict[str, Any] = {"render_modes": list(rendering.OFFERED),

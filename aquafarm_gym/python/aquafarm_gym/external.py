@@ -25,7 +25,7 @@ import os
 import pathlib
 import sys
 import time
-from typing import Any, Protocol
+from typing import Any, Callable, Protocol
 
 import aquafarm_core as core
 import numpy as np
@@ -123,7 +123,7 @@ def evaluate(learner: Learner, scenario: core.Scenario, observation: str, episod
 
 
 def summary_of(records: list[dict[str, Any]]) -> dict[str, Any]:
-    """Returns the statistics that evaluation.json contains."""
+    """Returns the statistics of the episodes for evaluation.json."""
     count = len(records)
     total = {name: sum(one[name] for one in records)
              for name in ("episode_return", "steps", "success", "crashes", "steps_in_disaster",
@@ -141,8 +141,8 @@ def summary_of(records: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def with_limit(scenario: core.Scenario, max_steps: int) -> core.Scenario:
-    """Returns the scenario with the step limit `max_steps`; unchanged if max_steps is 0. Raises
-    ValueError if the YAML text does not contain the old limit exactly once."""
+    """Returns the scenario with the step limit `max_steps`; 0 keeps the limit. Raises ValueError if
+    the YAML text does not contain the old limit exactly once."""
     if max_steps in (0, scenario.step_limit):
         return scenario
     old, new = f"step_limit: {scenario.step_limit}", f"step_limit: {max_steps}"
@@ -158,25 +158,36 @@ def write(path: pathlib.Path, text: str) -> None:
     os.replace(part, path)
 
 
+def whole_from(least: int, below: int = 2**31) -> Callable[[str], int]:
+    """Returns a parser of whole numbers in [least, below) for argparse."""
+    def parse(text: str) -> int:
+        if not text.isdecimal() or not least <= int(text) < below:
+            raise argparse.ArgumentTypeError(
+                f"got '{text}', expected a whole number from {least} to {below - 1}")
+        return int(text)
+    return parse
+
+
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="A learner of ./aquafarm benchmark.")
+    seed, episodes = whole_from(0, FIRST_EVALUATION_SEED), whole_from(1)
     parser.add_argument("scenario", help="scenario file or name")
     parser.add_argument("--run-dir", type=pathlib.Path, required=True)
     parser.add_argument("--name", default="learner")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--episodes", type=int, default=100, help="training episodes")
-    parser.add_argument("--max-steps", type=int, default=0,
+    parser.add_argument("--seed", type=seed, default=1)
+    parser.add_argument("--episodes", type=episodes, default=100, help="training episodes")
+    parser.add_argument("--max-steps", type=whole_from(0), default=0,
                         help="step limit of an episode; 0: the scenario's")
-    parser.add_argument("--evaluation-episodes", type=int, default=100)
-    parser.add_argument("--evaluation-seed", type=int, default=1000)
+    parser.add_argument("--evaluation-episodes", type=episodes, default=100)
+    parser.add_argument("--evaluation-seed", type=seed, default=1000)
     return parser.parse_args()
 
 
 def main(make: Any, observation: str = "features") -> int:
     """Trains and evaluates one learner as the command line specifies; returns the exit code.
 
-    make(env, seed) returns the learner. Wrong arguments, scenarios with several agents and a learner
-    that does not play all episodes give exit code 2.
+    make(env, seed) returns the learner. The exit code is 2 if an argument cannot be parsed, if the
+    scenario is invalid or has several agents, or if the learner does not play all episodes.
     """
     given = arguments()
     try:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Backends of all environments in this package: N farms with S agents each, with results as arrays.
 
-A backend has the attributes of Farms, yaml and buffers (see aquafarm_core.FarmBatch). It has the
-methods reset(seed, first_episode), step(actions), finished() and close(). LocalFarms (farms in this
-process) also has start, start_next and text; aquafarm_gym.ros.RosFarms (farms behind ROS) does not.
+A backend has the attributes of the class Farms, and the attributes `yaml` (the scenario) and
+`buffers` (see aquafarm_core.FarmBatch). It has the methods reset(seed, first_episode),
+step(actions), finished() and close(). LocalFarms (farms in this process) also has start, start_next
+and text; aquafarm_gym.ros.RosFarms (farms behind ROS) does not.
 """
 from __future__ import annotations
 
@@ -135,7 +136,7 @@ class LocalFarms(Farms):
         return self.batch.text(farm)
 
     def close(self) -> None:
-        """Does nothing: the farms use no resources except memory."""
+        """Does nothing; other backends close connections."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, LocalFarms) and self.batch == other.batch

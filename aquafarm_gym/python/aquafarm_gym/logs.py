@@ -4,8 +4,8 @@
     python -m aquafarm_gym.logs RUN … [--to tensorboard | wandb] [--follow] [--window 50]
 
 RUN is a run folder of ./aquafarm train or aquafarm_train; its metrics.csv has one line per episode.
-Each point is the mean over --window episodes; the last point may have fewer. Its x value is the
-run's total number of farm steps after the last of these episodes.
+Each point is the mean over --window episodes; the last point may cover fewer. The x value of a
+point is the run's total number of farm steps after the last of its episodes.
 TensorBoard reads RUN/tensorboard (tensorboard --logdir runs). Weights & Biases receives one run per
 folder, offline unless WANDB_MODE is set. --follow waits until all runs have begun. It then logs
 them until all have ended or Ctrl-C is pressed. A run counts as ended once its policy.ckpt exists,
@@ -244,9 +244,9 @@ def log_runs(runs: list[pathlib.Path], kind: str = "tensorboard", window: int = 
     """Logs run folders and returns the number of points of each. The number is 0 for a run that had
     not begun when Ctrl-C was pressed. kind: tensorboard or wandb. follow: whether to wait until all
     runs have begun, and to continue until all have ended or Ctrl-C is pressed. endless: with
-    follow, whether to continue even after all runs have ended. Raises ValueError if a folder
-    contains neither metrics.csv nor run.json, or if metrics.csv is invalid. Raises ImportError if
-    the package wandb is needed but missing."""
+    follow, whether to continue even after all runs have ended. Raises ValueError if metrics.csv is
+    invalid or, without follow, if a folder contains neither metrics.csv nor run.json. Raises
+    ImportError if the package wandb is needed but missing."""
     begun = runs
     try:
         while follow and not all((run / "metrics.csv").is_file() for run in runs):
@@ -283,7 +283,7 @@ def main() -> int:
     parser.add_argument("runs", nargs="+", type=pathlib.Path)
     parser.add_argument("--to", choices=sorted(SINKS), default="tensorboard")
     parser.add_argument("--window", type=int, default=50, help="number of episodes per point")
-    parser.add_argument("--follow", action="store_true", help="continue while runs train")
+    parser.add_argument("--follow", action="store_true", help="continue until all runs have ended")
     parser.add_argument("--endless", action="store_true",
                         help="with --follow: continue until Ctrl-C, also after a run ends, because "
                         "it may be resumed")

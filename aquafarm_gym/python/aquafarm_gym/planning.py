@@ -52,14 +52,15 @@ def plan_rescue(ranch: core.Scenario | Path, *, bulletin: Path | None = None,
     """Plans a rescue and returns the content of plan.json (plan.schema.json) as a dict.
 
     ranch: a scenario with a geographic origin, its file or its name. bulletin: file with the
-    forecast of the storm. storm: instead of a bulletin, a file with a recorded track; storm_name
-    selects a storm of the file. at: start of the plan (default: now, or the newest report of an old
-    bulletin; required with `storm`). devices, ships_file: CSV files (docs/plan.md). ships: number
-    of ships. capacity: max devices aboard a ship. depart_h: earliest departure after the start [h].
-    speed_kn: speed of the ships [kn]. abort_wind_kt: wind at which ships stop [kn]. risk_averse:
-    fraction of the storms, the worst ones, whose mean loss is minimised; 0 maximises the mean value
-    saved. currency: currency of the devices' values. utc_offset_h: local time minus UTC [h]
-    (default: from the longitude). members: number of possible storms, which are drawn with `seed`.
+    forecast of the storm. storm: instead of a bulletin, a file with a recorded track. storm_name
+    selects a storm of the file. at: start of the plan; required with `storm`. Default: now, or the
+    newest report if the bulletin is old. devices, ships_file: CSV files (docs/plan.md). ships:
+    number of ships. speed_kn [kn], capacity [devices]: of ships without their own in ships_file.
+    depart_h: earliest departure after the start [h]. abort_wind_kt: wind that stops ships [kt].
+    risk_averse: the plan minimises the mean loss in this fraction of the storms, the worst ones;
+    0: it maximises the mean value saved. currency: currency of the devices' values. utc_offset_h:
+    local time minus UTC [h]; default: from the longitude. members: number of possible storms;
+    `seed` draws them.
 
     Raises ValueError, with one line, if an option, a file or a position is wrong.
     """

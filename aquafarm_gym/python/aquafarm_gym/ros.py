@@ -29,7 +29,7 @@ BITS: dict[str, int] = {
 
 def check_master(limit_s: float) -> None:
     """Raises ConnectionError if the address of the ROS master accepts no connection within limit_s.
-    (rospy would wait forever.)"""
+    Without this check, rospy waits forever."""
     uri = rosgraph.get_master_uri()
     try:
         host, port = rosgraph.network.parse_http_host_and_port(uri)
@@ -39,7 +39,7 @@ def check_master(limit_s: float) -> None:
 
 
 class Service(rospy.ServiceProxy):  # type: ignore[misc]
-    """A persistent service with a timeout for each call, which rospy's ServiceProxy lacks."""
+    """A persistent service with a timeout for each call; rospy's ServiceProxy has no timeouts."""
 
     def __init__(self, name: str, kind: Any, limit_s: float) -> None:
         super().__init__(name, kind, persistent=True)
@@ -79,9 +79,10 @@ class RosFarms(Farms):
     """Farms behind the sim node of a namespace.
 
     A call without a response is repeated with the same sequence number, so that no farm steps
-    twice. Methods raise ConnectionError if the sim node was restarted, if another client changed
-    the farms, or if the node does not execute a call within wait_limit_s, for example because it
-    is paused. They raise ValueError if the node refuses a call.
+    twice. The constructor, reset and step raise ValueError if the node refuses a call. They repeat
+    a call for wait_limit_s, for example while the node is paused, and then raise ConnectionError.
+    step also raises ConnectionError if the sim node was restarted or another client changed the
+    farms.
     """
 
     yaml: str

@@ -55,8 +55,8 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
                          spaces.observation_space(self.farms, observation), spaces.action_space())
 
     def reset(self) -> npt.NDArray[Any]:
-        """Starts the sequence of the seed that seed() set. Without a seed, the first reset draws
-        one, and later ones start the next episode of every farm."""
+        """Starts the sequence of the seed that seed() set. Without a seed, the first reset draws a
+        seed, and later resets start the next episode of every farm."""
         seed = self._seeds[0]
         if seed is None and self._episodes.seed is not None:
             self.farms.start_next(np.ones(self.farms.farms, bool))

@@ -20,7 +20,7 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "known": (0, 1), "motion_east": (-FAR, FAR), "motion_north": (-FAR, FAR), "reach": (0, FAR),
     "age": (0, FAR), "visible": (0, 1), "self": (0, 1), "way_east": (-1, 1), "way_north": (-1, 1),
     "way_steps": (0, 4), "energy_used": (0, FAR), "grade": (0, 1), "risk": (0, 1)}
-# Features that are 1 for the kind of a device or a disaster (view.kinds).
+# One-hot features of the kind of a device or a disaster (view.kinds).
 KINDS: tuple[str, ...] = (*core.DEVICE_KINDS, *core.DISASTER_KINDS)
 GROUP_BOUNDS: dict[str, tuple[float, float]] = {
     "blocked": (0, 1), "risk": (-1, 0), "course": (-1, 0)}

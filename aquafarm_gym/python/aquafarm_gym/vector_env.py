@@ -71,7 +71,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
                              "autoreset_mode": gymnasium.vector.AutoresetMode(self._mode)}
         self._copy = copy
         self._episodes = Episodes()
-        self._own_sequences = False  # True if the farms have different sequences
+        self._own_sequences = False  # True if the farms may have different sequences
         self._begun = np.zeros(self.num_envs, np.int64)  # episodes since the last reset, by farm
         self._attach()
 
@@ -93,8 +93,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
             array.flags.writeable = False  # shared by the infos of all steps
 
     def _agents_of(self, array: Array) -> Array:
-        """Returns an array [N, S, …] in the shape of observations and masks: [N, …] for one
-        ship."""
+        """Returns the part of an array [N, S, …] for observations, masks and outcomes: [N, …] in
+        FarmVectorEnv, the whole array in TeamVectorEnv."""
         raise NotImplementedError
 
     def _rewards(self) -> Array:
@@ -286,9 +286,10 @@ class FarmVectorEnv(VectorBase):
     """N farms with one ship each that step together in this process (or behind ROS, with `farms`).
 
     autoreset_mode (a gymnasium.vector.AutoresetMode or its name) specifies when a farm starts its
-    next episode: NextStep, in the next step, whose action it ignores (the default); SameStep, in
-    the step that ends the episode; Disabled, only by reset, for example with a reset_mask. With
-    copy=False, observations are the arrays that the farms write, and the next step overwrites
+    next episode. NextStep (default): in the next step, which ignores the farm's action. SameStep:
+    in the step that ends the episode. Disabled: only by reset, for example with a reset_mask.
+
+    With copy=False, observations are the arrays that the farms write, and the next step overwrites
     them. The same holds for rewards of FarmVectorEnv, except in mode SameStep.
 
     infos always contains the keys of FarmEnv as arrays [N, …], and `is_first` (bool [N]). Each key
@@ -313,13 +314,14 @@ class FarmVectorEnv(VectorBase):
 
 
 class TeamVectorEnv(VectorBase):
-    """N farms with S ships each, whose agents act together: actions [N, S], observations [N, S, …].
+    """N farms with S agents each (ships and self-propelled devices), which act together: actions
+    [N, S], observations [N, S, …].
 
-    The reward is the team's: the sum of the rewards of all agents, or, if the scenario gives each
-    agent the team's reward (`rewards: {sharing: team}`), that reward once. infos["agent_rewards"],
-    float32 [N, S], contains the reward of each agent. infos["active"], bool [N, S], is False for a
-    delivered self-propelled device. Observations, action masks and outcomes have S entries per
-    farm. Other results are as in FarmVectorEnv.
+    The reward of a farm is the sum of the rewards of its agents. With `rewards: {sharing: team}`
+    each agent already receives this sum; the reward of the farm then contains it once.
+    infos["agent_rewards"], float32 [N, S], contains the reward of each agent. infos["active"],
+    bool [N, S], is False for a delivered self-propelled device. Observations, action masks and
+    outcomes have S entries per farm. Other results are as in FarmVectorEnv.
     """
 
     def __init__(self, num_envs: int = 1,
@@ -339,7 +341,7 @@ class TeamVectorEnv(VectorBase):
         rewards = self._all_rewards
         if not self.farms.has_team_rewards:
             return np.asarray(rewards.sum(axis=1))
-        # All agents have the same reward, except those out of play, which have 0.
+        # Active agents have the same reward; the others have 0.
         playing = np.abs(rewards).argmax(axis=1)
         return np.asarray(np.take_along_axis(rewards, playing[:, None], axis=1)[:, 0])
 

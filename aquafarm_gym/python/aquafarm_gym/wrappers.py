@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Wrappers that add the action mask to the observation, which becomes a dict with the entries
-"observation" and "action_mask" (int8 […, 10]). The classic environments of PettingZoo use these
-names, and tianshou reads them."""
+"""Wrappers that add the action mask to the observation. The observation becomes a dict with the
+entries "observation" and "action_mask" (int8 […, 10]). The classic environments of PettingZoo use
+these names, and tianshou reads them."""
 from __future__ import annotations
 
 from typing import Any

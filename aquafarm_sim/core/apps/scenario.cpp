@@ -143,7 +143,8 @@ void WriteFile(const std::string& path, const std::string& text) {
   if (!file || error) throw InputError(path + ": cannot be written");
 }
 
-// A chart in metres has its own size and cells.
+// Rejects --size and --cell if the chart defines other values. A chart in metres has its own size
+// and cells.
 void RefuseUnused(const Arguments& arguments, const Scenario& made) {
   const RanchRequest asked = Finished(arguments);
   if (arguments.own_size && (made.width != asked.width || made.height != asked.height)) {
@@ -154,7 +155,8 @@ void RefuseUnused(const Arguments& arguments, const Scenario& made) {
   }
 }
 
-// Suggests a learner: a table, or a network if the table would be too large.
+// Suggests launch arguments: none for a table (the default), those of a network if the table would
+// be too large, and algorithm:=auto for several agents.
 std::string Learner(const Scenario& made) {
   if (made.AgentCount() > 1) return " algorithm:=auto";
   const std::uint64_t states = Encoder(made).state_count();
@@ -165,7 +167,8 @@ std::string Learner(const Scenario& made) {
   return "";
 }
 
-// Suggests a rescue plan, which takes seconds, for a ranch with a position, and a training.
+// Suggests a training. For a ranch with a position, also suggests a rescue plan, which takes only
+// seconds.
 std::string NextSteps(const std::string& path, const Scenario& made) {
   const std::string train = "./aquafarm train scenario:=" + path + Learner(made) + "\n";
   if (!made.origin) return "now: " + train;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reading of published data: one year of CMA best tracks, and a field of the sea on a farm's cells.
+// Measures the reading of published data: one year of CMA best tracks, and a field of the sea on a
+// farm's cells.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Farm steps per second with one thread and random actions; episodes restart as they end. Reference
-// of the ratios: the same farm with the tabular index on 25 × 25 cells.
+// Measures farm steps per second with one thread and random actions; episodes restart when they
+// end. The costs of larger maps are relative to a map of 25 × 25 cells.
 #include <benchmark/benchmark.h>
 
 #include <memory>

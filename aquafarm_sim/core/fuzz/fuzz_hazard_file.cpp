@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target for files of storm tracks; the content decides the format.
+// Fuzz target for files of notices and of storm tracks; the content decides the format.
 #include <cstddef>
 #include <cstdint>
 #include <string>

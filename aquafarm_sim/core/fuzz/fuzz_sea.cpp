@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target for netCDF fields. netCDF reads files only, so each input is written to memory first.
-// Inputs that begin as HDF5 files are skipped: they are read by libhdf5 alone, whose faults are
-// Debian's to repair.
+// Fuzz target for netCDF fields. netCDF reads only files, so each input is written to /dev/shm
+// first. Inputs with the signature of HDF5 are skipped, because libhdf5 reads them and its faults
+// are not those of this project.
 #include <unistd.h>
 
 #include <cstddef>

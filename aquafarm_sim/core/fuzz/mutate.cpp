@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Replaces libFuzzer if the compiler is not clang: passes every sample of a folder to the target,
-// then mutated samples. The mutations are the same in every run with the same seed. A crash, a hang
-// or an unexpected exception is a bug.
+// Replaces libFuzzer if the compiler is not clang: passes each sample of the folders to the target,
+// followed by mutated copies of it. The mutations are the same in every run with the same seed. A
+// crash, a hang or an unexpected exception is a bug.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -28,8 +28,8 @@ std::size_t Below(aquafarm::RandomStream& rng, std::size_t end) {
   return rng.Below(static_cast<std::uint32_t>(end));
 }
 
-// Applies one mutation: overwrites, removes, duplicates or cuts off bytes, or inserts a token with
-// a meaning for parsers.
+// Applies one mutation: overwrites, removes, duplicates or cuts off bytes, or replaces bytes by a
+// token with a meaning for parsers.
 void Mutate(aquafarm::RandomStream& rng, std::string& bytes) {
   static const std::vector<std::string> kMinded{
       "",   "-1", "1e999",        "nan",   "99999999999", "null", "[",    "{",  "\"",

@@ -15,8 +15,8 @@ const std::filesystem::path kData = std::filesystem::path(AQUAFARM_CORE_DIR) / "
 constexpr std::int64_t kHour_s = 3600;
 constexpr std::int64_t kMidnight = 1627171200;  // 2021-07-25 00:00 UTC
 
-// Returns a request for a ranch at the square island with a lake of coast.json, with the storm of
-// cma.txt, which passes 20 km north of it.
+// Returns a request for a ranch at the island of coast.json, a square with a lake. The storm is
+// that of cma.txt, which passes 20 km north of the island.
 inline RanchRequest Request() {
   RanchRequest request;
   request.chart = (kData / "coast.json").string();

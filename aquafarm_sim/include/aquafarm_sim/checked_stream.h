@@ -11,9 +11,10 @@
 
 namespace aquafarm_sim {
 
-/// Reads messages of other nodes. A message states the length of each array, and roscpp allocates
-/// this length before it reads the entries. A message of a few bytes could thus exhaust the memory.
-/// This stream first checks that the message is long enough for the entries.
+/// Reads messages of other nodes. A message contains the number of entries of each array of
+/// variable length. roscpp allocates the array before it reads the entries, so a message of a few
+/// bytes could exhaust the memory. This stream first checks that the message is long enough for the
+/// entries.
 struct CheckedStream : ros::serialization::IStream {
   using IStream::IStream;
 
@@ -22,7 +23,7 @@ struct CheckedStream : ros::serialization::IStream {
     ros::serialization::deserialize(*this, value);
   }
 
-  /// @throws ros::serialization::StreamOverrunException if the entries do not fit
+  /// @throws ros::serialization::StreamOverrunException if the message is too short for the entries
   template <typename T, typename Allocator>
   void next(std::vector<T, Allocator>& values) {
     std::uint32_t count = 0;

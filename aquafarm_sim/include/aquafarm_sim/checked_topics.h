@@ -2,7 +2,7 @@
 #pragma once
 
 /// Subscribes to topics and calls services of other nodes, and reads their messages with
-/// CheckedStream. Our nodes use these functions instead of ros::NodeHandle::subscribe and
+/// CheckedStream. Our C++ nodes use these functions instead of ros::NodeHandle::subscribe and
 /// ros::ServiceClient::call.
 
 #include <ros/node_handle.h>
@@ -19,7 +19,7 @@
 
 namespace aquafarm_sim {
 
-/// Reads the messages of a topic and passes them to a function.
+/// Reads the messages of a topic with CheckedStream and passes them to a function.
 template <typename Message>
 class CheckedSubscription
     : public ros::SubscriptionCallbackHelperT<const boost::shared_ptr<const Message>&> {

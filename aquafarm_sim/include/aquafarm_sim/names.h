@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The names of all topics, services and frames of a ranch. A name is relative to the ranch's
-/// namespace unless it starts with a slash. Nodes and clients must use these constants.
+/// Names of topics, services and tf frames of a ranch. The name of a topic or service is relative
+/// to the ranch's namespace unless it starts with a slash. C++ nodes must use these constants.
 
 #include <cstdint>
 #include <string>
@@ -35,12 +35,13 @@ inline constexpr const char* kSetPace = "set_pace";
 inline constexpr const char* kMapFrame = "map";
 inline constexpr const char* kEarthFrame = "earth";
 
-/// Name of a ship's namespace and tf frame.
+/// Name of a ship's namespace, and of its tf frame without SimParams::frame_prefix.
 inline std::string Ship(std::int32_t id) { return "ship_" + std::to_string(id); }
-/// Name of a disaster's tf frame.
+/// Name of a disaster's tf frame without SimParams::frame_prefix.
 inline std::string Disaster(std::int32_t id) { return "disaster_" + std::to_string(id); }
-/// Topic of a sea layer as a grid for display. SeaValues is the topic of its numbers.
+/// Topic of a sea layer as an occupancy grid, for display.
 inline std::string Sea(const std::string& layer) { return std::string(kSea) + "/" + layer; }
+/// Topic of the values of a sea layer.
 inline std::string SeaValues(const std::string& layer) { return Sea(layer) + "/values"; }
 inline std::string Observation(std::int32_t ship) { return Ship(ship) + "/observation"; }
 inline std::string Claim(std::int32_t ship) { return Ship(ship) + "/claim"; }

@@ -15,8 +15,8 @@ struct NodeHelp {
   const char* launch{};   ///< file of aquafarm_bringup that starts the node; null: there is none
 };
 
-/// Prints the help of a node if `-h` or `--help` is among its arguments. Call it before ros::init,
-/// so that the help needs no master.
+/// Prints the help of a node to stdout if `-h` or `--help` is among its arguments. main must call
+/// this function before ros::init, because the help must also work without ROS_MASTER_URI.
 /// @returns true if the help was printed; main must then return 0
 inline bool PrintHelpIfRequested(int argc, char** argv, const NodeHelp& help) {
   const auto is_help_option = [](std::string_view word) {

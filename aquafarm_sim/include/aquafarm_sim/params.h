@@ -14,18 +14,19 @@
 
 namespace aquafarm_sim {
 
-/// Reads a node's private parameters. RefuseOthers, called last, refuses all other parameters, so
-/// that a misspelled name is an error.
+/// Reads a node's private parameters. The node must call RefuseOthers last. It refuses all
+/// parameters that were neither read nor allowed, so that a misspelled name is an error.
 class Params {
  public:
   explicit Params(const ros::NodeHandle& private_node) : node_(private_node) {}
 
-  // Each function leaves `value` unchanged if the parameter is not set.
-  // @throws InputError "~episodes: got -1, expected [0, 2147483647]"
+  // Text, Flag, Int and Number read a parameter. `value` is unchanged if the parameter is not set.
+  // @throws InputError for another type, or for a number that is not in [min, max]: "~episodes: got
+  //         -1, expected [0, 2147483647]"
 
   void Text(const std::string& name, std::string& value) { Read(name, "a text", value); }
   void Flag(const std::string& name, bool& value) { Read(name, "true or false", value); }
-  /// Refuses a number with a fraction, which NodeHandle::getParam would round.
+  /// Also throws InputError for a number with a fraction. NodeHandle::getParam would round it.
   void Int(const std::string& name, int min, int max, int& value) {
     double number = value;
     if (node_.getParam(name, number) && !(number == std::trunc(number))) {
@@ -41,7 +42,7 @@ class Params {
   /// Allows a parameter that other code reads, for example a library.
   void Allow(const std::string& name) { known_.push_back(name); }
 
-  /// @throws InputError that names an unknown parameter and lists the known ones
+  /// @throws InputError that contains the name of an unknown parameter and the known names
   void RefuseOthers() const {
     std::vector<std::string> there;
     node_.getParamNames(there);
@@ -58,7 +59,7 @@ class Params {
     }
   }
 
-  /// The parameters that were set, as "name:=value", for run records.
+  /// Returns the parameters that were read and are set, as "name:=value".
   const std::vector<std::string>& given() const { return given_; }
 
  private:

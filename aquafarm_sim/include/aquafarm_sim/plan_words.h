@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Texts for the fields of a rescue plan. The panel and the rviz markers share them. All code is in
-/// this header, so that including it requires no library but that of the messages.
+/// Texts for the fields of a rescue plan. The panel and the rviz markers use them. All functions
+/// are inline, so that a program that uses them does not link a library of aquafarm_sim.
 
 #include <aquafarm_msgs/RescuePlan.h>
 
@@ -13,9 +13,9 @@
 
 namespace aquafarm_sim {
 
-/// Returns a probability as text: "> 99 %", "87 %", "< 1 %". It never returns "100 %" or "0 %",
-/// because the probability is a share of a sample.
-/// @param probability in [0, 1]; NaN returns "unknown"
+/// Returns a probability as text: "> 99 %", "87 %" or "< 1 %". The text is never "100 %" or "0 %",
+/// because the probability is estimated from a finite number of possible storms.
+/// @param probability in [0, 1]; for NaN the text is "unknown"
 inline std::string PercentText(double probability) {
   if (std::isnan(probability)) return "unknown";
   if (probability >= 0.995) return "> 99 %";
@@ -23,8 +23,8 @@ inline std::string PercentText(double probability) {
   return std::to_string(std::lround(100.0 * probability)) + " %";
 }
 
-/// Returns a time as local time of the ranch, with the day unless it is the day on which the plan
-/// starts: "14:05" or "25 Jul 02:10".
+/// Returns a time as local time of the ranch: "14:05" on the day on which the plan starts, "25 Jul
+/// 02:10" on another day.
 /// @param time UTC
 inline std::string LocalText(const aquafarm_msgs::RescuePlan& plan, ros::Time time) {
   const auto local = [&plan](ros::Time utc) {
@@ -40,14 +40,16 @@ inline std::string LocalText(const aquafarm_msgs::RescuePlan& plan, ros::Time ti
   return {text, std::strftime(text, sizeof(text), same_day ? "%H:%M" : "%d %b %H:%M", &at)};
 }
 
-/// Returns the instruction for a ship without a route: "stay" in a port, "return to port" at sea. A
-/// ship with devices aboard has no route only if it can reach no port, which the text then states.
+/// Returns the instruction for a ship without a route: "stay" in a port, "return to port" at sea.
+/// If devices are aboard, unreachable ports or winds prevent the route: "stay, no safe way to a
+/// port" in a port, "no safe way to a port" at sea.
 inline std::string WithoutRouteText(const aquafarm_msgs::RescuePlan& plan,
                                     const aquafarm_msgs::RescueShip& ship) {
   const bool in_port = std::any_of(plan.ports.begin(), plan.ports.end(), [&ship](const auto& port) {
     return port.cell.x == ship.cell.x && port.cell.y == ship.cell.y;
   });
-  if (!ship.aboard.empty()) return in_port ? "stay, no port in reach" : "no port in reach";
+  if (!ship.aboard.empty())
+    return in_port ? "stay, no safe way to a port" : "no safe way to a port";
   return in_port ? "stay" : "return to port";
 }
 

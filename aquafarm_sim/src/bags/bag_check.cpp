@@ -29,8 +29,8 @@
 namespace aquafarm_sim {
 namespace {
 
-// Returns whether a definition in a bag has the text of this version or an earlier text that
-// differs in comments or in the names of fields only.
+// Returns whether a definition in a bag has the text of this version or one of the earlier texts
+// that this version can check.
 bool IsSameText(const std::string& type, const std::string& in_bag,
                 const std::string& in_this_version) {
   // Checksums of the texts of version 0.1.0 (commit 859eafa) and of commit 99c88b87.
@@ -147,6 +147,8 @@ class Simulation {
     return (is_chart ? "chart." : "risk.") + difference;
   }
 
+  /// Loads a saved state, with which the episode continues. Returns a description of the fault if
+  /// this is not possible, else an empty text.
   std::string Load(const SavedState& saved) {
     const auto step = static_cast<std::uint64_t>(farm_.step());
     if (begun_ && saved.step > step) return Missing(step + 1, saved.step);
@@ -272,7 +274,8 @@ class Checker {
     return true;
   }
 
-  /// Checks that no states are missing for a summary. @returns false if there is a difference
+  /// Ends the last episode. Checks that the bag contains the states of each summary that is left.
+  /// @returns false if there is a difference
   bool End() {
     if (!EndEpisode()) return false;
     for (const auto& [key, summary] : summaries_) {

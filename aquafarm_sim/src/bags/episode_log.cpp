@@ -27,7 +27,7 @@ constexpr std::int32_t kRiskPeriod = 10;  // steps
 constexpr std::int32_t kMoment_ns = 1000;
 
 constexpr const char* kPrefix = "episode_";
-// Not ".active", the name that rosbag record gives to its partial bags, on which it holds no lock.
+// rosbag record names its partial bags ".active" and holds no lock on them. This name must differ.
 constexpr const char* kPartial = ".partial";
 
 /// Holds a lock on a file. The kernel releases the lock if the process is killed.

@@ -98,7 +98,7 @@ std::string NoSpec(const rosbag::Bag& bag) {
   const std::string way_out = "; record spec and state, as record.launch does";
   rosbag::View view(bag);
   for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
-    const std::string topic = "/" + connection->topic;  // bags also hold names without a slash
+    const std::string topic = "/" + connection->topic;  // bags also contain names without a slash
     if (connection->datatype == type || topic.size() < name.size()) continue;
     if (topic.compare(topic.size() - name.size(), name.size(), name) != 0) continue;
     return ": topic " + connection->topic + ": got type " + connection->datatype + ", expected " +

@@ -12,7 +12,7 @@ namespace aquafarm_sim {
 namespace {
 
 constexpr std::size_t kMaxFixes = 10000;
-constexpr std::size_t kMaxRings = 8;  // per fix; no source contains more
+constexpr std::size_t kMaxRings = 8;  // per fix
 
 void CheckNumber(const std::string& name, double value, double low, double high) {
   if (value >= low && value <= high) return;  // the condition is false for NaN

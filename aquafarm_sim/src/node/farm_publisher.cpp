@@ -28,9 +28,9 @@ const ros::WallDuration kRecorderGrace(0.5);
 }  // namespace
 
 // A new subscriber immediately receives the last message. It is sent after the messages that are
-// still in the queue, so that the time in a recording never decreases. The topic is not latched for
-// two reasons: roscpp sends a latched message before the queued ones; and bags mark latched
-// messages, so that a player that starts in the middle of a bag would first send an outdated state.
+// still in the queue, so that a recording stays in order of time. The topic is not latched for two
+// reasons: roscpp sends a latched message before the queued ones; and bags mark latched messages,
+// so that a player that starts in the middle of a bag would first send an outdated state.
 template <typename Message>
 void FarmPublisher::Advertise(ros::NodeHandle& node, const std::string& name,
                               Topic<Message>& topic) {

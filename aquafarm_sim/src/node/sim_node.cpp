@@ -56,7 +56,7 @@ ros::ServiceServer ServeCaller(ros::NodeHandle& node, const std::string& name, H
                                   boost::make_shared<CheckedService<Service>>(callback));
 }
 
-/// As ServeCaller, without the name of the calling node.
+/// Does the same as ServeCaller, without the name of the calling node.
 template <typename Service, typename Handle>
 ros::ServiceServer Serve(ros::NodeHandle& node, const std::string& name, Handle handle) {
   return ServeCaller<Service>(

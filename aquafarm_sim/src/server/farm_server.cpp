@@ -270,7 +270,8 @@ void FarmServer::StepPublishedFarm() {
   barrier_.Wake();  // last: a woken thread needs the lock
 }
 
-// Waiting calls return STALE. The last answers are forgotten, because step numbers may repeat.
+// Drops the waiting commands, whose calls then return STALE. The last answers are forgotten,
+// because step numbers may repeat.
 void FarmServer::DropCommands() {
   barrier_.Drop();
   barrier_.ForgetAnswers();

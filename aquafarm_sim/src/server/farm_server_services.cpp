@@ -95,8 +95,8 @@ std::optional<FarmServer::Refusal> FarmServer::Check(const aquafarm_msgs::Step::
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
     if (auto refusal = CheckHolder(ship, caller)) return refusal;
   }
-  // Checked after pauses and claims: a client that retries until the farms are free gets STALE only
-  // then.
+  // Checked after pauses and claims. A client that retries while the farms are paused or claimed
+  // receives STALE only once they are free.
   if (request.state_id != 0 && request.state_id != state_id_) {
     return Refusal{Outcome::STALE,
                    "state_id: got " + std::to_string(request.state_id) + ", the farms are at " +
@@ -343,6 +343,7 @@ void FarmServer::Pause(const aquafarm_msgs::Pause::Request& request,
                        aquafarm_msgs::Pause::Response& response) {
   const aquafarm::MutexLock lock(mutex_);
   clock_.SetPaused(request.paused != 0, request.steps);
+  if (request.paused == 0) counters_.fault.clear();
   response.paused = clock_.context().paused;
   Changed();
   Answer(Outcome::OK, "", response);
@@ -429,7 +430,8 @@ void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
                              AQUAFARM_REQUIRES(mutex_) { return batch_->farm(i).step(); };
     std::int32_t earliest = step_of(first);
     for (std::int32_t i = first; i < end; ++i) earliest = std::min(earliest, step_of(i));
-    // Refused if the storm has ended at the earliest step, and thus for all farms.
+    // ToDisaster rejects a storm that has ended at the earliest step, because it has then ended for
+    // all farms.
     aquafarm::DisasterSpec spec =
         on_globe ? aquafarm::ToDisaster(FromMsg(request.storm), *scenario_, request.id, earliest)
                  : FromMsg(request.info);

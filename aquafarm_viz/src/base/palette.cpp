@@ -79,8 +79,8 @@ Rgb HealthColor(double health) {
 }
 
 Rgb ShipColor(std::int32_t id) {
-  // Colours of Okabe and Ito (2008), jfly.uni-koeln.de/color, which colour-blind people can
-  // distinguish.
+  // Five colours of Okabe and Ito (2008), jfly.uni-koeln.de/color, which colour-blind people can
+  // distinguish, and dark grey.
   static constexpr std::array<Rgb, 6> kDecks{{{0xd5, 0x5e, 0x00},
                                               {0x00, 0x72, 0xb2},
                                               {0x00, 0x9e, 0x73},

@@ -73,7 +73,7 @@ void DrawGrid(cv::Mat& map, const Layout& layout) {
   }
 }
 
-// Writes a label below the map, centred on a column of it.
+// Writes a label below the map, centred on a column of pixels.
 void LabelColumn(cv::Mat& image, const std::string& text, double column, const Layout& layout,
                  const Fonts& fonts) {
   fonts.small.Draw(image, text,
@@ -82,7 +82,7 @@ void LabelColumn(cv::Mat& image, const std::string& text, double column, const L
                    Bgr(layout.style->faint));
 }
 
-// Writes a label to the left of the map, centred on a row of it.
+// Writes a label to the left of the map, centred on a row of pixels.
 void LabelRow(cv::Mat& image, const std::string& text, double row, const Layout& layout,
               const Fonts& fonts) {
   fonts.small.Draw(image, text,

@@ -18,7 +18,7 @@ std::vector<cv::Point> Placed(const std::vector<cv::Point2f>& outline, const Pos
 }  // namespace
 
 cv::Point Fixed(cv::Point2d point) {
-  // Far outside any image, but small enough for a shifted int.
+  // Far outside any image, but small enough that the shifted coordinate fits in an int.
   constexpr double kFar = 1.0e6;
   return {cvRound(std::clamp(point.x, -kFar, kFar) * (1 << kSubPixelBits)),
           cvRound(std::clamp(point.y, -kFar, kFar) * (1 << kSubPixelBits))};

@@ -83,7 +83,7 @@ void DrawCone(cv::Mat& image, const Course& course, const ToPixel& to_pixel, con
 }
 
 // Returns the time between two marks [h]: the shortest of some round times at which marks are at
-// least kMinMark apart on average, or 24.
+// least kMinMark apart on average; 24 if there is none.
 double MarkHours(const aquafarm_msgs::FarmSpec& spec, const Track& ahead, const ToPixel& to_pixel,
                  const Layout& layout) {
   double length = 0.0;

@@ -21,8 +21,8 @@ using aquafarm_msgs::FarmState;
 // A shade encodes a risk as a byte: 0 means no risk, kFaintest a risk of -5, and 255 a risk of -20.
 // Values between 0 and kFaintest belong to pixels that the outermost edge covers partly.
 constexpr double kFaintest = 55.0;
-constexpr double kTintFaintest = 0.10;  // share of the colour between pattern lines at a risk of -5
-constexpr double kTintWorst = 0.24;     // the same at a risk of -20
+constexpr double kTintFaintest = 0.10;  // share of the colour between pattern lines, risk -5
+constexpr double kTintWorst = 0.24;     // share of the colour between pattern lines, risk -20
 constexpr double kLineShare = 0.62;     // share of the colour on the lines of the pattern
 constexpr double kEdgeShare = 0.95;     // share of the colour on the edges of rings
 constexpr double kLandShare = 0.35;     // factor of tint and pattern over land

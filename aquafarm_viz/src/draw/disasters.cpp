@@ -124,7 +124,7 @@ std::vector<SignPlace> PlaceSigns(const FarmState& state, const Layout& layout) 
     const cv::Point2d from_middle = sign.at - middle;
     // True if the pointer is at the left or right border.
     const bool is_aside = std::abs(from_middle.x) * middle.y > std::abs(from_middle.y) * middle.x;
-    std::vector<cv::Point2d> places{sign.at};  // also those next to another pointer
+    std::vector<cv::Point2d> places{sign.at};  // also places next to other pointers
     for (const cv::Point2d other : pointers) {
       for (const double along : {apart, -apart}) {
         places.push_back(is_aside ? cv::Point2d(sign.at.x, other.y + along)

@@ -54,7 +54,7 @@ void DrawPort(cv::Mat& image, cv::Point2d at, std::int32_t id, const Layout& lay
                   Bgr(kInk));
 }
 
-// Returns offsets that place several objects of one cell around its centre.
+// Returns offsets that place several objects in one cell around its centre.
 class Crowd {
  public:
   cv::Point2d Offset(int x, int y, int of, double radius_px) {
@@ -130,8 +130,7 @@ namespace {
 constexpr double kBetweenHeads = 50.0;  // min distance of two arrowheads on a path [design units]
 
 // Returns the colour of a part of a ship's path. The path of the only ship is green, which no risk
-// has. If there are several ships, it has the colour of its ship. It fades into the sea with its
-// age.
+// has. The paths of several ships have the colours of the ships. Older parts fade into the sea.
 // @param age  0: now, 1: the oldest part
 Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
   const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.5) : style.good;

@@ -10,7 +10,7 @@
 
 namespace aquafarm_viz {
 
-/// Returns the square around a point whose sides are 2 * radius long.
+/// Returns the square with sides of 2 * radius around a point.
 inline cv::Rect Around(cv::Point2d at, double radius) {
   return {cvFloor(at.x - radius), cvFloor(at.y - radius), cvCeil(2.0 * radius),
           cvCeil(2.0 * radius)};
@@ -42,7 +42,7 @@ class FreeSpace {
   /// Marks a line as used. @param width  width of the line [pixels]
   void BlockLine(cv::Point2d from, cv::Point2d to, int width);
 
-  /// Returns whether a rectangle is on the map and no part of it is used.
+  /// Returns whether a whole rectangle is on the map and free.
   bool IsFree(cv::Rect part) const;
 
   /// Returns whether a line crosses a label that was added with Add or Take and is not `own`.
@@ -55,7 +55,7 @@ class FreeSpace {
   std::optional<cv::Rect> Find(cv::Size size, cv::Point2d near, double farthest) const;
   /// Marks the rectangle of a label, with a margin, as used.
   void Add(cv::Rect label);
-  /// Calls Find, and Add for the result.
+  /// Calls Find. Calls Add if a rectangle was found.
   std::optional<cv::Rect> Take(cv::Size size, cv::Point2d near, double farthest);
 
  private:

@@ -55,7 +55,7 @@ struct FarmPainter::Parts {
   Fonts fonts;
   Layout layout;
   FarmSpec drawn;   // spec for which the background was drawn
-  std::string sea;  // its sea layer; empty: none
+  std::string sea;  // sea layer of the background; empty: none
   cv::Mat background;
   std::optional<std::vector<PortDirections>> directions;  // of the spec; nullopt before use
   CourseReader courses;
@@ -72,7 +72,7 @@ struct FarmPainter::Parts {
     if (is_new || is_new_background) valued.release();
   }
 
-  /// Draws the background if another one is needed. Returns true if it was drawn.
+  /// Draws the background if the present one does not fit. Returns true if it was drawn.
   bool PrepareBackground(const FarmSpec& spec, const std::string& wanted_sea) {
     const bool same_sea =
         wanted_sea == sea && (wanted_sea.empty() || spec.scenario_yaml == drawn.scenario_yaml);
@@ -132,7 +132,7 @@ struct FarmPainter::Parts {
       if (paths != nullptr) space.BlockPaths(state, *paths, layout);
     }
     LabelShips(map, spec, state, space, layout, fonts);
-    // Before the devices: there is less space around a pointer at the edge than around a device.
+    // Pointers precede devices, because there is less space around a pointer at the edge.
     LabelPointers(map, spec, state, forecasts.courses, space, layout, fonts);
     std::set<std::int32_t> labelled;
     if (layers.risk) {
@@ -142,7 +142,7 @@ struct FarmPainter::Parts {
       LabelDevices(map, spec, state, labelled, space, layout, fonts);
       LabelFetched(map, spec, state, overlays.trail, space, layout, fonts);
     }
-    // The best moves need the space. The key explains the colours of the rings.
+    // Rings get no labels with best moves, which need the space. The key explains the rings.
     if (layers.risk && !layers.moves)
       LabelRings(map, state, forecasts.courses, space, layout, fonts);
   }

@@ -19,7 +19,7 @@ constexpr double kAxisLeft = 52.0;
 constexpr double kAxisBottom = 18.0;
 constexpr double kGap = 10.0;
 constexpr int kSmallest = 300;      // min side of a picture with texts around the map [pixels]
-constexpr double kWholePixels = 6;  // cells from this size on get whole pixels, for sharp borders
+constexpr double kWholePixels = 6;  // from this size [pixels] on, the size of a cell is an integer
 
 }  // namespace
 

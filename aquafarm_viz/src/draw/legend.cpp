@@ -17,7 +17,7 @@ using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
 // Sizes in design units.
-constexpr double kSymbolRow = 57.0;  // last row of symbols, above the bottom of the panel
+constexpr double kSymbolRow = 57.0;  // height of the last row of symbols above the end of the panel
 constexpr double kRow = 17.0;        // distance of two rows of symbols
 constexpr double kKeyRow = 15.0;     // height of a row of the keys
 constexpr double kKeyScale = 24.0;   // height of the scale of risks with its texts
@@ -252,7 +252,7 @@ const char* SignWords(Sign sign) {
 
 namespace {
 
-// Draws the patterns of the kinds of the drawn disasters side by side.
+// Draws the pattern of each kind of the drawn disasters, side by side.
 void DrawRiskSamples(cv::Mat& image, cv::Point2d at, const FarmState& state, const Layout& layout) {
   std::set<std::uint8_t> kinds;
   for (const auto& disaster : state.disasters) {

@@ -29,24 +29,25 @@ struct NamedRing {
   std::uint8_t kind{};     ///< kind of the storm (DisasterState.kind)
 };
 
-/// The rings that the key of risks names. If it is empty, the key is the colour scale of all risks.
+/// The rings that the key of risks names. An empty list: the key shows the colour scale of all
+/// risks.
 using RiskKey = std::vector<NamedRing>;
 
-/// Returns the rings of the drawn disasters that have a radius now or later. The rings of one
-/// disaster are in order, the weakest first; equal rings of several disasters are listed once.
+/// Returns the rings that have a radius now or later, of all drawn disasters. The rings of one
+/// disaster are in order, the weakest first. Equal rings of several disasters are listed once.
 /// Returns an empty key if a drawn disaster has no given winds, or if there are more than four
 /// rings.
 RiskKey MakeRiskKey(const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses);
 
 /// Returns the name of a ring and its wind, "hurricane force (64 kt)". If that is wider than
-/// `width_px`, returns only the first word of the name, "hurricane (64 kt)".
+/// `width_px`, shortens the name to its first word, "hurricane (64 kt)".
 std::string FittingRingName(std::int32_t wind_kt, int width_px, const Font& font);
 
 /// A symbol of the map that the key of signs explains.
 enum class Sign {
   kAtRisk,        ///< pattern of the rings, unless the key of risks shows it
-  kInDanger,      ///< ring around a device that is in danger
-  kFirstReached,  ///< two rings around a device that is the first in danger
+  kInDanger,      ///< circle around a device in danger
+  kFirstReached,  ///< two circles around a device that is the first in danger
   kDelivered,     ///< small device at a port
   kFetched,       ///< outline in the former cell of a fetched device
   kPath,          ///< path of a self-propelled device

@@ -24,9 +24,9 @@ using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr std::size_t kMaxDangerLabels = 40;  // more labels would not be read, but need time
+constexpr std::size_t kMaxDangerLabels = 40;  // more labels would be hard to read and slow
 constexpr double kDangerRing = 2.0;           // radius of the second danger ring [device radii]
-constexpr double kSymbol = 1.2;               // radius around other devices [device radii]
+constexpr double kSymbol = 1.2;               // radius blocked around other devices [device radii]
 
 // Returns the part of the map that a symbol with a health bar above it covers.
 cv::Rect WithBar(cv::Point2d at, double radius, const Layout& layout) {
@@ -54,8 +54,8 @@ void DrawLeader(cv::Mat& map, cv::Point2d symbol, double radius, cv::Rect label,
   DrawLine(map, from, to, Bgr(layout.style->label), layout.Px(1));
 }
 
-constexpr double kPlateMargins = 13.0;  // left and right of a text on a plate [design units]
-constexpr double kPlateRow = 16.0;      // [design units]
+constexpr double kPlateMargins = 13.0;  // left and right of a text, in sum [design units]
+constexpr double kPlateRow = 16.0;      // height of a line on a plate [design units]
 
 // Draws lines of text on a plate with a bar in a colour.
 void DrawPlate(cv::Mat& map, cv::Rect plate, const std::vector<std::string>& lines, Rgb color,
@@ -294,7 +294,7 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
 
 namespace {
 
-// Takes the nearest free place; nullopt if the line to it would cross another label.
+// Takes the nearest free place; nullopt if there is none or the line to it would cross a label.
 std::optional<cv::Rect> TakeInSight(LabelSpace& space, Cover cover, cv::Size size,
                                     cv::Point2d symbol, double farthest) {
   const FreeSpace& open = space.space(cover);
@@ -314,8 +314,8 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     const DisasterState& disaster = state.disasters[i];
     const SignPlace& sign = signs[i];
     if (!IsDrawn(disaster) || sign.is_inside) continue;
-    // The label is next to the pointer if possible, if necessary with shorter lines, because labels
-    // of other pointers may be above and below it.
+    // A place next to the pointer is tried first, because labels of other pointers may be above and
+    // below it. If the text does not fit there, shorter lines are tried.
     std::vector<std::string> lines;
     cv::Size size;
     cv::Point2d place_aside;
@@ -365,7 +365,7 @@ void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
 
 namespace {
 
-// Returns the number of a fetched device in order of time, as "1. "; "" if there are several ships.
+// Returns the rank of a device in the order of pickups, "1. "; "" if there are several ships.
 std::string OrderText(const FarmSpec& spec, const FarmState& state, const Trail& trail,
                       std::int64_t at_s) {
   if (state.ships.size() > 1) return "";
@@ -393,7 +393,7 @@ void LabelFetched(cv::Mat& map, const FarmSpec& spec, const FarmState& state, co
     const cv::Point2d at = layout.view.ToPixel(device.x, device.y);
     const cv::Point2d aside(1.2 * radius + size.width / 2.0, 0.0);
     const cv::Point2d above(0.0, -1.4 * radius - size.height / 2.0);
-    std::optional<cv::Rect> place;  // next to the outline, or none
+    std::optional<cv::Rect> place;  // next to the outline
     for (const cv::Point2d& offset : {aside, -aside, above, -above}) {
       if (!place) place = space.Take(Cover::kNothing, size, at + offset, 12.0 * layout.unit);
     }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Draws labels on the map, which cover no symbol and no other label, and the marks around devices
-/// in danger; private to this package.
+/// Draws the labels of the map, and circles around devices in danger; private to this package. A
+/// label covers neither symbols nor other labels. It is left out if there is no free space for it
+/// nearby.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -26,49 +27,49 @@ struct Layout;
 FreeSpace BlockSymbols(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                        const Outlook& outlook, const Layout& layout);
 
-/// Draws a ring around each device that a ring of a disaster covers or reaches. Its colour is that
-/// of the worst risk, now or later. The most urgent device has a second ring, and so have the
-/// devices with the same DangerText.
+/// Draws a circle around each device that a ring of a disaster covers or reaches. The circle has
+/// the colour of the worst risk, now or later. The most urgent device, and all devices with the
+/// same DangerText, have a second circle.
 void DrawDangerMarks(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                      const aquafarm_msgs::FarmState& state, const Outlook& outlook,
                      const Layout& layout);
 
-/// Writes the danger next to the 40 most urgent devices in danger, "F3: risk -10 in 6.5 h". A
-/// device without free space nearby gets no label. Returns the ids of the labelled devices.
+/// Writes the danger next to the 40 most urgent devices in danger, "F3: risk -10 in 6.5 h". Returns
+/// the ids of the labelled devices.
 std::set<std::int32_t> LabelDanger(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                                    const aquafarm_msgs::FarmState& state, const Outlook& outlook,
                                    LabelSpace& space, const Layout& layout, const Fonts& fonts);
 
 /// Labels each ring that crosses the map, on its line or, if that is not free, next to it. Labels
 /// do not cover land. The text is "risk -5", or "gale (34 kt), risk -5" if the wind is given; if
-/// there are several disasters, the name of the disaster comes first. A ring without free space has
-/// no label.
+/// there are several disasters, the name of the disaster comes first.
 /// @param courses  one per disaster of the state
 void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmState& state,
                 const std::vector<Course>& courses, LabelSpace& space, const Layout& layout,
                 const Fonts& fonts);
 
 /// Labels the pointers to disasters outside the map with CentreText. If the picture has no panel,
-/// the labels also contain MotionNow.
+/// the labels also contain MotionNow. The free space may be anywhere on the map.
 void LabelPointers(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                    const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
                    LabelSpace& space, const Layout& layout, const Fonts& fonts);
 
-/// Writes F and the id next to each deployed device, see IsLabelled.
+/// Writes F and the id next to each deployed device that has no label yet, see IsLabelled.
 /// @param labelled  ids of devices that already have a label
 void LabelDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                   const aquafarm_msgs::FarmState& state, const std::set<std::int32_t>& labelled,
                   LabelSpace& space, const Layout& layout, const Fonts& fonts);
 
-/// Writes F and the id next to the former cell of each device that a ship has fetched, with the
-/// time at which the device was picked up if that is known.
+/// Labels the former cell of each device that a ship has fetched. The text is "F2". If the time of
+/// the pickup is known, the text is "F2 13:58", or with a single agent "1. F2 13:58", which begins
+/// with the number of the pickup.
 /// @param trail  may be null
 void LabelFetched(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                   const aquafarm_msgs::FarmState& state, const Trail* trail, LabelSpace& space,
                   const Layout& layout, const Fonts& fonts);
 
-/// Writes "ship" and the id next to each ship if there are several. Self-propelled devices are not
-/// labelled.
+/// Writes "ship" and the id next to each ship that is visible, active and on the map, if there are
+/// several agents. Self-propelled devices are not labelled.
 void LabelShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                 const aquafarm_msgs::FarmState& state, LabelSpace& space, const Layout& layout,
                 const Fonts& fonts);

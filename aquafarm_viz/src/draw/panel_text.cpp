@@ -385,8 +385,8 @@ std::vector<std::string> ChoiceLines(const FarmState& state, const Overlays& ove
   return lines;
 }
 
-// Returns whether the map shows a pickup or a drop-off as the best move of a cell: symbols of ports
-// and devices cover most of them.
+// Returns whether a symbol of a pickup or drop-off is visible on the map. Symbols of ports and
+// devices cover most of them.
 bool HasPickupSigns(const FarmSpec& spec, const FarmState& state, const Values& values, int every) {
   const auto is_covered = [&](cv::Point cell) {
     return std::any_of(

@@ -117,7 +117,7 @@ MoveSigns::MoveSigns(const Layout& layout)
     : view_(layout.view),
       every_(MoveSpacing(layout)),
       size_px_(std::min(0.8 * every_ * view_.cell_px(), kLargestArrow * layout.unit)) {
-  // The symbols have the sub-pixel position of cell centres, if cells have whole pixels.
+  // If the size of a cell is an integer, all cell centres have this sub-pixel position.
   const int half = cvCeil(0.5 * size_px_) + 3;
   const cv::Point2d middle = view_.ToPixel(0, view_.height() - 1);
   phase_ = middle - cv::Point2d(std::floor(middle.x), std::floor(middle.y));

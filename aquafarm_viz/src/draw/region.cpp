@@ -101,8 +101,8 @@ std::string PlaceText(const FarmSpec& spec, double x, double y) {
   return DistanceText(MetresFromFarm(spec, x, y)) + " " + PointFromFarm(spec, x, y);
 }
 
-// Returns until when the course is known if the disaster lasts longer, else how the course is
-// drawn.
+// If the disaster lasts longer than its course is known, returns until when it is known. If not,
+// returns how the course is drawn; empty for an extrapolated course.
 std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, const Course& course) {
   const double known = course.known_until - course.ahead.front().step;
   if (known < disaster.steps_left) return "known until +" + AheadText(spec, known);
@@ -229,7 +229,7 @@ Inset MakeInset(const cv::Mat& image, const cv::Rect2d& part) {
   return {image, (part.tl() + part.br()) * 0.5, px_per_cell};
 }
 
-// Draws a scale bar as near to the lower left corner as there is free space.
+// Draws a scale bar in the free space that is nearest to the lower left corner.
 void DrawScale(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout& layout,
                const Fonts& fonts) {
   const double length_m =

@@ -26,19 +26,20 @@ struct RegionWords {
 };
 
 /// Returns the words about the most urgent disaster: the one whose ring is the first to cover a
-/// part of the farm. If no ring ever does, disasters that come nearer precede the others, and among
-/// them the one with the nearest closest approach is chosen. Therefore "MOVING AWAY" also means
-/// that no ring of any disaster will cover a part of the farm and that no disaster comes nearer.
+/// part of the farm. If no ring will, disasters that come nearer precede the others. Among these,
+/// the one with the nearest closest approach is chosen. Therefore "MOVING AWAY" also means that no
+/// ring of any disaster will cover a part of the farm along the courses and that no disaster comes
+/// nearer.
 /// @param courses  one per disaster of the state, see CourseOf
 RegionWords RegionText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                        const std::vector<Course>& courses);
 
 /// Draws a map of the region around the farm with the centre, the rings and the course of each
-/// disaster, and writes the lines of RegionText below it. Leaves the map out if no centre is
-/// outside the farm or if `room` is too small for it. Leaves the lines out if they do not fit in
-/// addition to the map, unless they are about a known course or an arrival. Draws nothing if the
-/// map is left out and the course of the most urgent disaster is extrapolated, or if `room` has
-/// less than three rows.
+/// disaster (IsDrawn), and writes the lines of RegionText below it. Leaves the map out if no centre
+/// is outside the farm or if `room` is too small for it. Leaves the lines out if they do not fit in
+/// addition to the map, unless they are about a known course or an arrival. Draws nothing if `room`
+/// has less than three rows. Also draws nothing if the map is left out and there is no disaster, or
+/// the course of the most urgent one is extrapolated.
 /// @param room  the part of the image that may be used [pixels]
 /// @param courses  one per disaster of the state, see CourseOf
 void DrawRegion(cv::Mat& image, cv::Rect room, const aquafarm_msgs::FarmSpec& spec,

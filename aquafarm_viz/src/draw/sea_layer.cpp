@@ -16,10 +16,10 @@ namespace {
 struct SeaLayer {
   std::string name;
   std::string units;
-  std::vector<float> values;  // [H, W] row-major, from the south
+  std::vector<float> values;  // [H, W] row-major; row 0 is the southernmost
 };
 
-// Reads a sea layer of the spec's scenario, which is canonical: it contains one number per cell.
+// Reads a sea layer of the spec's scenario, which contains one number per cell for each layer.
 SeaLayer LayerOf(const aquafarm_msgs::FarmSpec& spec, const std::string& name) {
   std::string names;
   try {

@@ -80,8 +80,9 @@ inline bool IsDrawn(const aquafarm_msgs::DisasterState& disaster) {
 /// within their cells.
 cv::Mat1b IslandCoverage(const aquafarm_msgs::FarmSpec& spec, const Layout& layout);
 
-/// Draws the rings of all disasters on the map: their outlines, a tint, and the pattern of each
-/// kind of disaster. Where rings overlap, tint and pattern are those of the worst risk.
+/// Draws the rings of the disasters on the map (IsDrawn): their outlines, a tint, and the pattern
+/// that marks the kind of disaster. Where rings overlap, tint and pattern are those of the worst
+/// risk.
 /// @param land  IslandCoverage; rings are fainter over land
 /// @param is_tinted  false: draws no tint between the lines of the pattern
 void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const cv::Mat1b& land,
@@ -109,8 +110,8 @@ SignPlace PlaceSign(const aquafarm_msgs::DisasterState& disaster, const Layout& 
 /// moved apart along the border if there is space.
 std::vector<SignPlace> PlaceSigns(const aquafarm_msgs::FarmState& state, const Layout& layout);
 
-/// Draws the centre and the heading of each disaster, or a pointer at the border if the centre is
-/// outside the map.
+/// Draws the centre of each disaster (IsDrawn) with an arrow if it moves. If the centre is outside
+/// the map, draws a pointer at the border instead.
 void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Layout& layout,
                        const Fonts& fonts);
 
@@ -232,7 +233,7 @@ void DrawPorts(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Layout& 
 void DrawDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                  const aquafarm_msgs::FarmState& state, const Layout& layout);
 
-/// Draws the ships with up to three devices aboard, and the self-propelled devices.
+/// Draws the ships, each with at most three of its devices aboard, and the self-propelled devices.
 /// @param trail  gives the bearing of ships that do not move; may be null
 void DrawShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Trail* trail, const Layout& layout);
@@ -243,7 +244,7 @@ void DrawRock(cv::Mat& image, cv::Point2d at, double radius_px);
 /// Draws the symbol of a device with a dark rim. @param faded  0: in its colour, 1: grey
 void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, double faded);
 
-/// Draws the texts above and below the map, and after the end of the episode the reason for it.
+/// Draws the texts above and below the map. After the end of an episode, draws why it ended.
 void DrawWords(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Overlays& overlays,
                const Outlook& outlook, const Layout& layout, const Fonts& fonts);

@@ -25,8 +25,8 @@ std::string Ending(const std::string& path) {
   return ending;
 }
 
-/// Returns the path of the temporary file of a video. It has the same extension, because OpenCV
-/// selects the format by it.
+/// Returns the path of the temporary file of a video. The temporary file has the extension of the
+/// video, because OpenCV selects the format by the extension.
 std::string TempPath(const std::string& path) {
   return (fs::path(path).parent_path() / (fs::path(path).stem().string() + ".part" + Ending(path)))
       .string();
@@ -49,7 +49,7 @@ class EncodedVideo final : public Video {
   EncodedVideo(const std::string& path, cv::Size size, double rate_hz, bool is_mp4) : path_(path) {
     setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
     setenv("OPENCV_LOG_LEVEL", "OFF", 0);
-    // For mp4 only H.264, because browsers play none of OpenCV's other mp4 codecs.
+    // For mp4, tries only H.264, because browsers play none of OpenCV's other mp4 codecs.
     const std::vector<std::string> codecs =
         is_mp4 ? std::vector<std::string>{"avc1"} : std::vector<std::string>{"VP90", "VP80"};
     std::string tried;

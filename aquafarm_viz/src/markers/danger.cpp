@@ -29,9 +29,9 @@ using aquafarm_msgs::FarmState;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr std::size_t kMaxLabels = 40;  // more labels would not be read, but need time
+constexpr std::size_t kMaxLabels = 40;  // more labels would be hard to read and slow
 constexpr double kRim = 0.2;            // min distance of a label from the edge of the farm [cells]
-constexpr double kMaxLine = 0.98;       // max width of a line above the farm [longer sides of it]
+constexpr double kMaxLine = 0.98;       // max width of a line above the farm [longer side of farm]
 constexpr Rgb kAlarm{0xff, 0xb4, 0x54};
 
 // A rectangle that a label covers [cells].
@@ -47,8 +47,9 @@ struct Plate {
   }
 };
 
-// Finds places for labels on the farm at which they cover no device, ship, port or other label. A
-// label covers land only if no other place is free.
+// Finds places for labels on the farm. A label covers no device, ship, port or other label, unless
+// it must be shown and no place is free. It covers land only if no place on water near its point is
+// free.
 class Labels {
  public:
   Labels(const Maker& maker, const FarmSpec& spec, const FarmState& state)
@@ -67,8 +68,8 @@ class Labels {
 
   void Block(double x, double y, double half) { used_.push_back({x, y, half, half}); }
 
-  // Returns the first place at which a symbol is free and inside the farm; if there is none, the
-  // first place. @param half  half the side of the symbol [cells]
+  // Returns the first place that is free and inside the farm; if there is none, the first place.
+  // @param half  half the side of the symbol [cells]
   cv::Point2d FirstFree(const std::vector<cv::Point2d>& places, double half) const {
     const auto found = std::find_if(places.begin(), places.end(), [&](const cv::Point2d& place) {
       const bool is_inside = place.x - half >= -0.8 && place.x + half <= spec_.width - 0.2 &&
@@ -198,7 +199,7 @@ void AddLeader(MarkerArray& array, const Maker& maker, const std::string& space,
 }
 
 // Breaks a text after a comma into two lines if it is wider than `max_width` [heights of a letter].
-// The first line takes all parts that fit, so that a time stays with the part before it.
+// The first line contains all parts that fit, and at least one.
 std::string InLines(std::string text, double max_width) {
   if (TextWidth(text) <= max_width || text.find('\n') != std::string::npos) return text;
   std::size_t end = std::string::npos;

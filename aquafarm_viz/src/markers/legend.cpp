@@ -26,7 +26,7 @@ using visualization_msgs::MarkerArray;
 class Row {
  public:
   // @param line  0 is the uppermost line, below the names of the axis
-  // @param space  namespace of bars and symbols; with _text, that of texts
+  // @param space  namespace of bars and symbols; that of texts has "_text" appended
   Row(MarkerArray& array, const FarmSpec& spec, int line, std::string space)
       : array_(array),
         header_(spec.header),

@@ -14,7 +14,7 @@ namespace aquafarm_viz {
 void AddLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec);
 
 /// Adds a second line, in the namespaces `sign_legend` and `sign_legend_text`: the circle around a
-/// device in danger, the pointer to a centre, the pattern of rings, and that north is up.
+/// device in danger, the pointer to a centre, and the meanings of ring patterns and dashed paths.
 void AddSignLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec);
 
 /// Adds a third line, in the namespaces `value_legend` and `value_legend_text`: the range and the

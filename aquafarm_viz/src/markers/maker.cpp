@@ -16,8 +16,8 @@ geometry_msgs::Point OnCircle(double radius_m, int corner) {
   return Point(radius_m * std::cos(angle), radius_m * std::sin(angle));
 }
 
-// Widths of the letters from space to "~" [1/1000 em]. Source: metrics of Helvetica, which those of
-// Liberation Sans equal (Adobe Core 14 AFM, Helvetica.afm).
+// Widths of the letters from space to "~" [1/1000 em]. Liberation Sans has the metrics of Helvetica
+// (Adobe Core 14 AFM, Helvetica.afm).
 constexpr std::array<int, 95> kWidths{
     278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333,  278, 278, 556, 556, 556,
     556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667,
@@ -28,7 +28,7 @@ constexpr std::array<int, 95> kWidths{
 // Returns the width of a letter in rviz, in heights of a letter.
 double LetterWidth(char letter) {
   constexpr double kEm = 0.853;  // width of 1 em in rviz, measured [heights of a letter]
-  const auto i = static_cast<std::size_t>(letter - ' ');  // wraps around for other characters
+  const auto i = static_cast<std::size_t>(letter - ' ');  // large for other characters
   return kEm * (i < kWidths.size() ? kWidths[i] : 556) / 1000.0;
 }
 

@@ -65,7 +65,7 @@ class Maker {
       : cell_m_(spec.cell_size_m),
         // On large farms objects are drawn larger than a cell to stay visible.
         thing_m_(spec.cell_size_m * std::max(1.0, std::max(spec.width, spec.height) / 40.0)),
-        // With the whole farm in a view of 600 pixels, rviz's letters have 11 pixels or more.
+        // With the whole farm in a view of 600 pixels, rviz's letters have about 11 pixels.
         word_m_(
             std::max(0.6 * thing_m_, 0.028 * std::max(spec.width, spec.height) * spec.cell_size_m)),
         layer_m_(std::min(0.03 * spec.cell_size_m, 8.0)),
@@ -129,7 +129,7 @@ class Maker {
   }
 
   /// Returns a text above the farm that starts above its western edge.
-  /// @param line  LineAbove of its middle
+  /// @param line  number of the line, see LineAbove
   visualization_msgs::Marker Line(const char* space, double line, const std::string& text,
                                   Rgb color) const;
 
@@ -156,7 +156,7 @@ class Maker {
   std_msgs::Header header_;
 };
 
-/// Adds the triangles of an outline, a narrow band around the position of the marker.
+/// Adds the triangles of an outline, drawn as a narrow band around the position of the marker.
 /// @param size_m  length of one unit of the outline [m]
 void AddOutline(visualization_msgs::Marker& marker, const std::vector<cv::Point2f>& outline,
                 double size_m);

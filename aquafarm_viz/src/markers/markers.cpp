@@ -74,7 +74,7 @@ Marker Island(const Maker& maker, const FarmSpec& spec) {
   return island;
 }
 
-// Returns a line along each side of an island's cell that borders water, inside the cell.
+// Returns lines in the cells of islands, along the sides that border water.
 Marker Shore(const Maker& maker, const FarmSpec& spec) {
   constexpr float kWidth = 0.12F;  // [cells]
   Marker shore = maker.Make("shore", 0, Marker::TRIANGLE_LIST, kLandLayer, 0, 0);
@@ -338,8 +338,8 @@ void AddDisasterSigns(MarkerArray& array, const Maker& maker, const FarmSpec& sp
   eye.scale.z = 0.5 * maker.layer_m();
   eye.color = Color(GradeColor(disaster.grade));
   array.markers.push_back(eye);
-  // The name is north or south of the centre, where the arrow of the motion is not. It is outside
-  // the rings if that position is on the map.
+  // The name is north or south of the centre, on the side without the arrow of the motion. It is
+  // outside the rings if that position is on the map.
   const double side =
       disaster.speed > 0.0F && std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1 ? 1.0 : -1.0;
   const double near = 0.9 * maker.thing_m() / maker.cell_m();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The rings of disasters in rviz: bands, edges and the pattern of the kind. They are clipped to
-/// the farm. Private to this package.
+/// The rings of disasters in rviz: bands, edges and the pattern that marks the kind of disaster.
+/// They are clipped to the farm. Private to this package.
 
 #include <aquafarm_msgs/DisasterState.h>
 #include <aquafarm_msgs/FarmSpec.h>

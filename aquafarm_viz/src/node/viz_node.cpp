@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kWarnEvery_s = 5.0;
 constexpr int kJpegQuality = 90;
-constexpr std::size_t kStamps = 200;     // number of last states that a map of values may belong to
+constexpr std::size_t kStamps = 200;     // number of last states to which values may belong
 constexpr std::int32_t kMaxRoutes = 64;  // max ships with a route topic
 
 visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,

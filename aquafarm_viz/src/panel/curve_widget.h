@@ -24,9 +24,9 @@ struct CurveRange {
 /// The margin does not extend across 0.
 CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve);
 
-/// The scale of the axis of returns. It is linear if all values of the range have the same sign.
-/// Otherwise it is logarithmic below 0, because the returns at the start of a training are far
-/// below all others.
+/// The scale of the axis of returns. It is linear unless the range contains negative and positive
+/// values. For such a range it is logarithmic below 0, because the returns at the start of a
+/// training are far below all others.
 class ReturnScale {
  public:
   explicit ReturnScale(const CurveRange& range);
@@ -45,7 +45,8 @@ class ReturnScale {
 };
 
 /// Returns ticks within a range: the multiples of 1, 2 or 5 times a power of ten. The spacing is
-/// the smallest that gives at most `max` ticks. If these are fewer than three, it is smaller.
+/// the smallest that gives at most `max` ticks. If that would give fewer than three ticks, the
+/// spacing is smaller.
 std::vector<double> RoundTicks(const CurveRange& range, int max);
 
 /// Plots the mean return (axis on the left) as a solid line and the success rate (0 … 100 %, axis

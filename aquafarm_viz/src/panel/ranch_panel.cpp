@@ -27,8 +27,8 @@ namespace aquafarm_viz {
 namespace {
 
 constexpr double kCallLimit_s = 5.0;
-// A command in lockstep waits for those of the other ships, at most ~barrier_timeout_s of the sim
-// node.
+// A command in lockstep waits for the commands of the other ships, at most ~barrier_timeout_s of
+// the sim node.
 constexpr double kCommandLimit_s = 60.0;
 constexpr int kRefresh_ms = 200;
 constexpr char kWholeFarm[] = "Whole Farm";

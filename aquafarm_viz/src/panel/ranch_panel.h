@@ -31,14 +31,14 @@ class RanchPanel : public rviz::Panel {
   RanchModel model_;
   RanchWidget* widget_;
   std::unique_ptr<ServiceCaller> caller_;
-  // One caller for each ship, because a command may wait for those of other ships.
+  // One caller for each ship, because a command may wait for the commands of other ships.
   std::map<int, std::unique_ptr<ServiceCaller>> helms_;
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_;
   ros::Subscriber plan_;
   ros::Subscriber plan_heartbeat_;
-  rviz::VisualizationManager* rviz_{};  // null outside rviz, which does not set vis_manager_
+  rviz::VisualizationManager* rviz_{};  // null outside rviz, where vis_manager_ is not set
   WholeView whole_view_;
   QTimer timer_;
   bool changed_{};

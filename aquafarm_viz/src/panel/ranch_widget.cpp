@@ -100,12 +100,12 @@ RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget*
   plan_devices_->setObjectName("plan_devices");
   training_ = AddLine(all);
   all->addWidget(curve_ = new CurveWidget(), 2);
-  all->addStretch();
   AddTime(all);
   AddPlaces(all);
   AddHelm(all);
   AddDisaster(all);
   message_ = AddLine(all);
+  all->addStretch();
   Refresh();
 }
 

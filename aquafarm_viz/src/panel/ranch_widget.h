@@ -41,7 +41,7 @@ class RanchWidget : public QWidget {
   void Refresh();
   /// Updates the line of the plan, which warns if plan_node is silent (PlanHeadline).
   void RefreshPlanAge();
-  /// Sets the line at the bottom, which contains the result of the last button.
+  /// Sets the line at the bottom, which contains the result of the last service call.
   void ShowMessage(const std::string& line);
 
  private:

@@ -53,7 +53,6 @@ bool ServiceCaller::Arm(ros::ServiceClient* client) {
   if (ending_) return false;
   armed_ = client;
   end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit_);
-  ++calls_;
   cut_off_ = false;
   changed_.notify_all();
   return true;

@@ -32,9 +32,10 @@ class ServiceCaller {
   ServiceCaller(const ServiceCaller&) = delete;
   ServiceCaller& operator=(const ServiceCaller&) = delete;
 
-  /// Calls a service of the ranch whose response has the fields ok and message.
-  /// Returns immediately.
-  /// @param describe returns the line for a response whose `ok` is true
+  /// Calls a service of the ranch. Its response must have the fields ok and message; in the
+  /// response of Command, they are in `result`. Returns immediately.
+  /// @param describe returns the line for a response whose `ok` is true; for Command, for each
+  ///        response
   template <typename Service>
   void Call(const std::string& name, Service service,
             std::function<std::string(const Service&)> describe) {
@@ -78,7 +79,6 @@ class ServiceCaller {
   std::deque<std::function<std::string()>> jobs_ AQUAFARM_GUARDED_BY(mutex_);
   ros::ServiceClient* armed_ AQUAFARM_GUARDED_BY(mutex_){};
   Clock::time_point end_ AQUAFARM_GUARDED_BY(mutex_);  // deadline of the armed call
-  std::uint64_t calls_ AQUAFARM_GUARDED_BY(mutex_){};  // number of calls armed so far
   bool cut_off_ AQUAFARM_GUARDED_BY(mutex_){};
   bool ending_ AQUAFARM_GUARDED_BY(mutex_){};
   std::thread worker_;

@@ -29,7 +29,7 @@ bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// Returns the part of a topic before its last name.
+// Returns the part of a topic up to its last slash.
 std::string Namespace(const std::string& topic) { return topic.substr(0, topic.rfind('/') + 1); }
 
 // The following functions translate messages of earlier versions to this version. The message types
@@ -156,8 +156,9 @@ std::optional<ReplayTape::Step> ReplayTape::Find(const Step& shown, std::uint64_
   return last;
 }
 
-// Returns the position of the last spec of the step's episode that was recorded before the step, or
-// else of the first one after it: each topic has a separate connection, so a spec may be late.
+// Returns the position of the last spec of the step's episode that was recorded before the step. If
+// there is none, returns the first one after it: each topic has a separate connection, so a spec
+// may be late.
 std::optional<std::size_t> ReplayTape::SpecOf(const Step& step) const {
   const std::string space = Namespace(messages_[step.position].getTopic());
   std::optional<std::size_t> found;

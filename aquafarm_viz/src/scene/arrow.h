@@ -7,12 +7,13 @@ namespace aquafarm_viz {
 
 /// Adds a flat arrow with a shaft and a head to a triangle list: 9 points.
 /// @param x, y  middle of the arrow [cells]
+/// @param cell_m  side of a cell [m]
 /// @param bearing_deg  direction, clockwise from north
 /// @param size  the arrow is 0.7 * size cells long
 void AddArrow(visualization_msgs::Marker& marker, double x, double y, int bearing_deg,
               double cell_m, double size = 1.0);
 
-/// Adds a frame along the inner side of the border of cell (x, y) to a triangle list: 24 points. A
+/// Adds a square frame just inside the border of cell (x, y) to a triangle list: 24 points. A
 /// symbol in the cell does not cover the corners of the frame.
 void AddFrame(visualization_msgs::Marker& marker, double x, double y, double cell_m);
 

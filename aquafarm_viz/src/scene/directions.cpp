@@ -14,7 +14,7 @@ using Place = std::pair<int, int>;
 
 constexpr std::uint8_t kMoves = 8;
 
-// Return the sign of the displacement of a move to the east and to the north.
+// East and North return the sign of the displacement of a move along their axis: -1, 0 or 1.
 int East(int bearing_deg) { return bearing_deg % 180 == 0 ? 0 : bearing_deg < 180 ? 1 : -1; }
 int North(int bearing_deg) { return East((bearing_deg + 90) % 360); }
 

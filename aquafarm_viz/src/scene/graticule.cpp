@@ -26,8 +26,8 @@ std::vector<ArcTick> Ticks(double start_deg, double cells_per_deg, int length, d
   }
 }
 
-// The following functions return the length of a degree on the ellipsoid of WGS 84 [m]: the first
-// two terms of its series. `latitude` is in radians.
+// The following functions return the length of a degree of latitude and of longitude on the
+// ellipsoid of WGS 84 [m]: the first two terms of its series. `latitude` is in radians.
 double LatitudeMetres(double latitude) { return 111132.95 - 559.85 * std::cos(2.0 * latitude); }
 
 double LongitudeMetres(double latitude) {

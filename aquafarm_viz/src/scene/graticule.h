@@ -15,8 +15,8 @@ struct ArcTick {
   double at{};    ///< distance from the western or southern edge of the farm [cells]
 };
 
-/// Returns true if the axes of a farm are longitude and latitude. The farm must have a geographic
-/// position between 85 degrees south and 85 degrees north.
+/// Returns true if the axes of a farm show longitude and latitude: the farm has a geographic
+/// position, and the latitude of cell (0, 0) is less than 85 degrees north or south.
 bool HasGraticule(const aquafarm_msgs::FarmSpec& spec);
 
 /// Returns the ticks of longitude, at least `min_cells` apart. HasGraticule must be true. The scale

@@ -19,7 +19,8 @@ int ZoneOf(const aquafarm_msgs::FarmSpec& spec) {
   return spec.has_origin ? NauticalZone(spec.origin_longitude_deg) : 0;
 }
 
-// Returns the class of a typhoon until it ends, or the name of the kind of another disaster.
+// Returns the class of a typhoon that has not ended, if its wind is given. In all other cases,
+// returns the name of the kind.
 std::string ClassNow(const aquafarm_msgs::DisasterState& disaster, const Course& course) {
   const bool has_class = disaster.kind == aquafarm_msgs::DisasterState::TYPHOON &&
                          disaster.steps_left > 0 && !course.ahead.empty() &&

@@ -58,7 +58,7 @@ std::int32_t WindOf(const Course& course, std::size_t ring) {
 // Returns the name of the wind of a ring; empty if it is not given.
 const char* NameOf(std::int32_t wind_kt) { return wind_kt > 0 ? aquafarm::WindName(wind_kt) : ""; }
 
-// Adds the rings that cover devices in one step to the outlook; step 0 is now.
+// Adds to the outlook the rings that cover devices in one step. Step 0 is now.
 void AddStep(const FarmState& state, const std::vector<Course>& courses, int step,
              const std::vector<const DeviceState*>& devices, Outlook& outlook) {
   for (std::size_t i = 0; i < courses.size(); ++i) {
@@ -116,7 +116,7 @@ bool IsMoreUrgent(const DeviceOutlook& a, const DeviceOutlook& b) {
 
 // Returns whether a ring covers a part of the farm. Quadrants run NE, SE, SW, NW.
 bool IsOverFarm(const FarmSpec& spec, const TrackPoint& storm, const std::array<double, 4>& ring) {
-  constexpr double kEdge = 0.5;  // of a cell around its centre
+  constexpr double kEdge = 0.5;  // from the centre of a cell to its border [cells]
   const double east = spec.width - kEdge;
   const double north = spec.height - kEdge;
   for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
@@ -273,8 +273,8 @@ const RingArrival* Extreme(
   return best;
 }
 
-// Returns the labels of the devices that the same ring reaches at the same time, compared as the
-// time is displayed: "F0 and F1".
+// Returns the labels of the devices that the same ring reaches at the same time: "F0 and F1". Times
+// are the same if AheadText displays them equally.
 std::string WhomText(const FarmSpec& spec, const Outlook& outlook, const RingArrival& ring) {
   return Names(outlook, [&](const DeviceOutlook& one) {
     return std::any_of(one.arrivals.begin(), one.arrivals.end(), [&](const RingArrival& other) {
@@ -289,8 +289,8 @@ std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
   return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
 }
 
-// Returns the local time in some steps, ", Sun 06:24 UTC+8"; empty if that is less than an hour
-// away or the scenario has no start time.
+// Returns the local time `steps` steps from now, ", Sun 06:24 UTC+8"; empty if that is less than an
+// hour away or if the scenario has no start time.
 std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double steps) {
   if (!spec.has_start_time || steps * spec.step_duration_s < 3600.0) return "";
   const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;

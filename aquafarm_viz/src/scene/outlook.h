@@ -32,7 +32,7 @@ struct DeviceOutlook {
   double risk_now{};                  ///< risk at its cell; 0 outside all rings
   std::size_t disaster_now{};         ///< index of the disaster with this risk; 0 outside all rings
   std::int32_t wind_now_kt{};         ///< min wind within that ring [kn]; 0: not given
-  std::vector<RingArrival> arrivals;  ///< by time; the risk is worse at each one, and than now
+  std::vector<RingArrival> arrivals;  ///< by time; each is worse than those before and now
 };
 
 /// The danger to all deployed devices.
@@ -48,7 +48,8 @@ struct Outlook {
   std::vector<DeviceOutlook> devices;
 };
 
-/// Computes the outlook along the courses of the known disasters that have not ended.
+/// Computes the outlook along the courses of the known disasters that have not ended, at most 1000
+/// steps ahead.
 /// @param courses  one per disaster of the state, see CourseOf
 Outlook ComputeOutlook(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                        const std::vector<Course>& courses);
@@ -80,8 +81,8 @@ std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 /// follows the next arrival if that is at least an hour away.
 ///
 /// If the farm has devices but none is deployed, the text is "no device is deployed". If no ring
-/// covers or reaches a device, it is "no danger to devices known until +12 h" if a course is known
-/// only until then, else empty. It is also empty if the outlook is not known.
+/// covers or reaches a device, the text is empty, or "no danger to devices known until +12 h" if a
+/// course is known only until then. The text is also empty if the outlook is not known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
 

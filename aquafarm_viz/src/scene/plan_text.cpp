@@ -55,7 +55,7 @@ std::string DeadlineText(const RescuePlan& plan, const RescueDeadline& deadline)
   return (deadline.open ? "not known beyond " : "") + LocalText(plan, deadline.leave);
 }
 
-// Returns a sentence about the time until which ships may leave; empty if the plan has none.
+// Returns a sentence about the time until which ships may leave; empty if that time is unknown.
 std::string LastDepartureText(const RescuePlan& plan) {
   if (plan.result == RescuePlan::STORM_UNKNOWN) return "";
   if (!plan.no_departure_after.isZero()) {

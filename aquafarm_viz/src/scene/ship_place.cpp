@@ -17,7 +17,7 @@ cv::Point2d ShipPlace(const FarmSpec& spec, const FarmState& state, int x, int y
     return one.cell.x == x && one.cell.y == y;
   });
   if (port == spec.ports.end()) return {double(x), double(y)};
-  // Distance of a cell to the nearest ship, other port or deployed device.
+  // Returns the distance from a cell to the nearest other ship, other port or deployed device.
   const auto free_around = [&](int column, int row) {
     double nearest = spec.width + spec.height;
     const auto keep_off = [&](int other_x, int other_y) {

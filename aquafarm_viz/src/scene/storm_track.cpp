@@ -23,7 +23,7 @@ using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
 constexpr double kErrorLead_h = 24.0;           // hours between two entries of forecast_error_km
-constexpr double kSameCells = 1.0;              // a disaster nearer to its track follows it
+constexpr double kSameCells = 1.0;              // a disaster that is nearer to its track follows it
 constexpr int kHorizon = 10000;                 // max length of a course [steps]
 constexpr std::size_t kMaxErrorPoints = 4096U;  // max points of a course with errors
 
@@ -48,8 +48,8 @@ Track ReadTrack(const YAML::Node& points) {
   return track;
 }
 
-// Interpolates the lists of two points. If their lengths differ, returns the first one, or the
-// second one if the first is empty.
+// Interpolates the lists of two points. If their lengths differ, returns the list of the first
+// point, or that of the second point if the first list is empty.
 template <typename T, typename Mix>
 std::vector<T> Between(const std::vector<T>& from, const std::vector<T>& to, Mix mix) {
   if (from.size() != to.size()) return from.empty() ? to : from;
@@ -67,7 +67,7 @@ TrackPoint Present(const DisasterState& disaster, double step) {
   return point;
 }
 
-// Adds the rings and risks that a course lacks. They are those of the true storm at that time.
+// Adds the rings and risks that a course lacks. They are those of the true track at the same step.
 void AddRings(Track& course, const Track& truth) {
   for (TrackPoint& point : course) {
     const TrackPoint true_storm = TrackAt(truth, point.step);

@@ -47,12 +47,13 @@ struct StormTracks {
   std::vector<std::vector<std::int32_t>> ring_winds_kt;
   std::vector<std::string> kinds;   ///< one per disaster, spelled as in a scenario: "storm_surge"
   std::vector<std::string> names;   ///< one per disaster; empty: it has no name
-  std::vector<double> error_cells;  ///< mean error after 24, 48, … hours; empty: not given
+  std::vector<double> error_cells;  ///< mean forecast error after 24, 48, … h; empty: not given
 };
 
-/// Reads a canonical scenario. Returns empty lists if the text cannot be read. The track of a
-/// disaster is empty if the scenario gives none, for example because each episode draws another
+/// Reads the disasters of a scenario. Returns empty lists if the text cannot be read. The track of
+/// a disaster is empty if the scenario has none, for example because each episode draws another
 /// storm.
+/// @param scenario_yaml  FarmSpec.scenario_yaml
 StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m);
 
 /// Returns the risks that a legend shows and their texts, the mildest first: those of all rings

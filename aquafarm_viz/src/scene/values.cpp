@@ -22,7 +22,8 @@ using sensor_msgs::PointCloud2;
 using sensor_msgs::PointField;
 using visualization_msgs::Marker;
 
-constexpr double kHeight_m = 4.0;  // above the sea and rviz's grids, below ships
+// Above the sea and rviz's grids. Below ships if the side of a cell is more than 22 m.
+constexpr double kHeight_m = 4.0;
 
 void CheckField(const PointCloud2& cloud, const std::string& name, std::uint8_t type,
                 std::uint32_t bytes) {
@@ -212,7 +213,7 @@ visualization_msgs::MarkerArray ChoiceMarkers(const aquafarm_msgs::PolicyChoice&
         AddArrow(marker, ship.x + 1.6 * std::sin(turn), ship.y + 1.6 * std::cos(turn), bearing,
                  spec.cell_size_m, 3.0);
       } else {
-        // Four arrows towards the ship represent a pickup or drop-off.
+        // Four arrows towards the ship represent an action that is not a move.
         for (const int side : {0, 90, 180, 270}) {
           const double to = side * CV_PI / 180.0;
           AddArrow(marker, ship.x + 0.9 * std::sin(to), ship.y + 0.9 * std::cos(to), side + 180,

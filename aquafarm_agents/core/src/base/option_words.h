@@ -30,8 +30,7 @@ Kind ReadWord(OptionReader& reader, const std::string& key, Kind fallback,
 }
 
 /// Reads a whole number in [min, max].
-/// @throws InputError if the value is out of range, or "batch_size: got 2.5, expected a whole
-///   number"
+/// @throws InputError if the value is out of range or not a whole number
 template <typename Whole>
 void ReadWhole(OptionReader& reader, const std::string& key, double min, double max, Whole& value) {
   const double got = reader.Number(key, static_cast<double>(value), min, max);
@@ -40,18 +39,18 @@ void ReadWhole(OptionReader& reader, const std::string& key, double min, double 
   throw InputError(key + ": got " + FormatNumber(got) + ", expected a whole number");
 }
 
-/// Reads a number in [min, max]. @throws InputError as OptionReader::Number
+/// Reads a number in [min, max]. @throws InputError in the same cases as OptionReader::Number
 inline void ReadNumber(OptionReader& reader, const std::string& key, double min, double max,
                        double& value) {
   value = reader.Number(key, value, min, max);
 }
 
-/// Reads true or false. @throws InputError as OptionReader::Flag
+/// Reads true or false. @throws InputError in the same cases as OptionReader::Flag
 inline void ReadFlag(OptionReader& reader, const std::string& key, bool& value) {
   value = reader.Flag(key, value);
 }
 
-/// Reads a schedule of numbers in [min, max]. @throws InputError as ParseSchedule
+/// Reads a schedule of numbers in [min, max]. @throws InputError in the same cases as ParseSchedule
 inline void ReadSchedule(OptionReader& reader, const std::string& key, double min, double max,
                          Schedule& value) {
   value = reader.GetSchedule(key, value, min, max);

@@ -50,7 +50,8 @@ Tail TailOf(const std::vector<Loss>& descending, const std::vector<std::size_t>&
   return tail;
 }
 
-// Returns `value` with the interval from the 2.5 % to the 97.5 % percentile of `resampled`.
+// Returns `value` with the interval from the 2.5th to the 97.5th percentile of `resampled`; NaN if
+// `resampled` is empty.
 Estimate WithInterval(double value, std::vector<double> resampled) {
   if (resampled.empty()) return {value, kNan, kNan};
   std::sort(resampled.begin(), resampled.end());

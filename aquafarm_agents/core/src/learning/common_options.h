@@ -9,7 +9,7 @@
 namespace aquafarm::agents {
 
 /// Reads the option `exploration`. The value of the parameter before the call is the default.
-/// @throws InputError as ParseExploration
+/// @throws InputError in the same cases as ParseExploration
 inline void ReadExploration(OptionReader& reader, ExplorationOptions& exploration,
                             ExplorationOf learners = ExplorationOf::kValues) {
   exploration = ParseExploration(reader.Text("exploration", ToString(exploration)), learners);

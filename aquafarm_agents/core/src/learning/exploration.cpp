@@ -16,8 +16,8 @@ constexpr double kMaxTemperature = 1e6;
 // Rewards are of the order of 100, so the choice changes from nearly uniform to nearly greedy.
 const Schedule kBoltzmannDefault{ScheduleKind::kExponential, 20.0, 0.5, 0.5};
 
-// The intrinsic reward starts at the cost of a step. It is 0 in the second half of the run, so that
-// the learner finally learns values of the farm's reward alone.
+// At the start, the mean intrinsic reward of a step is 1, about the cost of a step. It is 0 in the
+// second half of the run, so that the learner finally learns values of the farm's reward alone.
 const Schedule kCuriosityDefault{ScheduleKind::kLinear, 1.0, 0.0, 0.5};
 constexpr double kMaxCuriosity = 1e6;
 constexpr std::string_view kCuriosity = "icm";

@@ -215,9 +215,9 @@ void MaddpgLearner::Choose(const StepResults& results, std::vector<std::uint8_t>
   }
 }
 
-// Draws a time step. Either its complete window is stored, or the first step of its episode. The
-// oldest time steps of the replay may have neither; such a time step is replaced by the oldest one
-// of the same farm with a complete window.
+// Draws a time step whose complete window is stored, or at least the first step of its episode. For
+// the oldest time steps of the replay neither may be stored. Such a time step is replaced by the
+// oldest one of the same farm with a complete window, if there is one.
 TransitionIndex MaddpgLearner::DrawMoment(std::size_t i) {
   const TransitionIndex drawn = sampler_.Draw(rng_, i);
   for (std::size_t back = 0; back <= drawn.age; ++back) {

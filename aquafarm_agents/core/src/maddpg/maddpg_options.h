@@ -10,7 +10,7 @@ namespace aquafarm::agents {
 
 /// Hyperparameters of MADDPG. docs/several_agents.md gives reasons for the defaults.
 struct MaddpgOptions {
-  std::int32_t hidden_size{256};  ///< units of each hidden layer; if recurrent, units of the LSTM
+  std::int32_t hidden_size{256};  ///< units of each hidden layer, and of the LSTM
   Schedule actor_rate{ScheduleKind::kLinear, 1e-3, 1e-5, 1.0};   ///< learning rate of the actors
   Schedule critic_rate{ScheduleKind::kLinear, 1e-3, 1e-5, 1.0};  ///< learning rate of the critic
   double gamma{0.97};

@@ -74,8 +74,8 @@ void ReadSequences(OptionReader& reader, bool is_paper, DeepOptions& options) {
                      ", expected at most sequence_length, which is " +
                      std::to_string(options.sequence_length));
   }
-  // With a longer burn-in, the network would never be trained at some steps near the beginning of
-  // an episode.
+  // With a burn-in of at least sequence_length steps, the network would never be trained at some
+  // steps near the beginning of an episode.
   if (options.burn_in > 0 && options.burn_in >= options.sequence_length) {
     throw InputError("burn_in: got " + std::to_string(options.burn_in) +
                      ", expected less than sequence_length, which is " +

@@ -34,7 +34,7 @@ void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, Networ
 
 /// Checks that the features of a policy fit farms of `spec`. The number of agents may differ, for
 /// policies that evaluate the same network for each agent.
-/// @throws InputError as CheckFits
+/// @throws InputError in the same cases as CheckFits
 void CheckFeaturesFit(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 
 }  // namespace aquafarm::agents

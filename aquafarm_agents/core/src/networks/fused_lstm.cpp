@@ -56,8 +56,8 @@ Sequence Evaluate(const Tensor& input, const Tensor& hidden, const Tensor& cell,
 // Returns the last element along the first dimension; the result has size 1 there.
 Tensor Last(const Tensor& tensor) { return tensor.narrow(0, tensor.size(0) - 1, 1); }
 
-// Returns `slopes` as a vector; zeros if they are undefined, because the loss does not depend on
-// the value.
+// Returns `slopes` as a vector. If they are undefined, the loss does not depend on the value, and
+// the result is zeros.
 std::vector<float> EndSlopes(const Tensor& slopes, std::size_t size) {
   if (!slopes.defined()) return std::vector<float>(size);
   const Tensor values = slopes.contiguous();

@@ -4,10 +4,10 @@
 /// Products of row-major float matrices. If GCC 12 or later compiled this code for x86-64, the
 /// program selects code for AVX-512 or AVX2 when it runs; both give the same bits. Other compilers
 /// and processors use BLAS. The environment variable AQUAFARM_PRODUCTS (avx512, avx2 or blas)
-/// replaces the program's choice. The first product throws InputError if the variable has another
-/// value, or one that the processor does not support. docs/decisions/fused_updates.md has
-/// measurements. If AQUAFARM_GEMM_BY_EIGEN is defined, Eigen (eigen) is used instead of BLAS, for a
-/// Python package that must not depend on BLAS.
+/// replaces this choice. The first product then throws InputError if the variable has another
+/// value, or one that the processor does not support. Code of other compilers ignores the variable.
+/// docs/decisions/fused_updates.md has measurements. If AQUAFARM_GEMM_BY_EIGEN is defined, Eigen
+/// (eigen) is used instead of BLAS, for a Python package that must not depend on BLAS.
 ///
 /// In each product, c = product + beta · c. If beta is 0, the old values of c are not read.
 

@@ -64,7 +64,7 @@ class RecurrentNetwork : public torch::nn::Module {
   /// @param state recurrent state before the first step; receives the one after the last step
   /// @returns Q [T, B, kActionCount]
   torch::Tensor Forward(const torch::Tensor& input, State& state);
-  /// As Forward, but computes only the state.
+  /// Does the same as Forward, but computes only the state.
   void WarmUp(const torch::Tensor& input, State& state);
   /// Returns the number of units of the LSTM.
   std::int64_t hidden() const { return lstm_weights_[1].size(1); }

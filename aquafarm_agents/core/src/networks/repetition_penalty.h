@@ -14,9 +14,9 @@ namespace aquafarm::agents {
 
 /// Discourages oscillation. The value (or logit) of an action is reduced by a penalty for each time
 /// that the agent took it in the same situation (cell, load, remaining devices) of this episode. If
-/// errors of the network make a ship move back and forth next to a device, the ship soon tries the
-/// pickup. Only the last 1024 steps of the episode count. (Badia et al. 2020 use such counts within
-/// an episode for a reward.)
+/// errors of the network make a ship move back and forth over the cell of a device, the ship soon
+/// tries the pickup. Only the last 1024 steps of the episode are counted. (Badia et al. 2020 use
+/// such counts within an episode for a reward.)
 class RepetitionPenalty {
  public:
   /// @param penalty for each repetition, on the scale of the values; 0 disables the penalty
@@ -41,7 +41,8 @@ class RepetitionPenalty {
   void Load(const Checkpoint& checkpoint);
 
  private:
-  static constexpr std::size_t kRemembered = 1024;  // latest steps of an episode that count
+  // Number of latest steps of an episode that are counted.
+  static constexpr std::size_t kRemembered = 1024;
 
   std::uint64_t SituationOf(const float* features) const;
 

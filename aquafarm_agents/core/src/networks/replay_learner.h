@@ -2,7 +2,7 @@
 #pragma once
 
 /// Base class of DQN, LSTM-DQN and MADDPG. A step adds the results to the replay buffer, makes the
-/// updates that are due with samples from the buffer, and chooses actions.
+/// due updates and chooses actions.
 
 #include <string>
 #include <utility>

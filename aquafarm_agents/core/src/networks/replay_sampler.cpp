@@ -28,7 +28,7 @@ ReplaySampler<Scalar>::ReplaySampler(const Replay<Scalar>& replay, const DeepOpt
 template <typename Scalar>
 void ReplaySampler<Scalar>::Add() {
   for (std::size_t slot = 0; slot < replay_.slots(); slot += group_) {
-    Mark(replay_.Row(replay_.size() - 1, slot), false);  // its row may have been overwritten
+    Mark(replay_.Row(replay_.size() - 1, slot), false);  // the row may have held an older time step
     if (replay_.size() <= steps_) continue;
     const std::size_t age = replay_.size() - 1 - steps_;
     Mark(replay_.Row(age, slot), Begins(age, slot));

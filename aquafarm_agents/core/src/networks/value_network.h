@@ -3,7 +3,7 @@
 
 /// Interface through which DQN and LSTM-DQN use a network. It computes the values of observations,
 /// and the gradient of a loss that depends on these values. The implementation for features on the
-/// CPU does without libtorch and reuses its buffers (fused_values.h,
+/// CPU reuses its buffers and computes without libtorch (fused_values.h,
 /// docs/decisions/fused_updates.md). The implementation for planes or CUDA uses the modules of
 /// networks.h and the differentiation of libtorch.
 
@@ -38,7 +38,7 @@ class RecurrentValueNetwork {
   /// @returns Q [steps, rows, kActionCount], valid until the next call
   virtual const float* Forward(std::size_t steps, std::size_t rows, const float* features,
                                float* state) = 0;
-  /// As Forward, but computes only the state.
+  /// Does the same as Forward, but computes only the state.
   virtual void WarmUp(std::size_t steps, std::size_t rows, const float* features, float* state) = 0;
   /// Replaces the gradient of the parameters.
   /// @param count the loss depends on the first `count` (step, row) pairs of the last Forward. A
@@ -58,12 +58,12 @@ std::unique_ptr<ValueNetwork<Scalar>> MakeValueNetwork(const EnvironmentSpec& sp
                                                        std::shared_ptr<QNetwork> module,
                                                        FlatParameters& parameters, Learns learns);
 
-/// As MakeValueNetwork, for LSTM-DQN.
+/// Does the same as MakeValueNetwork, for LSTM-DQN.
 std::unique_ptr<RecurrentValueNetwork> MakeRecurrentValueNetwork(
     const EnvironmentSpec& spec, const DeepOptions& options,
     std::shared_ptr<RecurrentNetwork> module, FlatParameters& parameters, Learns learns);
 
-/// As MakeValueNetwork, but uses the modules of libtorch on every device.
+/// Does the same as MakeValueNetwork, but uses the modules of libtorch on every device.
 template <typename Scalar>
 std::unique_ptr<ValueNetwork<Scalar>> MakeModuleValues(const EnvironmentSpec& spec,
                                                        std::shared_ptr<QNetwork> module,

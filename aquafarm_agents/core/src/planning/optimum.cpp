@@ -22,9 +22,9 @@ struct Pair {
   double best{};
 };
 
-// Returns the number of states of a plan. A planner would allocate memory for all of them, so the
-// number is computed without one: each device is deployed, aboard (as paid or as unpaid) or gone,
-// and the number aboard is at most the capacity.
+// Returns the number of states of a plan. A planner would allocate memory for all of them, so this
+// function computes the number without a planner. Each device is deployed, aboard (as paid or as
+// unpaid) or gone, and the number aboard is at most the capacity.
 double StatesOf(const Scenario& scenario) {
   const std::int32_t devices = scenario.devices.Total();
   double sets = 0.0;
@@ -40,8 +40,8 @@ double StatesOf(const Scenario& scenario) {
   return sets * scenario.CellCount();
 }
 
-// Plays the best plan. Returns the farm at the end of the episode, or nullopt if the planner
-// refuses the farm.
+// Plays the best plan. Returns the farm at the end of the episode, or nullopt if the plan has too
+// many devices or states. Throws InputError if the planner does not support the scenario.
 std::optional<Farm> PlayBest(Farm farm, std::size_t max_states) {
   const std::size_t most = std::min(max_states, kMaxPlanStates);
   if (farm.scenario().devices.Total() > kMaxPlanDevices ||
@@ -54,7 +54,7 @@ std::optional<Farm> PlayBest(Farm farm, std::size_t max_states) {
     if (!farm.over()) farm.Step(&action);
   }
   const std::uint8_t any = 0;
-  while (!farm.over()) farm.Step(&any);  // a plan ends before the episode if it has no more work
+  while (!farm.over()) farm.Step(&any);  // a plan may end before the episode
   return farm;
 }
 

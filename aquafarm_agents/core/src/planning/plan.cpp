@@ -31,8 +31,9 @@ void Reservations::Add(std::int32_t id, std::int32_t first, const std::vector<st
   for (std::size_t k = 0; k < path.size(); ++k) {
     const std::int32_t step = first + static_cast<std::int32_t>(k);
     taken_[Key(step, path[k])].push_back({id, 0});
-    // Ships move in id order. When a ship with a lower id moves, this ship is still in its previous
-    // cell. When this ship moves, a ship with a higher id must not be in the next cell.
+    // Ships move in id order. When this ship enters a cell, ships with higher ids are still in
+    // their previous cells. When a ship with a lower id moves, this ship is still in its previous
+    // cell.
     taken_[Key(step - 1, path[k])].push_back({id, 1});
     taken_[Key(step + 1, path[k])].push_back({id, -1});
   }

@@ -16,7 +16,6 @@ namespace aquafarm::agents {
 
 /// Status of a device in a plan.
 enum PickupPlan : std::uint8_t { kWaiting, kPaid, kUnpaid, kGone };
-constexpr std::int32_t kFates = 4;
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 // Plans whose returns differ by at most this much count as equal, because rounding may cause such a

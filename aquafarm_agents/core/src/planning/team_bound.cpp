@@ -175,12 +175,12 @@ class Trip {
     const auto here = static_cast<double>(risk(to.y, to.x));
     return here < 0.0 ? Risk(here) : quiet;
   }
-  // Returns the cost of the energy of a step; 0 if a ship can carry several devices.
+  // Returns the cost of the energy of a step; 0 if shares_way_ is set.
   double EnergyCost(double km, std::int32_t aboard, float risk) const {
     return weight_ == 0.0 ? 0.0 : weight_ * EnergyOf(energy_, km, aboard, risk);
   }
-  // Returns the reward of a risk. A ship that fetches several devices on one route pays the risk
-  // once, so the trips ignore it if ships can carry several devices.
+  // Returns the reward of a risk; 0 if shares_way_ is set. A ship that fetches several devices on
+  // one route pays the risk only once.
   double Risk(double here) const { return shares_way_ ? 0.0 : here; }
   void Raise(Cell cell, double value) {
     double& known = next_[Index(cell)];
@@ -193,7 +193,7 @@ class Trip {
   const std::vector<std::int32_t>& to_port_;
   std::size_t site_;
   float health_;
-  bool shares_way_{};
+  bool shares_way_{};  // whether a ship may fetch this device together with others
   EnergyFigures energy_;
   double weight_{0.0};  // reward subtracted per kWh
   double cell_km_{scenario_.cell_size_m / 1000.0};

@@ -6,7 +6,7 @@
 ///   δ_t = r_t + γ V(s_{t+1}) − V(s_t)
 ///   A_t = δ_t + γ λ A_{t+1}
 ///
-///   kContinues      as above; A_{t+1} = 0 at the last step of the rollout
+///   kContinues      these equations; A_{t+1} = 0 at the last step of the rollout
 ///   kTruncated      A_{t+1} = 0; V(s_{t+1}) is the value of the episode's last observation
 ///   kTerminated     A_{t+1} = 0 and V(s_{t+1}) = 0
 ///   kNoTransition   A_t = 0; the sample is excluded from training

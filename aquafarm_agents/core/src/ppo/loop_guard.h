@@ -8,9 +8,10 @@
 ///   situation   cell, load and remaining devices
 ///   loop        a situation occurs for the max_visits-th time since the load or the remaining
 ///               devices changed
-///   exit        until they change again, the ship follows the route to the target with the least
-///               cost (RouteRule), but only while the route has no more risk per step than the
-///               safest cell near the ship. (Under equal risks everywhere the route is taken.)
+///   exit        until the load or the remaining devices change, the ship follows the route to the
+///               target with the least cost (RouteRule), but only while the route has no more risk
+///               per step than the safest cell near the ship. (Under equal risks everywhere the
+///               route is taken.)
 
 #include <cstddef>
 #include <cstdint>

@@ -20,10 +20,10 @@ namespace aquafarm::agents {
 
 /// Trains an ActorCritic on full rollouts, in epochs of shuffled minibatches.
 ///
-/// Each shard divides its own rollout into equal parts, one for each minibatch. Gradients, losses
-/// and statistics of the advantages are added as a binary tree over the shards of all ranks, so the
-/// sums have the same bits for every number of ranks. A shard processes its part of a minibatch in
-/// chunks that fit the processor's cache, and sums their gradients.
+/// Each shard divides its own rollout into nearly equal parts, one for each minibatch. Gradients,
+/// losses and statistics of the advantages are added as a binary tree over the shards of all ranks,
+/// so the sums have the same bits for every number of ranks. A shard processes its part of a
+/// minibatch in chunks that fit the processor's cache, and sums their gradients.
 class PpoUpdater {
  public:
   /// @param network must outlive the updater

@@ -18,8 +18,8 @@ struct Launcher {
   std::array<const char*, 2> job;  ///< identify the job; nullptr: no such variable
 };
 
-// The names of the variables that each launcher sets. SLURM_NTASKS is also set in a batch script
-// outside of srun, SLURM_STEP_NUM_TASKS is not.
+// The names of the variables that each launcher sets. SLURM_NTASKS is not listed, because it is
+// also set in a batch script outside of srun.
 constexpr std::array<Launcher, 4> kLaunchers{{
     {"RANK", "WORLD_SIZE", "LOCAL_WORLD_SIZE", {}},
     {"OMPI_COMM_WORLD_RANK",

@@ -37,7 +37,8 @@ Cell NearestWater(const Grid<std::uint8_t>& water, Cell from) {
   return nearest;
 }
 
-// Returns the cell of the latitude and longitude in a row. Throws InputError if it is not water.
+// Returns the cell of the latitude and longitude in a row. Throws InputError if the position is off
+// the chart or not on water.
 Cell WaterCell(const CsvRow& row, const std::string& name, const RescueCase& rescue) {
   const GeoPoint place{row.Number("latitude", -90.0, 90.0), row.Number("longitude", -180.0, 360.0)};
   const Grid<std::uint8_t>& water = rescue.problem.water;

@@ -53,7 +53,8 @@ std::string AgencyOf(const StormTrack& track) {
   return track.agency;
 }
 
-// Removes fixes and forecasts of later times than the start of the plan.
+// Removes the fixes after the start of the plan and the forecasts issued after it. Throws
+// InputError if no fix is left.
 StormTrack KnownAt(StormTrack track, std::int64_t start, const std::string& path) {
   auto& fixes = track.fixes;
   if (fixes.empty() || fixes.front().time > start) {

@@ -84,7 +84,8 @@ std::vector<std::int32_t> CarriersOf(const FleetState& fleet) {
   return carriers;
 }
 
-// Keeps the devices that are at their sites or aboard ships, and adds notes about the others.
+// Keeps the devices aboard ships, and the deployed devices that are not self-propelled. Adds notes
+// about the others.
 void KeepDevices(const FleetState& fleet, RescueCase& rescue) {
   RescueProblem& problem = rescue.problem;
   const std::vector<std::int32_t> carriers = CarriersOf(fleet);

@@ -59,7 +59,7 @@ RescueProblem OnlyAboard(RescueProblem problem) {
   return problem;
 }
 
-// Returns whether a plan that ignores costs saves anything.
+// Returns whether a plan that ignores costs and risk aversion saves anything.
 bool SavesWithoutCosts(const RescueProblem& problem, const Ensemble& ensemble) {
   RescueProblem without = problem;
   without.energy.reset();
@@ -192,7 +192,8 @@ void AddDevices(const RescueCase& rescue, const PlanReport& report, std::string&
   }
 }
 
-// Adds a warning for each ship that delivers a device aboard with a chance below 50 %.
+// Adds a warning for each ship whose chance to deliver a device aboard is below 50 %, unless the
+// ship already has the warning no_way_home. Removes the ship's note devices_aboard.
 void WarnOfWaysHome(RescueCase& rescue, const PlanReport& report) {
   constexpr double kSafe = 0.5;
   const RescueProblem& problem = rescue.problem;

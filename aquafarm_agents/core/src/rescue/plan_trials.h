@@ -63,7 +63,7 @@ class PlanTrials {
  public:
   /// @param request must name a storm, which the trials replace
   /// @param bulletin_s time between two bulletins of a trial [s]
-  /// @throws InputError as MakeRescueCase
+  /// @throws InputError in the same cases as MakeRescueCase
   PlanTrials(std::shared_ptr<const Scenario> scenario, RescueRequest request,
              std::int64_t bulletin_s = BulletinPeriod({}));
 

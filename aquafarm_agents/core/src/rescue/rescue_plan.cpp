@@ -124,9 +124,9 @@ class TeamSearch {
 // Searches the plan with the smallest objective: the mean loss of the worst members plus cost. This
 // mean equals the max of the weighted mean loss over all weights that sum to 1 and are at most
 // 1 / (share · members) each. The search is fictitious play (Brown 1951, Iterative solution of
-// games by fictitious play). In each round the weights are the average of those of the worst
-// members of the plans of all previous rounds, and the trip search finds the best plans for these
-// weights. Its smallest weighted loss plus cost is a lower bound of the objective of every plan.
+// games by fictitious play). Each round averages the weights of AddTail over the first plan and the
+// best plans of all previous rounds. The trip search then finds the best plans for these weights.
+// The smallest weighted loss plus cost is a lower bound of the objective of every plan.
 // All members get a small additional weight, so that a trip that helps only in other members is
 // also made. The mixed weights are still at most 1 / (share · members) each, so the bound remains
 // valid. Of plans with equal objectives the one with the best mean is taken.

@@ -198,7 +198,7 @@ void DrawWinds(const StormTrack& known, const TrialOptions& options, RandomStrea
 TrialStorm MakeTrial(StormTrack truth, std::int64_t at, const TrialOptions& options, GeoPoint place,
                      RandomStream& rng) {
   TrialStorm trial;
-  // The time of the last fix until `at`, except the last two fixes.
+  // Starts with the last fix that is not after `at`, but never with one of the last two fixes.
   trial.start = truth.fixes.front().time;
   for (std::size_t i = 0; i + 2 < truth.fixes.size(); ++i) {
     if (truth.fixes[i].time <= at) trial.start = truth.fixes[i].time;

@@ -24,14 +24,15 @@ struct TrialOptions {
   ForecastErrors errors;  ///< errors of the bulletins
   /// A track is moved by up to this distance to the north or south, and to the east or west.
   double moved_km{600.0};
-  /// Range of the time from the start of the trial to the closest approach of the unmoved track.
+  /// Range of a drawn time before the closest approach of the unmoved track [h]. The trial starts
+  /// with the last fix that is not after this time, but never with one of the last two fixes.
   double min_lead_h{4.0};
   double max_lead_h{24.0};
   double report_share{0.5};  ///< probability that the bulletins of a trial report radii
   /// true: the true radii differ from EstimateRadius by its spread times errors.scale and
   /// errors.size_factor; false: they equal EstimateRadius.
   bool draws_size{true};
-  double bulletin_h{6.0};  ///< time between two bulletins
+  double bulletin_h{6.0};  ///< time between two bulletins [h]
   /// false: the true winds are those of the recorded track, and the winds of the bulletin differ
   /// from them by errors. A bulletin of weak winds is then more often too low than too high,
   /// because the tracks of the archive have gales near the ranch. true: the true winds after the
@@ -51,8 +52,8 @@ struct TrialStorm {
   /// Later bulletins, TrialOptions::bulletin_h apart, until the storm ends. Each has its own
   /// errors. They report radii if `known` does.
   std::vector<StormTrack> later;
-  double lead_h{};      ///< time from `start` to the closest approach of `truth`
-  double nearest_km{};  ///< distance of the closest approach of `truth`
+  double lead_h{};      ///< time from `start` to the closest approach of `truth` [h]
+  double nearest_km{};  ///< distance of the closest approach of `truth` [km]
   /// Seed of the plan's ensemble. If all trials had the same seed, the sampling error of the same
   /// members would occur in all of them and look like a bias of the chances.
   std::uint64_t seed{};

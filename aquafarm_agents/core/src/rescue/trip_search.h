@@ -33,7 +33,7 @@ struct TripPlan {
 struct TripTable {
   /// By set of delivered devices: plans by decreasing net value.
   std::map<DeviceSet, std::vector<TripPlan>> plans;
-  bool is_exhaustive{true};  ///< whether the search considered all sequences
+  bool is_exhaustive{true};  ///< false if the search dropped sequences to limit their number
 };
 
 /// Returns the best plans of a ship.

@@ -60,7 +60,7 @@ class Changes {
   RescuePlan Plan(const RescueProblem& changed) const {
     return PlanRescue(changed, ensemble_, kAverseRoundsToCompare);
   }
-  // As Plan, for changes that only add or remove ships.
+  // Does the same as Plan, for changes that only add or remove ships.
   RescuePlan PlanShips(const RescueProblem& changed) {
     return PlanRescue(changed, ensemble_, kAverseRoundsToCompare, cache_);
   }
@@ -86,8 +86,8 @@ class Changes {
     rows_.push_back(row);
   }
 
-  // Returns the ship to add: a copy of the first ship without devices aboard, or of the first ship,
-  // without its devices and not ready before depart_s.
+  // Returns the ship to add: a copy of the first ship without devices aboard. If each ship has
+  // devices aboard, returns a copy of the first ship without them, ready at depart_s or later.
   RescueShip OneMore() const {
     const auto is_empty = [](const RescueShip& ship) { return ship.aboard.empty(); };
     const auto& ships = problem_.ships;

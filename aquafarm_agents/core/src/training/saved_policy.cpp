@@ -43,7 +43,8 @@ SavedPolicy FindPolicy(const std::string& where) {
   if (where == kGeneralist) {
     saved.checkpoint = ReadCheckpoint(GeneralistPath());
     saved.observation_types = ObservationTypesOf(saved.checkpoint);
-    // MakePolicy compares the names of its features, so it fits every version with these features.
+    // MakePolicy compares the names of the features, so the generalist fits every version with
+    // these features.
     saved.checkpoint.version.clear();
     return saved;
   }
@@ -81,7 +82,7 @@ SavedPolicy FindPolicy(const std::string& where) {
 
 std::unique_ptr<Policy> MakePolicy(const SavedPolicy& saved, const EnvironmentSpec& spec) {
   if (saved.process != nullptr) return MakePythonPolicy(saved.process, spec);
-  const std::string& version = saved.checkpoint.version;  // empty for policies that do not learn
+  const std::string& version = saved.checkpoint.version;  // empty: any version fits
   if (!version.empty() && version != spec.version) {
     throw InputError(saved.path + ": was trained by aquafarm " + version + ", expected " +
                      spec.version +

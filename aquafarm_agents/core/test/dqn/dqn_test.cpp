@@ -47,8 +47,8 @@ Progress Learn(const std::string& algorithm, const std::string& options, std::ui
   return progress;
 }
 
-/// The last bits of a training depend on the BLAS, and a short one fails now and then. Of two seeds
-/// one must succeed.
+/// The last bits of a training depend on the BLAS, and a short training fails sometimes. One of two
+/// seeds must succeed.
 void ExpectSolves(const std::string& algorithm, const std::string& options, std::uint64_t steps) {
   Progress progress;
   for (const std::uint64_t seed : {1, 2}) {
@@ -171,7 +171,7 @@ float GapOf(std::uint64_t seed, const std::string& algorithm, const std::string&
   return (best[0][0] - best[0][1]).item<float>();
 }
 
-// Mean of some trainings: the last bits of one depend on the BLAS, and so does its gap.
+// Mean of some trainings: the last bits of a training depend on the BLAS, and so does its gap.
 float Gap(const std::string& algorithm, const std::string& options, std::uint64_t steps,
           std::uint64_t trainings) {
   float sum = 0.0F;

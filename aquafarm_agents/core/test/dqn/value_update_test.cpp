@@ -149,7 +149,7 @@ Batch Draw(const Update& update, std::size_t steps, std::size_t group) {
   return batch;
 }
 
-/// One weighted term of a loss: (y − Σ Q(s, a))² of a sample.
+/// One term of a loss: a sample's target y, and the weight of the loss of Σ Q(s, a) − y.
 struct Term {
   double target{};
   double weight{};
@@ -403,7 +403,7 @@ Run RunOf(const Update& update, const TransitionIndex& moment) {
   while (moment.age - run.warm_from < burn_in && !update.IsStarted(run.warm_from, run.slot)) {
     --run.warm_from;
   }
-  // Near the start of its episode a sequence begins there, with a zero state.
+  // A sequence near the start of its episode begins at that start, with a zero state.
   if (update.IsStarted(run.warm_from, run.slot)) run.first = run.warm_from;
   run.last = run.first;
   while (run.last - run.first < static_cast<std::size_t>(update.options.sequence_length) &&

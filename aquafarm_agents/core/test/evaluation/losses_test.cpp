@@ -107,7 +107,7 @@ TEST(Losses, IntervalsContainTheTruthAlmostAsOftenAsTheySay) {
   EXPECT_GE(with_cvar, 78);  // percentile intervals of 20 losses in the tail are somewhat short
 }
 
-// Each start repeated ten times is as uncertain as the starts alone.
+// Ten equal episodes of each start are as uncertain as one episode of each.
 TEST(Losses, RepeatedStartsMakeNothingMoreCertain) {
   RandomStream rng({7, 0, RngStream::kExploration, 3});
   std::vector<Cents> once(60);

@@ -14,7 +14,7 @@
 namespace aquafarm::agents::test {
 namespace {
 
-// Without damage and disasters, so that rewards depend on state and action alone.
+// The tiny farm without damage and disasters: rewards depend on state and action alone.
 Scenario Quiet() {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = 1000;
@@ -32,7 +32,7 @@ std::vector<float> Table(const Scenario& scenario) {
 TEST(TabularModel, HasEachStateThatAFarmCanBeIn) {
   const Scenario scenario = Quiet();
   const TabularModel model(scenario);
-  // 20 free cells (25 less 4 of an island and a rock), the device deployed or aboard.
+  // 20 free cells (25 less an island of 4 and a rock), the device deployed or aboard.
   EXPECT_EQ(model.states().size(), 40U);
   EXPECT_EQ(model.rows(), 41U);
 }
@@ -155,7 +155,7 @@ TEST(OptimalValues, AreThoseOfTheBestPlanFromEachCell) {
   EXPECT_EQ(compared, 20);
 }
 
-// The best of all action sequences of a length that later rewards hardly count after.
+// Brute force: the best of all action sequences that are so long that later rewards hardly count.
 TEST(OptimalValues, AreThoseOfBruteForceWithADiscount) {
   const Scenario scenario = Quiet();
   const TabularModel model(scenario);

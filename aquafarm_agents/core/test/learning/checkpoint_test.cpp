@@ -50,7 +50,7 @@ TEST_F(CheckpointFile, ReadsBackToTheSame) {
   EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
 }
 
-// Its options are those of a version that had no other LSTM.
+// The options are those of a version whose LSTM always had the skip connection.
 TEST_F(CheckpointFile, OfAnLstmDqnFromBeforeHasTheSkipConnection) {
   const std::string path = folder_ + "/a.ckpt";
   Checkpoint old = Example();
@@ -198,7 +198,7 @@ TEST(SavedNumbers, OfARandomStreamAreItsDraws) {
   EXPECT_EQ(loaded.Next(), saved.Next());
 }
 
-// A stranger's file with a correct checksum; the parser must not use up the stack.
+// An untrusted file can have a correct checksum; the parser must not use up the stack.
 TEST_F(CheckpointFile, AnIndexThatNestsAMillionDeepIsRefused) {
   const std::string path = folder_ + "/deep.ckpt";
   WriteCheckpoint(path, Example());

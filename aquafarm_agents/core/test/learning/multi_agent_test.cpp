@@ -83,15 +83,15 @@ const std::string kActors =
     "hidden_size=";
 
 TEST(TwoShips, AreLedHomeByActorsWithACriticThatSeesAll) {
-  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 24000, TwoShips()), 0.98);
 }
 
 TEST(TwoShips, AreLedHomeByActorsThatReceiveOnlyTheTeamReward) {
-  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, TwoShips(), /*credit=*/0), 0.98);
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 24000, TwoShips(), /*credit=*/0), 0.98);
 }
 
 TEST(TwoShips, AreLedHomeByActorsThatRemember) {
-  EXPECT_GE(SuccessAfter("maddpg", kActors + "32 recurrent=true window=3 batch_size=32", 32000,
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "32 recurrent=true window=3 batch_size=32", 24000,
                          TwoShips()),
             0.98);
 }
@@ -104,7 +104,7 @@ TEST(TwoShips, AreLedHomeByActorsAsPrinted) {
       "best_response=false "
       "priority_exponent=0 shared=false mask_blocked=false "
       "exploration=epsilon_greedy:linear:1:0.05:0.5";
-  EXPECT_GE(SuccessAfter("maddpg", kPrinted, 40000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("maddpg", kPrinted, 24000, TwoShips()), 0.98);
 }
 
 const std::string kTogether =
@@ -179,10 +179,10 @@ TEST(SmartDevices, AreLedHomeByOnePolicyWithAValueThatSeesAll) {
 
 // Agents that are delivered early are done. The values of the others must not depend on them.
 TEST(SmartDevices, AreLedHomeByActorsWithOwnRewardsOrTheTeams) {
-  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, SmartDevices()), 0.98);
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 24000, SmartDevices()), 0.98);
   Scenario team = SmartDevices();
   team.rewards.sharing = RewardSharing::kTeam;
-  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, team, /*credit=*/0), 0.98);
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 32000, team, /*credit=*/0), 0.98);
 }
 
 TEST(DoneAgents, LearnNothingMoreFromATable) {

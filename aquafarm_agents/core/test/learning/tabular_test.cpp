@@ -54,7 +54,7 @@ TEST(Tabular, TheStartOfAnEpisodeIsNotATransition) {
   EXPECT_EQ(learner.table().values, before);
 }
 
-/// Literal implementation of Eq. 12 and 14, one entry at a time.
+/// Literal implementation of Eqs. 12 and 14, one entry at a time.
 struct Oracle {
   std::vector<float> q;
   float alpha;
@@ -209,7 +209,7 @@ std::vector<float> TableOfRandom(Environment& environment, std::uint64_t steps) 
   return learner.table().values;
 }
 
-// The mean value of a table's entries that all tables know, of states with nothing aboard.
+// The mean of a table's values over `known`, the entries that all tables have learnt.
 double MeanValue(const std::vector<float>& values, const std::vector<std::size_t>& known) {
   double sum = 0.0;
   for (const std::size_t entry : known) sum += static_cast<double>(values[entry]);
@@ -217,7 +217,8 @@ double MeanValue(const std::vector<float>& values, const std::vector<std::size_t
 }
 
 // `paper` is the same farm, where no episode is truncated. A learner that bootstraps at truncation
-// finds its values; one that takes truncation for an end thinks that the future costs less.
+// finds the values of `paper`; one that takes truncation for an end expects a future that costs
+// less.
 TEST(Truncated, BootstrappingFindsTheValuesOfEpisodesThatAreNotCutOff) {
   constexpr std::uint64_t kSteps = 3000000;
   constexpr std::size_t kNothingAboard = std::size_t{25} * 25 * kActionCount;

@@ -121,7 +121,7 @@ TEST(FusedLstm, AStateOfOtherRowsIsRefused) {
   EXPECT_THROW(network.Forward(NoiseTensor({6, kRows, kFeatures}, 1), state), LogicError);
 }
 
-// What later steps of a loss do not read has no slope.
+// The loss reads the state only, so the outputs have no gradient.
 TEST(FusedLstm, ALossOfTheStateAloneHasAGradient) {
   RecurrentNetwork fused(kFeatures, kHidden, true);
   RecurrentNetwork expected(kFeatures, kHidden, true);

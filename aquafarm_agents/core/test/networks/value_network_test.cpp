@@ -17,7 +17,7 @@ std::atomic<bool> counts{false};
 std::atomic<int> allocations{0};
 }  // namespace
 
-// Inlined into each other, GCC takes them for mismatched functions.
+// Not inlined: GCC would warn of mismatched functions.
 __attribute__((noinline)) void* operator new(std::size_t size) {
   if (counts) ++allocations;
   if (void* const memory = std::malloc(size)) return memory;
@@ -61,7 +61,7 @@ torch::Tensor GradientOf(const torch::nn::Module& module) {
   return torch::cat(all);
 }
 
-// `learnt` of `rows` rows are differentiated.
+// The first `learnt` of `rows` rows are differentiated.
 template <typename Make>
 void ExpectMlp(const DeepOptions& options, std::size_t rows, std::size_t learnt, const Make& make) {
   const auto module = MakeNetwork(SmallSpec(), options, 3);

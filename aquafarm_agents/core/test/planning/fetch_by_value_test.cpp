@@ -89,7 +89,7 @@ TEST(FetchByValue, LoadsSeveralDevicesBeforeItReturns) {
   EXPECT_EQ(farm.step(), 8 + 3 + 8 + 1);
 }
 
-// Ships of one channel meet head on: the one with the higher id makes way.
+// Two ships meet head on in a channel: the one with the higher id makes way.
 TEST(FetchByValue, ShipsMakeWayInAChannel) {
   Scenario scenario = Row();
   scenario.ships.count = 2;

@@ -187,7 +187,7 @@ TEST(Foresight, IsTheTrackOrTheForecastOrTheHeading) {
   EXPECT_NEAR(straight[1], 1.0F, 1e-3F);
   tracked.disasters[0].forecasts = {{0.0F, {{20.0F, 9.0F, 8.0F}}}};
   const auto said = place(tracked, Foresight::kPersistence);
-  // As the authority said at step 20, then on as it moves now, at half a cell in a step.
+  // Where the authority said for step 20, then onward as it moves now, half a cell in each step.
   EXPECT_NEAR(said[0], 9.0F + 10.0F * 0.5F, 1e-3F);
   EXPECT_NEAR(said[1], 8.0F, 1e-3F);
   EXPECT_EQ(place(tracked, Foresight::kOracle), (std::array<float, 2>{2.0F, 5.0F}));
@@ -224,7 +224,7 @@ TEST(Foresight, MovingOneForecastPointChangesThePlanAndNotTheTruth) {
   EXPECT_LT(wary.expected_return, calm.expected_return);
   EXPECT_EQ(planner.Solve(away, Foresight::kOracle).actions,
             planner.Solve(near, Foresight::kOracle).actions);
-  // The plan goes round the forecast rings: at no step is it in them.
+  // The plan goes round the forecast rings: the ship is in them at no step.
   std::vector<Disaster> told = near.disasters();
   const std::vector<Track> tracks = Foresee(near, Foresight::kPersistence, told);
   for (const std::uint8_t action : wary.actions) {
@@ -314,7 +314,7 @@ TEST(RiskField, OfTheMeanGivesTheBestFixedPlanOfAnEnsemble) {
     tiny.damage.crash_probability = 1.0F;  // all members crash alike
     const auto scenario = std::make_shared<const Scenario>(tiny);
     std::vector<Farm> members = Members(scenario, 3);
-    // One start, as the start port of an episode is drawn; the tiny farm has one port.
+    // All members start alike: the start port of an episode is drawn, but this farm has one port.
     std::vector<RiskLayers> mean = FutureOf(members[0]);
     for (std::size_t i = 1; i < members.size(); ++i) {
       const std::vector<RiskLayers> more = FutureOf(members[i]);

@@ -20,7 +20,7 @@ constexpr double kAnswer = 2.0;
 constexpr double kWork = 60.0;
 constexpr milliseconds kSlow{4000};
 
-/// What a rank has at its end: its sum, or the line with which it was lost.
+/// What a rank ends with: its sum, or the message of the error that ended it.
 struct Result {
   float sum{};
   std::string lost;
@@ -78,7 +78,7 @@ TEST(ProcessGroup, TheWorkOfRank0MayTakeLongerThanAnExchange) {
   EXPECT_EQ(one.sum, 3.0F);
 }
 
-// Rank 0 then writes several times to a connection that is closed, which may not end it by SIGPIPE.
+// Rank 0 then writes several times to a closed connection; SIGPIPE must not end it.
 TEST(ProcessGroup, WithoutItTheOtherRankGivesUpAndRank0ReportsIt) {
   const auto [zero, one] = PlayTwoRanks([&](ProcessGroup& group) {
     if (group.rank() == 0) std::this_thread::sleep_for(kSlow);

@@ -16,7 +16,7 @@ namespace aquafarm::agents::test {
 namespace {
 
 constexpr int kRankLost = 6;  // exit code
-// Limits [s]. Issue 27 wants 30 s for a stop on an idle machine; a busy one needs longer to start
+// Limits [s]. Issue 27 allows 30 s for a stop on an idle machine; a busy one needs longer to start
 // several processes with libtorch.
 constexpr double kStopped = 180.0;
 constexpr double kEnded = 600.0;
@@ -65,7 +65,8 @@ class Ranks : public FolderTest {
           << file << " of " << a << " and " << b << " differ";
     }
   }
-  /// Resumes "parts" and trains "whole" from the beginning, with one limit above that of "parts".
+  /// Resumes "parts" and trains "whole" from the beginning, both up to a limit that "parts" has not
+  /// reached yet.
   void ExpectThatPartsEndLikeAWhole(const Words& options) {
     ASSERT_NE(Newest("parts"), "");
     steps_ = std::to_string(ReadCheckpoint(Newest("parts")).steps + 5000);

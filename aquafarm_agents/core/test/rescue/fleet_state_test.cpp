@@ -17,7 +17,7 @@ namespace {
 
 using test::kScenarios;
 
-// Three squads' worth of state on the ranch off Zhoushan, with In-Fa as recorded.
+// The state of two ships and all devices of the ranch off Zhoushan, with In-Fa as recorded.
 class Fleet : public ::testing::Test {
  protected:
   Fleet() {

@@ -116,7 +116,7 @@ TEST_F(Trials, WeakBulletinsAreTooLowUnlessTheTruthIsDrawnAboutThem) {
   EXPECT_LT(std::abs(WindsAbove(tracks_, place, options)), 0.8);
 }
 
-// The short form of the experiments in docs/results/rescue_plans.md.
+// A short form of the experiments in docs/results/rescue_plans.md.
 TEST_F(Trials, ChancesAreKeptAndThePlanIsWorthItsName) {
   const PlanTrials trials = Make(1.0, 1);
   std::vector<std::vector<Promise>> home;

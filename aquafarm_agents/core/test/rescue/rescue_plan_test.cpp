@@ -35,7 +35,7 @@ bool Works(const RescueProblem& problem, const Ensemble& ensemble, const ShipRou
   return true;
 }
 
-// Another computation of odds and losses: each member by itself, from the path alone.
+// Computes odds and losses in another way: for each member by itself, from the path alone.
 TEST_F(Rescue, OddsAndLossesAreThoseOfFollowingThePathInEachMember) {
   problem_.devices[0].damage_factor = 0.5;
   problem_.devices[1].damage_factor = 1.5;
@@ -181,7 +181,7 @@ TEST_F(Rescue, AShipWithADeviceAboardIsNeverWithoutAnOrder) {
   }
 }
 
-// The ships at sea are ready at once; one that is added is ready when the request says.
+// The ships at sea are ready at once; an added ship is ready at `depart_s`.
 TEST_F(Rescue, AnAddedShipLeavesWithTheShipsInPort) {
   problem_.ships.resize(1);
   problem_.ships[0].cell = problem_.devices[0].cell;

@@ -157,7 +157,7 @@ TEST_F(SavedPolicies, OfPpoReadNoStatesAlsoIfAPlannerWasTheTeacher) {
   EXPECT_EQ(MakePolicy(saved, environment.spec())->observation_types(), kFeaturesBit);
 }
 
-// Each sentence of the caption of Fig. 6, with each kind of reward sharing.
+// Checks each sentence of the caption of Fig. 6, with each kind of reward sharing.
 TEST(Algorithms, AutoChoosesAsFig6Does) {
   const auto choose = [](Scenario scenario) {
     return ChooseAlgorithm(LocalEnvironment(Share(std::move(scenario)), {}).spec());

@@ -81,7 +81,7 @@ std::unique_ptr<Learner> MakeExpectedSarsa(const Chain& chain, const std::string
   return ExpectedSarsas(AQUAFARM_EXPECTED_SARSA).at(0).make(chain.spec, 1, options);
 }
 
-// The value of the state before one whose best action has the value 4 and the others 0.
+// The value of the action that leads to a state whose best action has the value 4, the others 0.
 float ValueBefore(const std::string& mask_illegal, ActionMask legal) {
   Chain chain;
   const auto learner =

@@ -21,7 +21,7 @@ class Resume : public FolderTest {
     TrainerOptions options;
     options.algorithm = algorithm;
     options.seed = 4;
-    options.steps = episodes == 0 ? 40000 : 0;
+    options.steps = episodes == 0 ? 6000 : 0;
     options.episodes = episodes;
     options.checkpoint_period_s = 0.0;  // at every check of the clock
     options.progress_period_s = 0.0;
@@ -106,9 +106,9 @@ TEST_F(Resume, StoppedInProcessEqualsNeverStopped) {
 }
 
 TEST_F(Resume, WorksForLimitsByEpisodes) {
-  EXPECT_EQ(TrainInProcess("whole", "sarsa", false, 0, 200), TrainingEnd::kDone);
-  EXPECT_EQ(TrainInProcess("parts", "sarsa", false, 50, 200), TrainingEnd::kInterrupted);
-  EXPECT_EQ(TrainInProcess("parts", "sarsa", true, 0, 200), TrainingEnd::kDone);
+  EXPECT_EQ(TrainInProcess("whole", "sarsa", false, 0, 60), TrainingEnd::kDone);
+  EXPECT_EQ(TrainInProcess("parts", "sarsa", false, 50, 60), TrainingEnd::kInterrupted);
+  EXPECT_EQ(TrainInProcess("parts", "sarsa", true, 0, 60), TrainingEnd::kDone);
   ExpectSameRuns("whole", "parts");
 }
 
@@ -139,7 +139,7 @@ TEST_F(Resume, CtrlCSavesAndResumes) {
   EXPECT_EQ(rest.Wait(), 0) << ReadFile(Output("rest"));
 }
 
-// As the kernel sends to the programs of a benchmark that is killed, for each of its threads.
+// When a benchmark is killed, the kernel sends its programs a signal for each of its threads.
 TEST_F(Resume, SignalsInQuickSuccessionAreOne) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const std::string run = "q_learning." + std::to_string(signal);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Compares a recorded bag with a saved policy. The policy is queried for its actions at every
-/// state of the bag in which the episode has not ended:
+/// Compares a recorded bag with a saved policy. The recorded episodes are simulated again. The
+/// policy chooses its actions in each recorded state in which the episode is running:
 ///
 ///   spec ----> scenario, seed, episode --> farm --> the same hash as state k? --> policy
 ///   state k -> recorded actions --> does the policy agree? --> the farm takes the step
@@ -20,33 +20,37 @@ namespace aquafarm_agents {
 struct EpisodeChoices {
   std::uint64_t seed{};
   std::uint64_t episode{};
-  std::uint64_t steps{};    ///< step of the last compared state
-  std::uint64_t choices{};  ///< number of recorded actions of active ships
-  std::uint64_t agreed{};   ///< number of these actions that the policy chooses, too
-  float value_at_start{};   ///< V_π summed over ships; NaN if the policy has no values
-  double mean_value{};      ///< mean over all states of V_π summed over ships; NaN if undefined
-  float episode_return{};   ///< return of the recording up to `steps`
+  std::uint64_t steps{};    ///< step of the last simulated state
+  std::uint64_t choices{};  ///< number of recorded actions of active agents
+  std::uint64_t agreed{};   ///< number of these actions that the policy also chooses
+  float value_at_start{};   ///< sum over agents of V_π in the first compared state; NaN: no V_π
+  double mean_value{};      ///< mean of this sum over the compared states; NaN: no V_π
+  float episode_return{};   ///< return of the episode up to step `steps`
 };
 
+/// Comparison of a bag with the policy.
 struct BagChoices {
-  std::vector<EpisodeChoices> episodes;
+  std::vector<EpisodeChoices> episodes;  ///< in the order of the bag
   /// First difference between the recording and its simulation; empty if there is none. The
-  /// comparison ends there, and no output is written.
+  /// comparison ends at the difference, and no output is written.
   std::string difference;
-  std::string no_maps;  ///< reason why requested value maps are missing; empty if none is missing
+  std::string no_maps;  ///< why requested value maps are missing; empty if they are not missing
 };
 
 struct BagPolicyOptions {
-  std::string ns;  ///< namespace of the ranch; empty: the only one in the bag
-  /// Bag to write: a copy with the topics choice, values and values/points; empty: no output.
+  std::string ns;  ///< namespace of the ranch; empty: the bag must contain exactly one ranch
+  /// Path of the output, a copy of the bag with new messages on the topics choice, values and
+  /// values/points. They replace earlier messages on these topics. Empty: no output.
   std::string output;
-  std::uint64_t values_every{10};     ///< steps between two value maps in the output; 0: no maps
-  std::set<std::uint64_t> values_at;  ///< steps with a value map; empty: use values_every
+  /// The output has value maps at the multiples of this number of steps; 0: no maps.
+  std::uint64_t values_every{10};
+  std::set<std::uint64_t> values_at;  ///< steps with a value map; empty: values_every selects them
 };
 
 /// Compares a bag with a policy.
 /// @param bag path of the bag
-/// @throws aquafarm::InputError if the bag or the policy cannot be used
+/// @throws aquafarm::InputError if the bag or the policy cannot be used, or if the output is the
+///         input
 /// @throws aquafarm::agents::StorageError if the output cannot be written
 BagChoices AskAlong(const std::string& bag, const aquafarm::agents::SavedPolicy& policy,
                     const BagPolicyOptions& options);

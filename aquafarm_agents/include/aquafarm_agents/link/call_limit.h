@@ -13,26 +13,28 @@
 
 namespace aquafarm_agents {
 
-inline constexpr double kRetryPeriod_s = 0.1;  ///< between attempts to reach a sim node
+inline constexpr double kRetryPeriod_s = 0.1;  ///< pause between two attempts of a call
 
 /// Runs a task in a separate thread and waits for its end. If the task does not end within
-/// 0.2 s · `looks`, prints a line to standard error and ends the process with ExitCode::kLost.
+/// 0.2 s · `looks`, reports a deadlock of roscpp on standard error and ends the process with
+/// ExitCode::kLost.
 void EndUnlessDone(const std::function<void()>& task, int looks);
 
-/// Calls services with a timeout, because the calls of roscpp have none. A call that exceeds the
-/// limit is aborted and returns false. If roscpp cannot abort it, the process ends (EndUnlessDone).
-/// Calls must not overlap.
+/// Calls services with a timeout, because the calls of roscpp have no timeout. A call that exceeds
+/// the limit is aborted. If roscpp does not abort the call within 15 s, the process ends
+/// (EndUnlessDone). Calls must not overlap.
 class CallLimit {
  public:
+  /// @param limit_s max duration of a call
   explicit CallLimit(double limit_s);
   ~CallLimit();
   CallLimit(const CallLimit&) = delete;
   CallLimit& operator=(const CallLimit&) = delete;
 
+  /// Calls a service. If the call fails, shuts down the client, because roscpp sometimes reports a
+  /// dropped connection as valid. The caller must then create the client again.
   /// @returns false if there was no readable response, for example because the service is gone or
-  ///          the limit is exceeded.
-  ///          The client is then shut down and must be created again. It is shut down because
-  ///          roscpp sometimes reports a dropped connection as valid.
+  ///          the limit is exceeded
   template <typename Service>
   bool Call(ros::ServiceClient& client, Service& service) {
     Arm(client);

@@ -23,31 +23,37 @@
 namespace aquafarm_agents {
 
 struct RosEnvironmentOptions {
-  std::int32_t farms{};  ///< 0: all farms of the sim node
-  /// The share of all farms that this environment has. Its farms play the same episodes as in an
-  /// environment with all farms, and Load reads their part of the saved state of all farms. If its
-  /// total is 0, this environment has all farms.
+  /// Number of farms; 0: all farms of the sim node. If the sim node has another number, the
+  /// constructor resets it to this number.
+  std::int32_t farms{};
+  /// Which of all farms this environment has, if several environments divide the farms. The farms
+  /// play the same episodes as in an environment with all farms. Load expects the saved bytes of
+  /// all farms. share.total = 0: this environment has all farms.
   aquafarm::agents::FarmShare share;
-  std::uint8_t observation_types{aquafarm::agents::kIndexBit};
-  bool hashes{};
+  std::uint8_t observation_types{aquafarm::agents::kIndexBit};  ///< mask of ObservationTypeBits
+  bool hashes{};                    ///< whether the results contain state hashes
   double wait_limit_s{20.0};        ///< max wait for the sim node to start or to return
   double call_limit_s{30.0};        ///< max duration of one call
-  double pause_limit_s{3600.0};     ///< max wait while the farms are paused, paced or claimed
-  const std::atomic<bool>* stop{};  ///< ends all waits if true; null if they cannot be ended
+  double pause_limit_s{3600.0};     ///< max wait of Step for paused, paced or claimed farms
+  const std::atomic<bool>* stop{};  ///< ends all waits if true; null: they cannot be stopped
   /// Called with a line of text when the environment waits for the sim node or restarts the farms.
   std::function<void(const std::string&)> on_notice;
 };
 
-/// The farms of a sim node, used through its services over persistent connections. A lost call is
-/// repeated with the same request id, so that no farm steps twice. If another client has stepped,
-/// reset or loaded the farms, or the sim node was restarted, Step resets the farms to new episodes
-/// of the same seed, and ConsumeRestart() then returns true. Every call throws EnvironmentLost if
-/// the sim node does not respond within the limits, and Step also after more than 20 such restarts
-/// without the end of an episode.
+/// The farms of a sim node, used through its services over persistent connections. A lost step or
+/// reset is repeated with the same request id, so that the sim node executes it only once.
+///
+/// Another client may step, reset or load the farms, and the sim node may restart. The next Step
+/// then resets the farms to new episodes of the same seed, and ConsumeRestart() returns true once.
+///
+/// Reset, Step, Save and Load throw EnvironmentLost if the sim node does not respond within the
+/// limits, or if `stop` ends a wait. Step also throws it at the 21st such reset without the end of
+/// an episode. Reset and Load throw InputError if the sim node refuses the request.
 class RosEnvironment final : public aquafarm::agents::Environment {
  public:
   /// Waits for the sim node.
-  /// @throws InputError if the sim node's farms do not support the options, or run paced
+  /// @throws InputError if the sim node's farms do not support the options or run paced
+  /// @throws EnvironmentLost in the same cases as Reset
   RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOptions options);
 
   const aquafarm::agents::EnvironmentSpec& spec() const override { return spec_; }
@@ -59,8 +65,8 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   bool ConsumeRestart() override;
 
  private:
-  /// Opens a connection. The constructor opens all of them, because a restarted master does not
-  /// know the services of the sim node, while open connections remain usable.
+  /// Opens a connection. The constructor opens the connections to all services: if the master
+  /// restarts later, it does not know these services, but open connections remain usable.
   template <typename Service>
   void Connect(ros::ServiceClient& client, const std::string& name);
   template <typename Service>
@@ -101,7 +107,8 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   std::uint64_t state_id_{};  // of the last result
   std::uint64_t seed_{};
   std::uint64_t next_episode_{};  // greater than the index of every started episode
-  std::uint64_t offset_{};        // farm i of all plays episodes offset_ + i + k * share_.total
+  // Farm i of all farms plays the episodes offset_ + i + k * share_.total, k = 0, 1, …
+  std::uint64_t offset_{};
 };
 
 }  // namespace aquafarm_agents

@@ -18,10 +18,9 @@ class ServiceLink {
  public:
   inline static constexpr double kCallLimit_s = 30.0;
 
-  /// @param wait_limit_s max wait for a response after the first attempt failed
-  /// @param stop ends Call if true, for example set by a signal handler; null if calls cannot be
-  ///        stopped
-  /// @param call_limit_s max wait for the response to one attempt
+  /// @param wait_limit_s max time for which a failed call is repeated
+  /// @param stop if true, Call makes no further attempt; null: calls cannot be stopped
+  /// @param call_limit_s max duration of one attempt
   ServiceLink(ros::NodeHandle node, double wait_limit_s, const std::atomic<bool>* stop,
               double call_limit_s = kCallLimit_s)
       : node_(std::move(node)),
@@ -31,7 +30,7 @@ class ServiceLink {
         limit_(call_limit_s) {}
 
   /// Calls the service, and repeats the call until the service responds.
-  /// @throws EnvironmentLost if there is no response within the limit, or the call was stopped
+  /// @throws EnvironmentLost if there is no response within the limit, or if the call is stopped
   template <typename Service>
   void Call(const std::string& name, Service& service) {
     ros::WallTime lost_since;
@@ -60,7 +59,7 @@ class ServiceLink {
   ros::ServiceClient client_;
 };
 
-/// Timeout of a ship's command, which may wait for the commands of the other ships.
+/// Returns the timeout of a ship's command, which may wait for the commands of the other ships.
 inline double CommandLimit_s(double barrier_timeout_s) {
   return barrier_timeout_s + ServiceLink::kCallLimit_s;
 }

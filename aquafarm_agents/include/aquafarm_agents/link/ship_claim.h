@@ -11,12 +11,15 @@
 
 namespace aquafarm_agents {
 
-/// Claims a ship for this node. The destructor releases the ship.
+/// Claims a ship for this node. The destructor releases the ship. If the sim node does not respond
+/// to the release, the claim expires after claim_timeout_s (parameter of the sim node).
 class ShipClaim {
  public:
   /// @param wait_limit_s max wait for the sim node
+  /// @param stop ends the wait if true; null: it cannot be stopped
   /// @throws InputError if another node has claimed the ship
-  /// @throws EnvironmentLost if the sim node does not respond within the limit
+  /// @throws EnvironmentLost if the sim node does not respond within the limit, or if the wait is
+  ///         stopped
   ShipClaim(ros::NodeHandle node, std::int32_t ship, double wait_limit_s,
             const std::atomic<bool>* stop);
   ~ShipClaim();
@@ -24,8 +27,8 @@ class ShipClaim {
   ShipClaim& operator=(const ShipClaim&) = delete;
 
   /// Renews the claim if the last renewal is at least 3 s old. A renewal also checks that the sim
-  /// node is running. Must be called repeatedly while the node sends no commands. Commands also
-  /// renew the claim.
+  /// node is running. The node must call this function repeatedly while it sends no commands,
+  /// because only commands and renewals keep the claim.
   /// @throws InputError, EnvironmentLost as the constructor
   void RenewWhenDue();
 

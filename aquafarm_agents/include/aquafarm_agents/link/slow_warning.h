@@ -9,8 +9,8 @@
 
 namespace aquafarm_agents {
 
-/// Logs a warning at most once per 5 s of wall time. ROS_WARN_THROTTLE is not used, because it
-/// counts ROS time, which stops with the farm. Thread-safe.
+/// Logs warnings at most once per 5 s of wall time and drops the others. ROS_WARN_THROTTLE is not
+/// used, because it counts ROS time, which may stand still. Thread-safe.
 class SlowWarning {
  public:
   void Say(const std::string& text) {

@@ -3,18 +3,19 @@
 
 namespace aquafarm_agents {
 
-/// Trains a learner through the services of a ranch. Publishes the progress on `training` and
-/// prints a summary. Private parameters configure the run.
+/// Trains a learner on the farms of a sim node. Publishes the progress on the topic `training`,
+/// writes a run folder and prints a summary. Private parameters configure the run.
 /// @returns an ExitCode
 int RunTrainNode();
 
-/// Plays a policy through the services of a ranch: evaluates it, or drives ships.
+/// Evaluates a policy on the farms of a sim node, or drives the ships of a running ranch with it.
 /// @returns an ExitCode
 int RunPolicyNode();
 
-/// Plans the rescue of a ranch's devices, and plans again when a bulletin, another input file or
-/// the state of the ranch changes. Publishes `plan`, a path for each ship, markers, a chart and a
-/// heartbeat. A separate thread makes the plans.
+/// Plans the rescue of a ranch's devices. Plans again when a bulletin, another input file or the
+/// state of the ranch changes. A plan without a running ranch is also made again periodically.
+/// Publishes the plan, a path for each ship, markers, a chart and a heartbeat. A separate thread
+/// makes the plans.
 /// @returns an ExitCode
 int RunPlanNode();
 

@@ -7,7 +7,8 @@
 
 namespace aquafarm_agents {
 
-/// Prints the error that ends a node to standard error. @returns `code` as the exit code of main
+/// Prints "node: what" to standard error when a node ends with an error.
+/// @returns `code` as the exit code of main
 inline int Refuse(const char* node, aquafarm::agents::ExitCode code, const char* what) {
   std::fprintf(stderr, "%s: %s\n", node, what);
   return static_cast<int>(code);

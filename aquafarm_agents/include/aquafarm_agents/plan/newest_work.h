@@ -30,7 +30,7 @@ class NewestWork {
       : work_(std::move(work)), min_period_(min_period), thread_([this] { Run(); }) {}
   NewestWork(const NewestWork&) = delete;
   NewestWork& operator=(const NewestWork&) = delete;
-  /// Waits for the end of the present call of `work`. Drops a waiting request.
+  /// Drops a waiting request. Waits for the end of the present call of `work`.
   ~NewestWork() {
     {
       const aquafarm::MutexLock lock(mutex_);
@@ -40,7 +40,7 @@ class NewestWork {
     thread_.join();
   }
 
-  /// Adds a request. Returns immediately.
+  /// Adds a request, which replaces a waiting one. Returns immediately.
   void Ask(Request request) {
     {
       const aquafarm::MutexLock lock(mutex_);

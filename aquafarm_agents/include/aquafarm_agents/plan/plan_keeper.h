@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Makes rescue plans from the current inputs and keeps the last plan that could be made.
+/// Makes rescue plans from the current inputs and keeps the last plan.
 
 #include <cstdint>
 #include <memory>
@@ -17,33 +17,40 @@ namespace aquafarm_agents {
 
 /// All inputs of a plan at one time.
 struct PlanInputs {
-  std::shared_ptr<const aquafarm::Scenario> scenario;  ///< null: no ranch is known yet
-  aquafarm::agents::RescueRequest request;             ///< without bulletin
+  std::shared_ptr<const aquafarm::Scenario> scenario;  ///< null: the ranch is not known yet
+  aquafarm::agents::RescueRequest request;             ///< its `bulletin` is empty
   std::vector<StampedFile> bulletins;                  ///< newest first; empty with request.storm
   std::vector<StampedFile> files;                      ///< lists of devices and of ships
-  std::optional<aquafarm::agents::FleetState> fleet;   ///< set if the plan follows a ranch
-  std::uint64_t step{};                                ///< step of that ranch
+  std::optional<aquafarm::agents::FleetState> fleet;   ///< state of the ranch that the plan follows
+  std::uint64_t step{};                                ///< step of this state
   std::int64_t refresh{};                              ///< number whose change causes a new plan
-  std::string command;                                 ///< command line that the plan records
+  std::string command;                                 ///< value of RescuePlan.command
   std::string fault;  ///< why the inputs are incomplete or outdated; empty: they are complete
 };
 
-/// Returns whether two inputs lead to the same plan. Compares scenario, bulletins, files,
-/// request.at, refresh, the fleet and its step. All other fields of `request` must be equal.
+/// Returns false if the change from `a` to `b` requires a new plan. Compares scenario, bulletins,
+/// files, request.at, refresh, the fleet and its step. Ignores request.now. All other fields of
+/// `request` must be equal.
 bool SamePlan(const PlanInputs& a, const PlanInputs& b);
 
 /// Makes a plan with one bulletin.
+/// @param inputs with a scenario
 /// @param bulletin path; empty with request.storm
-/// @throws InputError as MakeRescueCase and UseFleet
+/// @throws InputError in the same cases as MakeRescueCase, UseFleet and ReadPlan
 PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin);
 
-/// Keeps the last plan. If the newest bulletin cannot be used, the previous one stays in use.
+/// Keeps the last plan. If the newest bulletin cannot be used, plans with the bulletin of the last
+/// plan. Before the first plan, plans with the newest usable bulletin. A bulletin file that was
+/// issued earlier does not replace the one in use. A bulletin of another storm does not replace it
+/// before the plan ends.
 class PlanKeeper {
  public:
-  /// Plans again if the inputs have changed. Never throws: errors are in `fault` of the plan.
-  /// @returns whether plan() has changed
+  /// Plans again if the inputs have changed and include a scenario and a bulletin or storm. Never
+  /// throws: errors are in `fault` of the plan.
+  /// @returns false if plan() is the same as before. The first call may return false although it
+  ///          sets `result` and `text`
   bool Update(const PlanInputs& inputs);
-  /// Returns the last plan; before the first one `result` is NONE.
+  /// Returns the last plan. After the first Update and before the first plan, `result` is NONE.
   const PlanMessages& plan() const { return plan_; }
 
  private:
@@ -52,8 +59,8 @@ class PlanKeeper {
 
   PlanMessages plan_;
   std::optional<PlanInputs> inputs_;  // of the last Update
-  std::string refused_;               // why the newest inputs were refused; empty: they were not
-  std::string good_;                  // bulletin of plan_; empty before the first plan
+  std::string refused_;               // why the newest inputs are not in plan_; empty: they are
+  std::string good_;  // bulletin of plan_; empty before the first plan and with request.storm
 };
 
 }  // namespace aquafarm_agents

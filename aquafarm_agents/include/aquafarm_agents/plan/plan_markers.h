@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A rescue plan as rviz markers in frame map, in metres, above the markers of the ranch.
+/// A rescue plan as rviz markers. Positions are in metres, above the markers of the ranch.
 ///
 ///     | namespace    | id           | content                                             |
 ///     | plan_route   | ship         | route of a ship, in its colour                      |
-///     | plan_ship    | ship         | name, departure; without a route: what to do        |
-///     | plan_device  | device       | name; probability to come home and pickup, if any   |
+///     | plan_ship    | ship         | name; departure, or what to do without a route      |
+///     | plan_device  | device       | name; probability of delivery, ship, pickup time    |
 ///     | plan_port    | port         | name                                                |
 ///     | plan_track   | 0, 1         | recorded and later positions of the storm           |
-///     | plan_cone    | point        | circle that holds 70 % of the possible centres      |
+///     | plan_cone    | point        | circle around 70 % of the possible storm centres    |
 ///     | plan_hour    | point        | lead time and local time of that circle             |
 ///     | plan_outcome | 0            | RescuePlan.text, and RescuePlan.fault if it is set  |
 ///
-/// A point is an index in RescuePlan.forecast_error.
+/// A point is an index in RescuePlan.forecast_error. If no ship fetches a device, its name is
+/// followed by "stays", "left behind" or "odds unknown".
 
 #include <aquafarm_msgs/RescuePlan.h>
 #include <visualization_msgs/MarkerArray.h>
 
 namespace aquafarm_agents {
 
-/// Returns the markers of a plan. The first one deletes the markers of the previous plan.
+/// Returns the markers of a plan, with the header of the plan. The first marker deletes those of
+/// the previous plan. It is the only marker before the first plan (width 0).
 visualization_msgs::MarkerArray PlanMarkers(const aquafarm_msgs::RescuePlan& plan);
 
 }  // namespace aquafarm_agents

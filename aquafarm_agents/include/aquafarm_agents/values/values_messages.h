@@ -13,14 +13,14 @@
 
 namespace aquafarm_agents {
 
-/// Returns the grid of values, scaled from 0 (lowest) to 100 (highest); -1 in cells without a
-/// value. All cells are -1 if the policy has no values.
+/// Returns the grid of values, scaled from 0 (lowest) to 100 (highest). Cells without a value are
+/// -1.
 nav_msgs::OccupancyGrid ValuesToGrid(const std::vector<aquafarm::agents::GreedyAction>& moves,
                                      const aquafarm::Scenario& scenario,
                                      const std_msgs::Header& header);
 
-/// Returns one point per entry of `moves`: float32 x, y, z [m] of the cell's centre, float32 value
-/// (not scaled; NaN if there is none), uint8 action as in ShipState.
+/// Returns one point per entry of `moves`: float32 x, y, z [m] of the cell's centre (z is 0),
+/// float32 value (not scaled; NaN: no value), uint8 action as in ShipState.
 sensor_msgs::PointCloud2 ValuesToPoints(const std::vector<aquafarm::agents::GreedyAction>& moves,
                                         const aquafarm::Scenario& scenario,
                                         const std_msgs::Header& header);

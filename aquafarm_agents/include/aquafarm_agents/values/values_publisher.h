@@ -19,19 +19,20 @@ namespace aquafarm_agents {
 
 /// Publishes V_π and the greedy action of ship 0 in each free cell of farm 0, for the farm's
 /// current state. The topics are `values` and `values/points`, both latched. A low-priority thread
-/// computes them while there are subscribers. It pauses at least nine times as long as it computes,
-/// so that it hardly slows down playing and training.
+/// computes them while there are subscribers. Its pauses are at least nine times as long as its
+/// computations, so that it hardly slows down playing and training. Farms of more than kMaxCells
+/// cells have no values.
 class ValuesPublisher {
  public:
-  /// @param period_s min time between two publications; 0 disables them
+  /// @param period_s min time between the starts of two computations; 0: nothing is published
   ValuesPublisher(const ros::NodeHandle& node, double period_s);
   ~ValuesPublisher();
   ValuesPublisher(const ValuesPublisher&) = delete;
   ValuesPublisher& operator=(const ValuesPublisher&) = delete;
 
   /// Replaces the policy if there are subscribers and a publication is due.
-  /// @param make returns a copy of the learner's policy; called so rarely that it takes at most a
-  ///        fiftieth of the caller's time
+  /// @param make returns a copy of the learner's policy. It is called so rarely that it takes at
+  ///        most a fiftieth of the caller's time
   void Refresh(const std::function<std::unique_ptr<aquafarm::agents::Policy>()>& make);
 
   /// Replaces the policy. Ignores policies that cannot have values: those that read the complete
@@ -48,7 +49,7 @@ class ValuesPublisher {
   const std::chrono::duration<double> period_;
   ros::Publisher grid_;
   ros::Publisher points_;
-  std::unique_ptr<aquafarm::FarmBatch> farms_;  // copies of the sim node's farms; for the thread
+  std::unique_ptr<aquafarm::FarmBatch> farms_;  // copies of the sim node's farms, for thread_ only
   std::string frame_;
   Clock::time_point copy_due_;  // used only by the caller of Refresh
 

@@ -18,7 +18,8 @@ class Walk {
   Walk(std::string_view bytes, const std::string& what) : bytes_(bytes), what_(what) {}
 
   // Checks the first item, with all that it contains.
-  // @throws InputError if an item is nested too deeply, truncated or of indefinite length
+  // @throws InputError if an item is nested too deeply, truncated, or of indefinite or reserved
+  //   length
   void Check() {
     std::vector<std::uint64_t> left{1};  // items still to read, by level
     while (!left.empty()) {
@@ -35,7 +36,8 @@ class Walk {
   }
 
  private:
-  // Reads the head of an item, and its bytes if it is a string. Returns the number of items in it.
+  // Reads the head of an item and skips the bytes of a string. Returns the number of items that the
+  // item contains.
   std::uint64_t Next() {
     constexpr unsigned kIndefinite = 31;
     const unsigned head = Byte();
@@ -60,7 +62,8 @@ class Walk {
     }
   }
 
-  // Each item inside takes at least one byte, so a larger number is not allocated for.
+  // Returns number · items_each. Each contained item has at least one byte, so more items than
+  // remaining bytes are an error. Without this check the parser would allocate memory for them.
   std::uint64_t Contained(std::uint64_t number, std::uint64_t items_each) {
     if (number > (bytes_.size() - at_) / items_each) Fail("they end early");
     return number * items_each;

@@ -12,7 +12,7 @@
 namespace aquafarm::internal {
 
 void NeedRegularFile(const std::string& path) {
-  std::error_code error;  // ignored: the program that opens the file reports a missing one
+  std::error_code error;  // ignored: opening the file reports the error
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (error || std::filesystem::is_regular_file(status)) return;
   throw InputError(path + ": cannot read: not a regular file");

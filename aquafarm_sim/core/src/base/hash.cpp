@@ -16,7 +16,7 @@ std::uint64_t HashBytes(const std::vector<std::string_view>& parts) {
   unsigned shift = 0;
   for (const std::string_view part : parts) {
     for (const char byte : part) {
-      // Little-endian words on every machine.
+      // The words are little-endian on every machine.
       word |= static_cast<std::uint64_t>(static_cast<unsigned char>(byte)) << shift;
       shift = (shift + 8U) % 64U;
       if (shift != 0) continue;

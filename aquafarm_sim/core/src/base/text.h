@@ -12,7 +12,7 @@
 namespace aquafarm::internal {
 
 /// Returns a short decimal text that Parse converts back to the same value, with a point as decimal
-/// separator. A value that is not finite gives "nan", "inf" or "-inf", which Parse rejects.
+/// separator. For a value that is not finite, returns "nan", "inf" or "-inf", which Parse rejects.
 std::string Format(float value);
 
 std::string Format(double value);
@@ -54,12 +54,12 @@ std::string Quoted(std::string_view text);
 /// Returns a text with a-z replaced by A-Z; other characters are kept.
 std::string Upper(std::string_view text);
 
-/// Trims a text and parses it as a decimal number, with or without a sign; nullopt if it is not
-/// one. Also accepts "inf" and "nan", so callers must check the range.
+/// Trims a text and parses it as a decimal number, with or without a sign; nullopt if it is not a
+/// finite number. "inf" and "nan" are not accepted.
 std::optional<double> ParseNumber(std::string_view text);
 
-/// Parses a whole number, with or without a sign; nullopt if `text` is not one. Blanks are not
-/// accepted.
+/// Parses a whole number of 32 bits, with or without a sign; nullopt if `text` is not one. Blanks
+/// are not accepted.
 std::optional<std::int32_t> ParseWhole(std::string_view text);
 
 /// Returns the first non-blank line of a text, trimmed, and removes it and the lines before it.

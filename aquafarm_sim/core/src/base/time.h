@@ -28,9 +28,8 @@ std::optional<std::int64_t> UtcSeconds(int year, int month, int day, int hour, i
 
 /// Parses "YYYY-MM-DD HH:MM[:SS]" with an optional zone to UTC seconds since 1970; nullopt if
 /// `text` is not such a time. Accepts '/' for '-', T for the blank, and one digit for month, day
-/// and hour. The zone follows without a blank: Z, ±HH:MM or ±HHMM.
-/// @param zone_s offset of the local time that applies to a text without a zone [s], positive east
-///   of Greenwich
+/// and hour. The zone follows without a blank: Z, ±HH:MM, ±H:MM or ±HHMM, with at most 14 hours.
+/// @param zone_s UTC offset of a text without a zone [s], positive east of Greenwich
 std::optional<std::int64_t> ParseDateTime(std::string_view text, std::int64_t zone_s);
 
 /// Parses YYYYMMDDHH to UTC seconds since 1970; nullopt if `text` is not such an hour.

@@ -42,7 +42,7 @@ struct Header {
   std::map<std::string, Entry> entries;
 
   bool Has(const std::string& key) const { return entries.count(key) != 0; }
-  /// Reports an error on the line of the key.
+  /// Throws InputError with the line of the key, or the current line if the key is missing.
   [[noreturn]] void Fail(const std::string& key, const std::string& what,
                          ParseContext place) const {
     if (Has(key)) place.line = entries.at(key).line;
@@ -55,14 +55,15 @@ struct Header {
     }
     Fail(key, ", expected a number in [" + Format(min) + ", " + Format(max) + "]", place);
   }
-  /// Returns the centre of the first cell along an axis, from either key.
+  /// Returns the coordinate of the centre of the first cell along an axis, from `center` or, if
+  /// that is missing, from `corner`.
   double First(const std::string& center, const std::string& corner, double cell_size,
                const ParseContext& place) const {
     constexpr double kFar = 1.0e9;
     if (Has(center)) return Get(center, -kFar, kFar, place);
     return Get(corner, -kFar, kFar, place) + cell_size / 2.0;
   }
-  /// Checks that the centres of `count` cells starting at `first` lie in [-most, most] degrees. A
+  /// Checks that the centres of `count` cells starting at `first` lie in [-max, max] degrees. A
   /// tolerance of half a cell permits grids with a node on the edge of this range.
   void NeedDegrees(const std::string& center, const std::string& corner, double first,
                    Eigen::Index count, double max, const AsciiGrid& grid,
@@ -83,13 +84,15 @@ bool IsWord(std::string_view text) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-// Returns whether a word stands for a missing value, as in other programs, and is thus not a key.
+// Returns whether a word is a value such as NaN or null that other programs write. Such a word is
+// not a key.
 bool IsNoNumber(std::string_view word) {
   const std::string upper = internal::Upper(word);
   return upper == "NAN" || upper == "NULL" || upper == "NA" || upper == "NONE" || upper == "INF";
 }
 
-// Returns whether a line belongs to the header.
+// Adds the entry of a header line to `header`. Returns false if the line does not belong to the
+// header.
 bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
                     const ParseContext& place) {
   if (words.size() < 2) return false;
@@ -116,7 +119,8 @@ bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
   return true;
 }
 
-// Splits a line into words. The words of a huge line would take several times its memory.
+// Splits a line into words. Rejects a line of more than 16 MiB, because its words would take
+// several times its memory.
 std::vector<std::string_view> WordsOf(std::string_view line, const ParseContext& place) {
   constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;
   if (line.size() <= kMaxBytes) return internal::SplitWords(line);
@@ -131,7 +135,8 @@ bool AsciiGrid::IsGeographic() const {
 }
 
 std::array<long, 2> AsciiGrid::Nearest(GeoPoint place) const {
-  // Relative to the middle column, so that longitudes from -180 and from 0 both fit.
+  // Counts from the middle column, so that grids that start at -180 and grids that start at 0
+  // degrees both work.
   const double middle = static_cast<double>(value.cols() - 1) / 2.0;
   const double east = std::remainder(place.longitude - (west + middle * cell_size), 360.0);
   return {std::lround(middle + east / cell_size),

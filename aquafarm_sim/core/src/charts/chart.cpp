@@ -39,7 +39,9 @@ std::int32_t Paint(const Grid<std::uint8_t>& kind, Cell from, std::int32_t numbe
   return static_cast<std::int32_t>(queue.size());
 }
 
-// Converts all water to land except the largest body of water.
+// Converts all water to land except the largest body of water. Returns the number of converted
+// cells.
+// @throws InputError if there is no water
 std::int32_t FillEnclosed(Grid<std::uint8_t>& kind) {
   Grid<std::int32_t> body = Grid<std::int32_t>::Zero(kind.rows(), kind.cols());
   std::int32_t bodies = 0;

@@ -46,8 +46,8 @@ bool Doubles(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c, const GeoP
 constexpr std::size_t kMaxComparisons = 50'000'000;  // protects against files designed to be slow
 
 // Returns a description of the error in a ring, or "". Compares only segments whose longitude
-// ranges overlap and subtracts each comparison from `left`, the limit per file, which no real coast
-// reaches.
+// ranges overlap. `left` is the number of comparisons that remain for the file; each comparison
+// subtracts 1. At 0, rings are no longer checked.
 std::string FaultOf(const CoastRing& ring, std::size_t& left) {
   if (left == 0) return "";
   const std::size_t lines = ring.size() - 1;
@@ -179,7 +179,8 @@ struct GeoBox {
   std::array<double, 2> latitude{};
 };
 
-// Returns the box of the ranch with a margin of its own size on each side, at least one degree.
+// Returns the bounding box of the ranch. On each side, a margin is added: the size of the box along
+// that axis, but at least one degree.
 GeoBox BoxOf(const GeoFrame& frame, std::int32_t width, std::int32_t height) {
   GeoBox box;
   box.middle = frame.ToGeo(width / 2.0, height / 2.0).longitude;
@@ -224,7 +225,8 @@ CoastRing Clip(const CoastRing& ring, double GeoPoint::*coordinate, double limit
   return kept;
 }
 
-// Returns the part of a ring inside a box, after adding `shift` to its longitudes.
+// Returns the part of a ring inside a box, after adding `shift` to its longitudes. The longitudes
+// of the result lie in [-180, 180] and are no longer relative to box.middle.
 CoastRing Clip(CoastRing ring, double shift, const GeoBox& box) {
   for (GeoPoint& point : ring) point.longitude += shift;
   ring = Clip(ring, &GeoPoint::longitude, box.longitude[0], 1.0);
@@ -250,7 +252,8 @@ void Crossings(const std::vector<std::array<double, 2>>& points, double y,
   }
 }
 
-// Counts the samples of one line that lie between pairs of crossings.
+// Counts the samples of one line that lie between pairs of crossings. Adds them to row y of
+// `samples`.
 void AddSpans(const std::vector<double>& crossings, std::int32_t y, Grid<std::uint16_t>& samples) {
   const auto last = static_cast<double>(samples.cols() * kSamples - 1);
   // Sample k of a row lies at (k + 1/2) / kSamples - 1/2.
@@ -258,7 +261,7 @@ void AddSpans(const std::vector<double>& crossings, std::int32_t y, Grid<std::ui
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
     const double from = std::max(first_from(crossings[i]), 0.0);
     const double to = std::min(first_from(crossings[i + 1]) - 1.0, last);
-    if (!(from <= to)) continue;  // both are whole, and in the row if they are in this order
+    if (!(from <= to)) continue;  // both are whole numbers; in this order, both lie in the row
     for (auto k = static_cast<Eigen::Index>(from); k <= static_cast<Eigen::Index>(to); ++k) {
       ++samples(y, k / kSamples);
     }

@@ -58,7 +58,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Converts a pixel to occupancy as map_server does.
+// Converts a pixel to occupancy in percent, by the mode and the thresholds of the YAML file.
+// Returns -1 for unknown.
 std::int8_t Occupancy(const MapYaml& map, std::uint8_t grey, bool opaque) {
   constexpr std::int8_t kUnknown = -1;
   const int light = map.negate != 0 ? 255 - grey : grey;
@@ -143,7 +144,8 @@ MapFile ToMap(const Scenario& scenario) {
   LayoutGenerator(scenario).Generate(scenario.layout_seed, 0, layout);
   MapFile map;
   map.cell_size_m = scenario.cell_size_m;
-  // Moves from the centre of cell (0, 0), the origin of the farm, to its corner.
+  // The origin of a map is the corner of cell (0, 0); the origin of the farm is the centre of that
+  // cell.
   map.origin = {-scenario.cell_size_m / 2.0, -scenario.cell_size_m / 2.0, 0.0};
   map.occupancy = layout.cells.unaryExpr([](std::uint8_t bits) {
     return static_cast<std::int8_t>((bits & kBlockedBits) != 0 ? 100 : 0);

@@ -29,7 +29,7 @@ class PgmHeader {
   }
   /// Reads a pixel written as text.
   std::int32_t Pixel(std::int32_t max) { return ReadWhole(Word(), "pixel", 0, max, place_); }
-  /// Skips to the pixels. One blank or a line end of two bytes terminates the header. A line end
+  /// Skips to the pixels. One blank or a line end of two bytes terminates the header. One line feed
   /// after the pixels is accepted.
   void SkipEnd(std::size_t pixels) {
     const std::size_t left = bytes_.size() - std::min(bytes_.size(), at_);
@@ -116,8 +116,9 @@ MapImage ParsePgm(const std::string& bytes, ParseContext& place) {
   return image;
 }
 
-// Refuses a PNG with a chunk longer than the file: stb allocates the stated length before it reads.
-// Refuses one whose first pixels are empty: stb would copy them to a null pointer.
+// Rejects a PNG with a chunk that is longer than the file: stb allocates the stated length before
+// it reads. Also rejects a PNG whose first chunk of pixels (IDAT) is empty: stb would copy its
+// pixels to a null pointer.
 void CheckPngChunks(const std::string& bytes, const ParseContext& place) {
   constexpr std::size_t kSignature = 8;
   constexpr std::size_t kAround = 12;  // length and name before a chunk's data, checksum after it
@@ -155,7 +156,8 @@ MapImage ParseWithStb(const std::string& bytes, const ParseContext& place) {
                "), expected PGM, PNG or BMP");
   };
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) refuse();
-  // Even compressed, PNG and BMP need at least one byte per kMaxPacking pixels.
+  // Rejects a size that the file is too short for. Deflate compresses at most 1032 to 1 (zlib,
+  // technical details), so a PNG with 8 bits per pixel stays below this limit.
   constexpr std::size_t kMaxPacking = 2048;
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   if (width > kMaxMapSide || height > kMaxMapSide || pixels / kMaxPacking > bytes.size()) {

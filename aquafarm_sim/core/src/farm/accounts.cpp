@@ -7,8 +7,8 @@
 namespace aquafarm {
 namespace {
 
-// Returns amount × share, with the share clamped to [0, 1], rounded to cents.
-// Exact for shares of 0 and 1.
+// Returns amount × share, rounded to cents, with the share clamped to [0, 1]. Shares of 0 and 1 are
+// exact.
 Cents Share(Cents amount, double share) {
   return std::llround(static_cast<double>(amount) * std::clamp(share, 0.0, 1.0));
 }

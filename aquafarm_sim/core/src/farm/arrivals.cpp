@@ -44,8 +44,9 @@ void CheckNumbers(const Disaster& disaster, const IssuedForecast& forecast) {
   ValidateDisaster(spec);
 }
 
-// Returns the newest forecast of a storm. If it is issued after `step`, the result is issued at
-// `step` and has the later waypoints of the track as its points.
+// Returns the newest forecast of a storm, as issued at `step` or earlier. If it is issued after
+// `step`, the result has `step` as its step of issue. Its points are then the waypoints of the
+// track after `step`.
 IssuedForecast IssuedBy(float step, const DisasterSpec& storm) {
   IssuedForecast forecast = storm.forecasts.back();
   if (forecast.step <= step) return forecast;

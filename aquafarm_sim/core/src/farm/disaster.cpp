@@ -83,8 +83,9 @@ void SetRings(ObservableDisaster& disaster, const std::vector<float>& radii,
   }
 }
 
-// Sets the state that is constant on the leg after a waypoint: the index of the waypoint, grade and
-// displacement, and for displays and bulletins the speed and the nearest whole heading.
+// Sets the state that is constant on the leg after a waypoint: index of the waypoint, grade,
+// displacement, speed and heading. Heading is the nearest whole degree. Displays and bulletins use
+// speed and heading.
 void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
               std::size_t waypoint) {
   disaster.waypoint = static_cast<std::int32_t>(waypoint);
@@ -104,10 +105,10 @@ void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
   }
 }
 
-// Reflects one coordinate that is outside [low, high], and the heading, at the border. If the
-// coordinate was already outside before the step, as after SetDisaster, a disaster that does not
-// move farther away continues. One that moves away stays where it was in this step, and its heading
-// is reflected.
+// Reflects a coordinate outside [low, high] at the border, and the heading with it. A coordinate
+// may already be outside before the step, for example after SetDisaster. Such a disaster continues
+// unless it moves farther away. If it moves farther away, the coordinate keeps its old value in
+// this step, and the heading is reflected.
 // @param mirror reflected heading plus heading [degrees]: 360 for x, 180 for y
 void Bounce(float& position, float before, float low, float high, std::int32_t mirror,
             Disaster& disaster) {
@@ -123,7 +124,7 @@ void Bounce(float& position, float before, float low, float high, std::int32_t m
   SetMotion(disaster);
 }
 
-// Returns a coordinate; one outside [low, high] enters again at the other border.
+// Returns a coordinate. One outside [low, high] is moved to the opposite side.
 float Wrapped(float position, float low, float high) {
   if (position < low) return std::min(position + (high - low), high);
   if (position > high) return std::max(position - (high - low), low);
@@ -149,7 +150,7 @@ void MeetBorder(Disaster& disaster, float x_before, float y_before, std::int32_t
   if (is_outside(disaster.y, high_y)) Bounce(disaster.y, y_before, low, high_y, 180, disaster);
 }
 
-// Turns a disaster by 45 degrees to one side with its turn probability.
+// With its turn probability, turns a disaster by 45 degrees to a random side.
 void Turn(Disaster& disaster, const StreamKey& turn_key, std::int32_t step) {
   if (disaster.turn_threshold == 0) return;
   const auto count = static_cast<std::uint32_t>(step);
@@ -226,7 +227,7 @@ Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t 
   disaster.steps_left = spec.duration;
   RandomStream rng({seed, episode, RngStream::kDisasterSpawn, static_cast<std::uint32_t>(id)});
   const float margin = disaster.margin;
-  // Always drawn, so that a spec that sets one of these values does not change the draws of others.
+  // All three are drawn even if the spec sets some of them, so that the other draws stay the same.
   const float x = rng.Uniform(-0.5F - margin, static_cast<float>(width) - 0.5F + margin);
   const float y = rng.Uniform(-0.5F - margin, static_cast<float>(height) - 0.5F + margin);
   const auto heading = static_cast<std::int32_t>(rng.Below(360));

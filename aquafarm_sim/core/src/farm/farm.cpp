@@ -93,7 +93,7 @@ void Farm::DrawStorms() {
   }
 }
 
-// Gives a disaster a track that only this farm owns and returns it, with outdated waypoints.
+// Gives a disaster a track of this farm alone and returns it. The caller must set its waypoints.
 std::vector<Waypoint>& Farm::DrawnTrack(std::size_t id) {
   tracks_[id].reset();
   std::shared_ptr<std::vector<Waypoint>>& track = drawn_->tracks[id];
@@ -175,7 +175,7 @@ void Farm::Prefetch() const {
       __builtin_prefetch(static_cast<const char*>(from) + at, /*will be written*/ 1);
     }
   };
-  // Only the first object of each list, because most farms have one ship and one disaster.
+  // Loads only the first object of each list: most farms have one ship and one disaster.
   load(ships_.data(), sizeof(Ship));
   load(devices_.data(), sizeof(Device));
   load(disasters_.data(), sizeof(Disaster));
@@ -249,8 +249,8 @@ void Farm::Act(std::int32_t id, Action action) {
   }
 }
 
-// Returns whether an active ship is in the cell with a linear index. The caller only passes cells
-// that its own ship does not occupy.
+// Returns whether an active ship is in the cell with a linear index. Callers must pass a cell that
+// the moved ship does not occupy itself.
 bool Farm::Occupied(std::int32_t index) const {
   std::int32_t found = 0;
   for (const std::int32_t other : ship_index_) found += other == index ? 1 : 0;
@@ -312,7 +312,7 @@ void Farm::Move(Ship& ship, std::int32_t id, Action action) {
 }
 
 // The loss is applied before the damage phase. The order does not matter, because a ship that
-// crashes does nothing else in its step.
+// crashes does not deliver in the same step.
 void Farm::CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits) {
   if (ship.aboard == 0 && ship.own_device == kNone) return;
   const float probability = scenario_->damage.crash_probability;
@@ -389,7 +389,8 @@ void Farm::DropOff(Ship& ship, std::int32_t id) {
   ship.terms.drop_off = scenario_->rewards.drop_off + value;
 }
 
-// Damages every device that is not delivered by the risk at its current cell, aboard or not.
+// Damages each device that is not delivered, whether it is aboard or not. The damage depends on the
+// risk at its current cell.
 void Farm::Damage() {
   const float exposure = scenario_->damage.exposure_damage;
   if (exposure == 0.0F) return;

@@ -33,8 +33,9 @@ std::int32_t Int(Enum value) {
   return static_cast<std::int32_t>(value);
 }
 
-// Returns whether the rings of a bulletin must be stored, because the rings of the disaster may
-// have changed since its issue. Tracks are not considered: their rings follow from the waypoints.
+// Returns whether the rings of a bulletin must be stored: the rings of the disaster may have
+// changed since the bulletin was issued. Rings of a disaster with a track follow from its
+// waypoints.
 inline bool RingsMayHaveChanged(const Disaster& disaster, const Bulletin& bulletin) {
   return disaster.radius_growth != 0.0F && bulletin.step != kNone;
 }

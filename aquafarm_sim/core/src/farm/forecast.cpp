@@ -30,8 +30,8 @@ std::size_t After(float step, const Points& points) {
   return static_cast<std::size_t>(next - points.begin());
 }
 
-// Returns the true state at a step. Before the first waypoint it is that of the first one, and
-// after the last waypoint that of the last one.
+// Returns the true state at a step. Before the first waypoint, it is the state of the first
+// waypoint. After the last waypoint, it is the state of the last one.
 Waypoint TruthAt(const std::vector<Waypoint>& track, float step) {
   const std::size_t next = After(step, track);
   Waypoint now = track[next == 0 ? 0 : next - 1];
@@ -53,8 +53,9 @@ Waypoint TruthAt(const std::vector<Waypoint>& track, float step) {
   return now;
 }
 
-// Returns the position at which a forecast of step `issued` starts. Without a track, earlier
-// positions are not stored, so it is the current position or that of the last bulletin.
+// Returns the position at which a forecast of step `issued` starts. With a track, it is the
+// position on the true track. Without a track, it is the current position if `issued` is the
+// current step, else that of the last bulletin: earlier positions are not stored.
 std::array<float, 2> PositionAt(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
   const std::vector<Waypoint>& track = TrackOf(farm, disaster);
   if (track.empty()) {
@@ -72,8 +73,9 @@ std::array<float, 2> PositionAt(const Farm& farm, std::int32_t disaster, std::in
   return {from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part};
 }
 
-// Returns the displacement per step that is known at step `issued`. It is that of the true track.
-// Without a track, it is the current one or that of the last bulletin.
+// Returns the displacement per step that is known at step `issued`. With a track, it is that of the
+// true track. Without a track, it is the current one if `issued` is the current step. For an
+// earlier step, it has the heading of the last bulletin and the current speed.
 std::array<float, 2> MotionAt(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
   const std::vector<Waypoint>& track = TrackOf(farm, disaster);
   if (track.empty()) {
@@ -99,8 +101,9 @@ Waypoint Grown(Waypoint point, float by) {
   return point;
 }
 
-// One forecast, as of step `issued`. It starts at the position of PositionAt. After that step it is
-// the newest forecast of an authority, or if there is none, the true track displaced by the error.
+// The forecast of one disaster that applies at step `issued`. It starts at the position of
+// PositionAt. Its later positions are those of the newest forecast of an authority. Without such a
+// forecast, they are those of the true track, displaced by the forecast error.
 class Forecast {
  public:
   Forecast(const Farm& farm, std::int32_t disaster, std::int32_t issued)
@@ -162,7 +165,9 @@ class Forecast {
     return std::max(end, last);
   }
 
-  // Returns the waypoint steps of AsTrack: the step of issue, later points, and the end.
+  // Returns the steps of the waypoints of AsTrack in ascending order: the step of issue, the later
+  // waypoints of the true track if their rings apply, and for a forecast of an authority its later
+  // points and its end.
   std::vector<float> Steps() const {
     std::vector<float> steps{issued_};
     for (std::size_t i = After(issued_, track_); FollowsTrueRings() && i < track_.size(); ++i) {
@@ -177,14 +182,14 @@ class Forecast {
     return steps;
   }
 
-  // Returns grade and rings at one of Steps(): those of the forecast, if it has rings, else the
-  // true ones.
+  // Returns grade and rings at one of Steps(). After the step of issue they are those of the
+  // forecast, if it has rings. In other cases they follow from the true disaster.
   Waypoint StateAt(float step) const {
     if (FollowsTrueRings()) return TruthAt(track_, step);
     const float growth = track_.empty() ? Present().radius_growth : 0.0F;
     if (step > issued_ && HasOwnRings()) {
       const Waypoint& last = newest_->points[IndexAfter(step) - 1];
-      // A forecast does not report that a disaster shrinks after its last point.
+      // The rings of the last point grow with the disaster. They do not shrink with it.
       return Grown(last, std::max(0.0F, growth) * (step - last.step));
     }
     if (!track_.empty()) return TruthAt(track_, issued_);

@@ -39,7 +39,7 @@ std::int32_t CeilSqrt(std::int64_t value) {
 std::int32_t CeilDiv(std::int32_t a, std::int32_t b) { return (a + b - 1) / b; }
 
 // Divides a side into `parts` equal parts. Returns the middle of part i plus a random offset of up
-// to a quarter of a part.
+// to a quarter of a part in either direction.
 std::int32_t NearMiddle(RandomStream& rng, std::int32_t i, std::int32_t parts, std::int32_t side) {
   const std::int32_t middle = (2 * i + 1) * side / (2 * parts);
   const std::int32_t slack = side / (4 * parts);
@@ -137,7 +137,8 @@ void LayoutGenerator::PlaceIslands(Layout& layout) const {
   }
 }
 
-// Places the objects with cells in the scenario. DrawRocks sets the rewards of the rocks later.
+// Places the ports, rocks and devices whose cells the scenario specifies. DrawRocks sets the
+// rewards of the rocks later.
 void LayoutGenerator::PlaceExplicit(Layout& layout) const {
   for (const Cell cell : scenario_.ports.cells) AddPort(cell, layout);
   for (const Cell cell : scenario_.rocks.cells) layout.cells(cell.y, cell.x) |= kRockBit;
@@ -226,7 +227,8 @@ bool LayoutGenerator::DrawRocks(RandomStream& rng, Layout& layout) {
 
 void LayoutGenerator::Spread(RandomStream& rng, Layout& layout) {
   const std::int32_t count = scenario_.devices.count;
-  // The number of rows makes parts about square: rows² = count · height / width.
+  // The number of rows is chosen such that the parts are about square: rows² = count · height /
+  // width.
   const std::int32_t rows = std::min({count, scenario_.height,
                                       std::max(1, CeilSqrt(static_cast<std::int64_t>(count) *
                                                            scenario_.height / scenario_.width))});

@@ -56,12 +56,13 @@ class ReadingIterator {
   const char** read_;
 };
 
-// Parses until the value of a path and stops there. Records where its nearest parent begins.
+// Parses until the value at a path is found, and then stops. Records its position, or that of its
+// nearest parent.
 class PathFinder : public nlohmann::json_sax<Json> {
  public:
   PathFinder(const std::string& wanted, const char* const& read) : wanted_(wanted), read_(read) {}
-  /// Position after the value of the path, or after the beginning of its nearest parent if the path
-  /// has no value.
+  /// Position after the value at the path; for an object or a list, after its opening bracket. If
+  /// the path has no value, position after the opening bracket of its nearest parent.
   const char* found() const { return found_; }
   bool null() override { return Value(); }
   bool boolean(bool) override { return Value(); }
@@ -94,8 +95,8 @@ class PathFinder : public nlohmann::json_sax<Json> {
     const Level& level = levels_.back();
     return level.array ? internal::At(level.path, level.index) : Join(level.path, level.key);
   }
-  // Returns whether `path` is the wanted path. Records the position of each of its parents; later
-  // ones are deeper.
+  // Returns whether `path` is the wanted path. If it is, or if it is a parent of the wanted path,
+  // records the current position. Later parents are deeper.
   bool IsWanted(const std::string& path) {
     const bool holds = wanted_.compare(0, path.size(), path) == 0;
     const bool ends = path.empty() || path.size() == wanted_.size() ||
@@ -125,7 +126,7 @@ class PathFinder : public nlohmann::json_sax<Json> {
   std::vector<Level> levels_;
 };
 
-// Rejects JSON that is nested deeper than any bulletin or chart.
+// Rejects JSON with more than 64 nested levels. Bulletins and charts have fewer.
 void CheckDepth(const std::string& text, ParseContext& place) {
   constexpr int kMaxDepth = 64;
   int depth = 0;
@@ -226,7 +227,7 @@ Json ParseJson(const std::string& text, ParseContext& place) {
     place.path.clear();
     place.line = LineAt(text, error.byte == 0 ? 0 : error.byte - 1);
     const std::string what = error.what();
-    const std::size_t reason = what.find("; ");  // follows the position as given by the library
+    const std::size_t reason = what.find("; ");  // the library writes: position; reason
     place.Fail("invalid JSON: " + (reason == std::string::npos ? what : what.substr(reason + 2)));
   } catch (const Json::out_of_range& error) {  // a number is too large; the message contains it
     const std::string what = error.what();
@@ -257,7 +258,7 @@ std::int32_t LineOfJson(const std::string& text, const std::string& path) {
 
 namespace {
 
-// Names an error of a time or a position as such.
+// Calls `read` and rethrows an InputError as a FixError, for a time or a position.
 template <typename Read>
 auto OfFix(Read read) {
   try {

@@ -3,8 +3,8 @@
 
 /// JSON as found in bulletins. The text may start with a byte order mark or be inside a Markdown
 /// fence. It may be the value of a JavaScript variable (`let x = …;`), with comments before it. A
-/// number may be written as a string. A value is missing if its key is absent, or if it is null, a
-/// blank string or "null".
+/// number may be written as a string. A value is missing if its key is absent, or if the value is
+/// null, a blank string or "null".
 
 #include <initializer_list>
 #include <nlohmann/json.hpp>

@@ -58,10 +58,11 @@ class ParseContext {
   /// Adds a warning for the first call with a `kind`. Later calls with this kind only update a
   /// count in the text of that warning.
   void WarnOnce(const std::string& kind, const std::string& what);
-  /// As WarnOnce, with the message of FailValue.
+  /// Does the same as WarnOnce, with the message of FailValue.
   void WarnValueOnce(const std::string& kind, const std::string& value_path,
                      const std::string& what);
-  /// As WarnOnce, with the message of an error followed by `end`, the consequence of the error.
+  /// Does the same as WarnOnce, with the message of an error followed by `end`, the consequence of
+  /// the error.
   void WarnOnce(const std::string& kind, const InputError& error, const std::string& end);
   /// Counts a point that is left out, and calls WarnOnce for the kind "point".
   void LeaveOut(const FixError& error, LeftOut& left_out);
@@ -118,7 +119,7 @@ class LineReader {
 /// @throws InputError "file:line: name: got 'x', expected a whole number in …"
 std::int32_t ReadWhole(std::string_view text, const char* name, std::int32_t min, std::int32_t max,
                        const ParseContext& place);
-/// As ReadWhole, for a decimal number.
+/// Does the same as ReadWhole, for a decimal number.
 double ReadNumber(std::string_view text, const char* name, double min, double max,
                   const ParseContext& place);
 /// As ReadWhole; nullopt for a blank text.
@@ -129,13 +130,14 @@ std::optional<std::int32_t> ReadWholeOrBlank(std::string_view text, const char* 
 /// As ReadWholeOrBlank; an invalid value is ignored with one warning per name and file.
 std::optional<std::int32_t> TryWhole(std::string_view text, const char* name, std::int32_t min,
                                      std::int32_t max, ParseContext& place);
-/// As TryWhole, for a decimal number.
+/// Does the same as TryWhole, for a decimal number.
 std::optional<double> TryNumber(std::string_view text, const char* name, double min, double max,
                                 ParseContext& place);
 /// End of the warning about an ignored value.
 inline constexpr const char* kIgnored = "; the value is ignored";
 
-/// As ReadWhole, for a part of a time or a position. @throws FixError instead of InputError
+/// Does the same as ReadWhole, for a part of a time or a position.
+/// @throws FixError instead of InputError
 std::int32_t ReadFixNumber(std::string_view text, const char* name, std::int32_t min,
                            std::int32_t max, const ParseContext& place);
 

@@ -14,7 +14,8 @@ bool IsDigits(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-// Distinguishes CMA (times of ten digits) from JMA (times of eight digits).
+// Distinguishes the best tracks of CMA and JMA by the first point, which `text` starts with. A
+// point of the JMA has a time of eight digits and then 002.
 std::optional<TrackFormat> DetectBestTrack(std::string_view text) {
   const std::vector<std::string_view> words = internal::SplitWords(internal::TakeLine(text));
   if (words.empty() || !IsDigits(words[0])) return std::nullopt;

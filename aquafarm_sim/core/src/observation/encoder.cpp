@@ -16,7 +16,8 @@ namespace {
 // the end of a painted plane stays inside the buffer.
 enum Plane : std::size_t { kRisk, kForecast, kObstacle, kPort, kDevice, kSelf, kCargo, kOthers };
 
-// Returns the digit of a device in a status code: deployed (0), aboard the ship (1) or gone (2).
+// Returns the digit of a device in a status code: deployed (0), aboard this ship (1), or delivered
+// or aboard another ship (2).
 std::int32_t Standing(DeviceStatus status, bool aboard_self) {
   const std::int32_t is_away = status != DeviceStatus::kDeployed ? 1 : 0;
   return is_away * (aboard_self ? 1 : 2);  // branch-free: a branch would often be mispredicted

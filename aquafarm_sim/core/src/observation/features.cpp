@@ -36,7 +36,7 @@ std::vector<std::string> ForEachMove(const std::string& what) {
   return names;
 }
 
-// The writers copy the scales first, because `out` might alias them.
+// The writers copy a scale to a local variable before a loop, because `out` might alias the scales.
 
 float* WriteSelf(const FeatureScales& scales, const View& view, float* out) {
   const float scale = scales.length;
@@ -56,8 +56,8 @@ float* WriteBlocked(const View& view, float* out) {
   const std::int32_t height = view.scenario->height;
   const Cell self = view.self;
   const std::uint8_t* const here = view.layout->cells.data() + LinearIndex(self, width);
-  // Branch-free: ports are at the edge, so ships are often there, and a branch would often be
-  // mispredicted. A move off the map reads the bits of the ship's own cell.
+  // Branch-free: ships are often at the edge of the map, for example in a port, and a branch would
+  // often be mispredicted. A move off the map reads the bits of the ship's own cell.
   const std::array<bool, 3> off_x{self.x == 0, false, self.x == width - 1};
   const std::array<bool, 3> off_y{self.y == 0, false, self.y == height - 1};
   for (const Cell move : kMoves) {
@@ -91,8 +91,8 @@ void WritePorts(const FeatureScales& scales, const View& view, float* out) {
   }
 }
 
-// Writes the features that every scenario has. They form one group, because a call through a
-// function pointer takes as long as writing one part of it.
+// Writes the features that every scenario without entity tokens has. They form one group, because
+// each group costs a call through a function pointer.
 void WriteBase(const FeatureScales& scales, const View& view, float* out) {
   out = WriteSelf(scales, view, out);
   out = WriteBlocked(view, out);
@@ -169,14 +169,15 @@ void WriteEnergy(const FeatureScales& scales, const View& view, float* out) {
   out[0] = static_cast<float>(view.energy) * scales.energy;
 }
 
-// Writes the next move and the number of moves left to every port and to every fetchable device
-// that is deployed; 0 for the other fetchable devices.
+// Writes the next move and the number of remaining moves to each port and each fetchable device.
+// For a fetchable device that is not deployed, writes 0.
 void WriteRoutes(const FeatureScales& scales, const View& view, float* out) {
   const float scale = scales.length;
   const Layout& layout = *view.layout;
   const auto cell = static_cast<std::size_t>(LinearIndex(view.self, view.scenario->width));
   const RouteEntry* route = layout.routes.data() + cell * layout.route_count();
-  // Upper bound of the moves that are written; an unreachable target gets it.
+  // Upper bound of the number of moves that is written. It is also written for an unreachable
+  // target.
   const std::int32_t farthest = 2 * (view.scenario->width + view.scenario->height);
   const auto write = [&] {
     *out++ = static_cast<float>(route->east);

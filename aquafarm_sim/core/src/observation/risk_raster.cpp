@@ -13,7 +13,7 @@ namespace {
 using IntRun = std::int32_t __attribute__((vector_size(kRun * sizeof(std::int32_t))));
 using ByteRun = std::uint8_t __attribute__((vector_size(kRun)));
 
-// The cells [x0, x1) × [y0, y1) that contain all cells of the map inside a disaster.
+// A box of cells [x0, x1) × [y0, y1) that contains all cells of the map inside a disaster.
 struct Box {
   std::int32_t x0, x1, y0, y1;
 };

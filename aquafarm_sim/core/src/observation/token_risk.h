@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Forecast risk for the tokens. It assumes that every known disaster keeps its motion and its size
-/// until it ends.
+/// Computes the forecast risk that entity tokens contain (observation/tokens.h). Assumes that every
+/// known disaster keeps its motion and its size until it ends.
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,8 @@ class TokenRisk {
     has_sea_ = scenario_.seas && !scenario_.seas->risk.empty();
   }
 
-  /// Returns whether the map has no risk: no known disaster is active, and the sea has no risk.
+  /// Returns true if no known disaster is active and the scenario has no layer of sea risk. Returns
+  /// false if it has a layer, even if the layer is 0 everywhere.
   bool is_calm() const { return count_ == 0 && !has_sea_; }
   std::size_t count() const { return count_; }
   const KnownDisaster& disaster(std::size_t i) const { return *disasters_[i]; }
@@ -50,8 +51,8 @@ class TokenRisk {
   }
 
   /// Returns true only if no disaster can reach a ship that starts at `from` and moves for `steps`
-  /// steps. The check uses an upper bound of the reach, so it may return false without need. Always
-  /// returns false if the sea has a risk.
+  /// steps. The check uses an upper bound of the reach, so it may return false although no disaster
+  /// can reach the ship. Always returns false if the scenario has a layer of sea risk.
   bool IsCalmWithin(Cell from, std::int32_t steps) const {
     constexpr float kLongestMove = 1.4142136F;
     if (has_sea_) return false;
@@ -79,9 +80,9 @@ class TokenRisk {
     return first;
   }
 
-  /// Returns the times of one disaster: the solutions t of |c + v·t − cell| = r before its end. c
-  /// is its centre now, extrapolated from its last known position. v is its motion per step and r
-  /// its largest radius.
+  /// Returns the times of one disaster: the solutions t of |c + v·t − cell| = r before the disaster
+  /// ends. c is its centre now, extrapolated from its last known position. v is its motion per step
+  /// and r its largest radius.
   static RingTimes TimesOf(const KnownDisaster& known, Cell cell) {
     const ObservableDisaster& belief = known.belief;
     const auto age = static_cast<float>(known.age);

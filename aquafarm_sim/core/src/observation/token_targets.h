@@ -81,7 +81,7 @@ class TargetsOf {
   std::size_t ports() const { return ports_.size(); }
   std::size_t device(std::size_t slot) const { return devices_[slot]; }  ///< id
   std::size_t port(std::size_t slot) const { return ports_[slot]; }      ///< id
-  /// Index of the device of a slot in RoutesFrom.
+  /// Returns the index of the route to the device of a slot in the result of RoutesFrom.
   std::size_t route(std::size_t slot) const { return routes_[slot]; }
 
   // FromPort and ToNextDevice return kUnreachable if no deployed device with a slot can be reached,

@@ -70,8 +70,8 @@ std::vector<std::string> ShipNames() {
   return names;
 }
 
-// Writes the reward that a straight move costs and the energy consumed in the episode; 0 unless
-// energy is part of the reward.
+// Writes the reward that a straight move costs and the energy consumed in the episode. Both are 0
+// unless energy is part of the reward.
 float* WriteMoveEnergy(const View& view, float* out) {
   std::fill_n(out, 2, 0.0F);
   const Scenario& scenario = *view.scenario;
@@ -147,8 +147,8 @@ std::vector<std::string> TargetNames() {
   return names;
 }
 
-// Writes the risk summed over the first kNear and the first kTokenRoute steps of a route, each
-// divided by kNear, and the risk at its end on arrival.
+// Writes the risk summed over the first kNear steps of a route, and over its first kTokenRoute
+// steps. Both sums are divided by kNear. Then writes the risk at the end of the route on arrival.
 float* WriteRouteRisk(const View& view, const TokenRisk& risk, std::size_t route, Cell target,
                       std::int32_t steps, float* out) {
   float near = 0.0F;
@@ -214,7 +214,7 @@ std::vector<std::string> DeviceNames() {
   return names;
 }
 
-// Returns the worth that a device loses in the present step [reward].
+// Returns the decrease of a device's health times value in the present step [reward].
 float LossOf(const View& view, const TokenRisk& risk, const KnownDevice& device) {
   const DamageSpec& damage = view.scenario->damage;
   if (damage.exposure_damage == 0.0F) return 0.0F;

@@ -48,8 +48,8 @@ void CollectSensors(const Farm& farm, Cell self, std::vector<Sensor>& sensors) {
   }
 }
 
-// Restores rings, risks and grade to the time of the last bulletin, because later changes are not
-// observable out of sight.
+// Restores rings, risks and grade as they were at the last bulletin. Later changes are not
+// observable without a sensor in range.
 void RestoreBulletin(const std::vector<Waypoint>& track, const Bulletin& bulletin,
                      ObservableDisaster& belief) {
   if (!track.empty()) {
@@ -118,7 +118,8 @@ void ObserveDisaster(const Farm& farm, std::size_t id, bool full,
   const Disaster& disaster = farm.disasters()[id];
   known.belief = disaster;
   known.age = 0;
-  // A ship observes a disaster if its edge is within sensor range (our choice, see docs/model.md).
+  // A ship observes a disaster if the edge of the disaster is within sensor range (our choice, see
+  // docs/model.md).
   known.visible = full || IsSeen(sensors, disaster.x, disaster.y, disaster.reach());
   const Bulletin& bulletin = farm.BulletinOf(id);
   known.known = known.visible || bulletin.step != kNone;

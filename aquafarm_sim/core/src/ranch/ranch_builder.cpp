@@ -42,7 +42,7 @@ using internal::Short;
 using internal::Text;
 using internal::YamlWriter;
 
-// Builds a ranch: fills the plan part by part, then writes and reads its scenario file.
+// Builds a ranch: fills the plan part by part, then writes the scenario's text and parses it.
 class Builder {
  public:
   explicit Builder(const RanchRequest& request) : request_(request) {
@@ -77,8 +77,8 @@ class Builder {
   }
 
  private:
-  // Completes the plan with what depends on the first draft of the scenario: the storms of an
-  // archive in reach, the view, and the values of devices. Returns whether the plan has changed.
+  // Completes the plan with the parts that depend on the first draft of the scenario: the storms in
+  // reach, the view, and the values of devices. Returns whether the plan has changed.
   bool CompleteFromDraft() {
     const bool storms = !request_.archive.files.empty();
     if (storms) SelectStorms();
@@ -100,8 +100,8 @@ class Builder {
     ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
   }
 
-  // Returns whether the ranch has too many states for a table to learn quickly. Networks then get
-  // routes by water as features, unless the farm is too large for them.
+  // Returns whether networks get routes by water as features. They do if the ranch has too many
+  // states for a table to learn quickly, and is small enough for routes.
   bool IsForNetworks() {
     constexpr std::uint32_t kSoonLearnt = 1'000'000;
     const std::uint32_t states = Encoder(ranch_.scenario).state_count();
@@ -141,7 +141,7 @@ class Builder {
     plan_.cell_size_m = cell_size_m;
   }
 
-  // The origin is the centre of cell (0, 0); the requested place is the middle of the ranch.
+  // Sets plan_.origin, the centre of cell (0, 0). The requested place is the middle of the ranch.
   GeoFrame Frame() {
     if (!request_.center) {
       throw InputError("center: got none, expected the position of the ranch on the chart");
@@ -253,8 +253,8 @@ class Builder {
     }
   }
 
-  // Returns the recorded track, continued by its newest forecast. If it has no forecast, one of
-  // --forecasts continues it, unless it is a best track, which is complete.
+  // Returns the recorded track, continued by its newest forecast or, if it has none, by one of
+  // --forecasts. Best tracks of CMA and JMA are complete: --forecasts does not continue them.
   StormTrack Continued(StormTrack recorded, TrackFormat format) {
     const bool complete = format == TrackFormat::kCma || format == TrackFormat::kJma;
     if (!request_.forecasts.empty()) {
@@ -300,7 +300,7 @@ class Builder {
     return track;
   }
 
-  // Sets the start and the end of the episode from the time at which the storm is over the ranch.
+  // Sets step duration, start and duration of the episode, by the storm's track if there is one.
   void SetTime() {
     plan_.step_s = request_.step_s.value_or(
         std::max(1.0, std::round(plan_.cell_size_m / (request_.speed_kn * kMpsPerKnot))));
@@ -371,13 +371,13 @@ class Builder {
            all.begin() + static_cast<std::ptrdiff_t>(to)};
   }
 
-  // Requires that the plan contains all disasters.
+  // Returns the max number of steps. All disasters must be in the plan before.
   std::int32_t StepLimit() const {
     if (ends_unknown_ && duration_ == plan_.storm_steps) return duration_;
     return duration_ > 0 ? duration_ + 100 : 5000;
   }
 
-  // Lists the notices that are in force during the episode, or all notices if it has no date.
+  // Lists the notices in force during the episode, or all notices if the episode has no date.
   void SayNotices() {
     if (request_.notices.empty()) return;
     const NoticeFile file = LoadNotices(request_.notices);
@@ -400,7 +400,7 @@ class Builder {
     SeaField field = LoadSeaField(sea.file, {sea.variable, time, request_.sea_depth_m}, frame,
                                   width(), height());
     NamedLayer layer{sea.name, ToLayer(field, frame, width(), height())};
-    // Rounded to the digits in the file, so that expressions give the same results in both.
+    // Rounded to the digits in the file, so that expressions give the results that the file gives.
     layer.layer = layer.layer.unaryExpr([](float value) {
       return std::isnan(value)
                  ? value

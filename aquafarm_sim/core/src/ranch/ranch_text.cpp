@@ -106,7 +106,7 @@ class Writer {
     if (!request_.sea_risk.empty()) Line("  risk: " + InQuotes(request_.sea_risk));
   }
 
-  // Writes the damage factors, by kind of device and kind of disaster, that are not 1.
+  // Writes the damage factors that differ from 1, by kind of device and kind of disaster.
   void WriteDamage() {
     Line("damage:\n  kinds:  # factors of the damage, docs/data.md");
     for (int device = 0; device < kDeviceKindCount; ++device) {
@@ -170,8 +170,8 @@ class Writer {
     return Value(rows);
   }
 
-  // Writes the tracks of the storms in reach, so that the scenario needs no other file. Before they
-  // are selected, writes the paths of the archive's files.
+  // Writes the tracks of the storms in reach, so that the scenario needs no other file. Before the
+  // storms are selected, writes the paths of the archive's files instead.
   void WriteArchive() {
     const ArchiveRequest& archive = request_.archive;
     Line("  - kind: typhoon");

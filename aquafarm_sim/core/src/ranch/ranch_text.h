@@ -22,7 +22,7 @@ struct RanchPlan {
   double cell_size_m{};
   std::optional<GeoPoint> origin;
   double step_s{};
-  std::int64_t start{};  ///< UTC of step 0; 0 without a storm and without a requested start
+  std::int64_t start{};  ///< UTC of step 0; 0 if neither a track nor a start is given
   std::int32_t step_limit{};
   Terrain terrain;
   std::vector<Cell> ports;        ///< empty: drawn at random

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Converts the sea of a scenario to one value per cell: fields of netCDF files, and expressions.
+// Converts fields of netCDF files and expressions of the sea to one value per cell of a farm.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -86,7 +86,7 @@ void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path
 
 namespace {
 
-constexpr std::size_t kMaxFileBytes = 4U << 20U;  // 10,000 waypoints or a sea need under 2 MiB
+constexpr std::size_t kMaxFileBytes = 4U << 20U;  // a sea of kMaxSeaValues has about 2 MiB
 
 // @param notices receives a line for each key that is given by its old name
 Scenario Parse(const std::string& text, const std::string& origin_name,

@@ -8,8 +8,8 @@
 ///   FieldChecker  checks structs created in code or received in messages
 ///
 /// Archives provide Field, Renamed (a key that has an old name), Struct, Optional, Structs (a list
-/// of blocks), and Has (whether a key is given). When(used, condition) sets whether the following
-/// keys are in use, and Always ends its effect.
+/// of blocks), and Has (whether a key is given). When(used, condition) sets whether the keys after
+/// it are in use. Always ends the effect of When.
 
 #include "aquafarm/grid/geo_frame.h"
 #include "aquafarm/scenario/limits.h"
@@ -26,8 +26,8 @@ struct SeaSource {
   std::string file;
   std::string variable;
   double depth_m{};
-  /// UTC [s since 1970]. If unset: the start of the episode; without a start, the first time of the
-  /// file.
+  /// UTC [s since 1970]. If unset, the start of the episode is used; without a start, the first
+  /// time of the file.
   std::optional<std::int64_t> time;
 };
 
@@ -226,7 +226,7 @@ void VisitMoney(Archive& a, S& s) {
   });
 }
 
-/// @param frame filled as soon as grid and time are known; required by the disasters' tracks
+/// @param frame set once grid and time are visited; the keys of disasters and of the sea use it
 template <typename Archive, typename S>
 void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
   a.Field("name", s.name, TextOf{1, 100}, Need::kRequired);
@@ -272,7 +272,7 @@ void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
   VisitFamily(a, s);
 }
 
-/// Archive that checks the values of structs, including unused ones.
+/// Archive that checks the values of structs, including values of keys that are not in use.
 class FieldChecker {
  public:
   static constexpr bool kReads = false;

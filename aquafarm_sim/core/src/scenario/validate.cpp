@@ -14,8 +14,9 @@ using internal::At;
 using internal::FieldError;
 using internal::Format;
 
-// Checks the radii of rings. Without a track, each ring must be larger than the one inside it. In
-// waypoints it must not be smaller, and 0 means that a ring is absent at that time.
+// Checks the number, radii and risks of rings. Without a track, each ring must be larger than the
+// ring inside it. In waypoints, a ring must not be smaller than the ring inside it, and 0 means
+// that a ring is absent at that time. Risks must be sorted, the worst first.
 void CheckRings(const std::string& path, const std::vector<float>& radii,
                 const std::vector<float>& risks, std::size_t rings, bool waypoint) {
   const std::string radii_path = internal::Join(path, "radii");
@@ -49,8 +50,9 @@ void CheckRings(const std::string& path, const std::vector<float>& radii,
   }
 }
 
-// Checks rings by quadrant: there is one entry per ring if `expected`, else none; radii hold the
-// largest quadrant of each ring; and no quadrant is larger in an inner ring than in an outer one.
+// Checks rings by quadrant. If `expected`, there must be one entry per ring, else no entry. Each
+// radius must be the largest quadrant of its ring. No quadrant may be larger in an inner ring than
+// in an outer one.
 void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& quadrants,
                     const std::vector<float>& radii, bool expected) {
   const std::string here = internal::Join(path, "quadrants");
@@ -73,8 +75,8 @@ void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& q
   }
 }
 
-// Checks that forecasts are in order of issue, that the points of each forecast are in order of
-// time and after its issue, and that either all or none of its points have rings.
+// Checks that forecasts are in order of issue. The points of each forecast must be in order of time
+// and after its issue. Either all of its points or none of them must have rings.
 void CheckForecasts(const std::string& path, const DisasterSpec& disaster) {
   const std::vector<IssuedForecast>& forecasts = disaster.forecasts;
   const auto check = [](const std::string& here, float step, float last, const std::string& what) {
@@ -189,7 +191,8 @@ void CheckSeas(const Scenario& scenario) {
   CheckValues("seas.device_values", seas.device_value, scenario, internal::kDeviceValue);
 }
 
-// Records the object on each cell and rejects a second object on a cell.
+// Records the object on each cell and rejects a second object on a cell. Only islands may overlap
+// each other.
 class Occupancy {
  public:
   enum Thing : std::uint8_t { kNothing, kIsland, kRock, kPort, kDevice };
@@ -248,7 +251,7 @@ void CheckFits(const char* path, std::int32_t wanted, std::int32_t& free, const 
 constexpr std::uint64_t kMaxRoutes = 16'777'216;  // 128 MiB per layout
 
 void CheckPlaces(const Scenario& scenario) {
-  constexpr std::int32_t kFewestCells = 4;  // the last six planes must hold a run (kRun bytes)
+  constexpr std::int32_t kFewestCells = 4;  // six planes must have at least kRun bytes
   if (scenario.CellCount() < kFewestCells) {
     throw FieldError("grid", "got " + Format(scenario.CellCount()) + " cells, expected at least " +
                                  Format(kFewestCells));

@@ -24,7 +24,7 @@ Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& lay
       parser.DefineVar(layers[i].name, &values[i]);
     }
     parser.SetExpr(expression);
-    std::vector<const double*> used;  // a cell without a value in another layer is known
+    std::vector<const double*> used;  // layers in the expression; NaN in others has no effect
     for (const auto& [name, value] : parser.GetUsedVar()) {
       if (value != nullptr) used.push_back(value);  // null for an unknown name, refused below
     }

@@ -37,9 +37,9 @@ class HeaderReader {
   std::uint64_t Tag() { return Word(4); }
   std::uint64_t Count() { return Word(version_ == 5 ? 8 : 4); }
   std::uint64_t Offset() { return Word(version_ == 1 ? 4 : 8); }
-  /// Reads a count with a limit that no real file exceeds.
+  /// Reads a count. A count above 65,536 marks the header as damaged.
   std::uint64_t FewCount() { return AtMost(Count(), std::uint64_t{1} << 16U); }
-  /// Reads the tag of a list, or 0 for an absent list, and returns the length of the list.
+  /// Reads the head of a list and returns its length. The head of an absent list consists of zeros.
   std::uint64_t ListCount(std::uint64_t tag) {
     const std::uint64_t got = Tag();
     const std::uint64_t count = FewCount();

@@ -271,8 +271,8 @@ Extent ExtentOf(const GeoFrame& frame, std::int32_t width, std::int32_t height) 
   return extent;
 }
 
-// Returns the offset (0, 360 or -360 degrees) after which the file's longitudes include the ranch's
-// longitude `near`; 0 if there is no such offset.
+// Returns the offset (0, 360 or -360 degrees) to add to the file's longitudes so that their range
+// contains the ranch's longitude `near`. Returns 0 if there is no such offset.
 double TurnOf(const std::vector<double>& longitude, double near) {
   const auto [west, east] = std::minmax_element(longitude.begin(), longitude.end());
   for (const double turn : {0.0, 360.0, -360.0}) {
@@ -284,7 +284,7 @@ double TurnOf(const std::vector<double>& longitude, double near) {
 void Unpack(const NcFile& file, int variable, std::vector<float>& values) {
   const double scale = file.Number(variable, "scale_factor").value_or(1.0);
   const double offset = file.Number(variable, "add_offset").value_or(0.0);
-  // These attributes are compared with the packed values. A fill value outside the range of the
+  // The attributes below are compared with the packed values. A fill value outside the range of the
   // type matches no value.
   const std::optional<double> own = file.Number(variable, "_FillValue");
   const std::optional<double> fill = own ? own : file.DefaultFill(variable);
@@ -298,7 +298,7 @@ void Unpack(const NcFile& file, int variable, std::vector<float>& values) {
   for (float& value : values) {
     const bool absent = same(fill, value) || same(missing, value) || !(value >= low) ||
                         !(value <= high) ||
-                        std::abs(value) > 9.9e35F;  // larger than any real value
+                        std::abs(value) > 9.9e35F;  // larger numbers mark missing values
     value = absent ? kNoSeaValue : static_cast<float>(value * scale + offset);
   }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Interpolates fields of the sea on the cells of a ranch. A build without netCDF contains it, too.
+// Interpolates fields of the sea on the cells of a ranch. A build without netCDF compiles this
+// file, too.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +12,8 @@ namespace aquafarm {
 namespace {
 
 // Position of a coordinate between two coordinates of the field. Locate returns nullopt for a
-// coordinate more than half a step outside the field.
+// coordinate that is more than half a mean step outside the field, or more than 0.5 if the field
+// has a single coordinate.
 struct Between {
   std::array<Eigen::Index, 2> index{};
   double part{};

@@ -61,7 +61,7 @@ std::vector<Notice> ReadWarnings(const JsonObject& answer, ParseContext& place) 
   return notices;  // empty if no warning is in force
 }
 
-// Returns the upper end of a range such as "<0.5m" or "1.0-1.5m"; nullopt for other texts.
+// Returns the upper end [m] of a range such as "<0.5m" or "1.0-1.5m"; nullopt for other texts.
 std::optional<double> WaveMax(const std::string& text) {
   if (text.size() < 2 || text.back() != 'm') return std::nullopt;
   const std::size_t from = text.find_first_of("-<");

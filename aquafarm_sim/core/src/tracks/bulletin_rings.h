@@ -14,7 +14,7 @@ inline constexpr double kMaxRadius_km = 3000.0;
 
 /// Reads the radii [km] of an object that has one key per quadrant, in the order NE, SE, SW, NW.
 /// Keys may be in upper case, too. Replaces missing and invalid radii by those of `fallback`, with
-/// a warning.
+/// a warning unless all keys are blank.
 /// @param path path of the object, for messages
 /// @param wind_kt wind of the ring, for messages
 std::array<double, kQuadrantCount> ReadQuadrants(
@@ -24,7 +24,8 @@ std::array<double, kQuadrantCount> ReadQuadrants(
 
 /// Adds the ring of a wind from the quadrants of a bulletin. Bulletins write 0 for "no such wind"
 /// and for "not known". If the storm's wind is unknown or at least `wind_kt`, four zeros mean that
-/// the radii are not known, and no ring is added. Otherwise they mean that no such wind blows.
+/// the radii are not known, and no ring is added. If the storm's wind is weaker, four zeros mean
+/// that no such wind blows.
 void AddSaidRing(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& radius_km,
                  StormFix& fix);
 

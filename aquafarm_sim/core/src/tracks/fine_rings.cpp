@@ -89,7 +89,8 @@ void SetEdge(const Quadrants& edge, std::size_t ring, StormWaypoint& at) {
   at.radii_km[ring] = *std::max_element(edge.begin(), edge.end());
 }
 
-// Returns the ratio of a ring's radius to its estimated radius; 0 if one of them is 0.
+// Returns the ratio of a ring's radius (root mean square of its quadrants) to its estimated radius;
+// 0 if one of them is 0.
 double SizeOf(const StormRings& storm, const StormWaypoint& at, std::size_t ring) {
   const double median_km = MedianOf(storm, at, ring);
   if (at.radii_km[ring] <= 0.0 || median_km <= 0.0) return 0.0;
@@ -107,8 +108,9 @@ bool IsReported(const StormFix& fix, const StormWaypoint& at, std::int32_t wind_
 
 // Sets each estimated ring of a point to its estimate times size^kept, where `size` is the ring's
 // ratio to its estimate at the last report. Rings of winds that the storm did not reach at the
-// report use the ratio of the outermost ring. Reported rings do not change. An estimated ring is
-// never smaller than a reported ring of a stronger wind, and never larger than the ring outside it.
+// report use at.size, the ratio of the outermost ring, which is set here. Reported rings do not
+// change. An estimated ring is never smaller than a reported ring of a stronger wind, and never
+// larger than the ring outside it.
 void Resize(const StormWaypoint& report, double kept, const StormFix& fix, StormRings& storm,
             StormWaypoint& at) {
   const std::size_t rings = storm.wind_kt.size();
@@ -163,7 +165,8 @@ StormWaypoint Larger(const StormRings& storm, const StormWaypoint& from, const S
   return held;
 }
 
-// Adds points to the long intervals that FineTrack did not divide. Returns their number.
+// Adds points to the long intervals that FineTrack did not divide, unless the rings at one end are
+// unknown. Returns the number of these intervals.
 std::int32_t HoldLarger(std::int64_t from, StormRings& storm) {
   std::vector<StormWaypoint> all;
   std::int32_t held = 0;

@@ -14,7 +14,8 @@ namespace {
 // Returns the indices of the longest ascending subsequence of fix times (patience sorting).
 std::vector<std::size_t> LongestAscending(const std::vector<StormFix>& fixes) {
   constexpr std::size_t kNoIndex = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> ends;  // by length - 1: index of the earliest last fix of a subsequence
+  // ends[k] is the index of the earliest fix that ends an ascending subsequence of length k + 1.
+  std::vector<std::size_t> ends;
   std::vector<std::size_t> before(fixes.size(), kNoIndex);
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     const auto at = std::lower_bound(
@@ -36,6 +37,7 @@ std::vector<std::size_t> LongestAscending(const std::vector<StormFix>& fixes) {
 }
 
 // Drops the fixes whose times break the order of the others.
+// @throws InputError if these are at least half of the fixes
 void KeepAscending(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext& place) {
   const std::vector<std::size_t> run = LongestAscending(fixes);
   if (run.size() == fixes.size()) return;
@@ -68,8 +70,8 @@ void KeepAscending(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext
   fixes = std::move(kept);
 }
 
-// Warns about a speed that no storm reaches. It allows for the rounding of both positions to a
-// tenth of a degree, which changes their distance by up to 16 km.
+// Warns about speeds above 150 km/h. Allows for the rounding of both positions to a tenth of a
+// degree, which changes their distance by up to 16 km.
 void WarnOfJumps(const std::vector<StormFix>& fixes, const std::string& storm,
                  ParseContext& place) {
   constexpr double kMax_kmh = 150.0;
@@ -91,8 +93,8 @@ void WarnOfJumps(const std::vector<StormFix>& fixes, const std::string& storm,
   }
 }
 
-// Drops fixes that are more than 30 days from the others, if they are fewer than half: their month
-// or year is wrong.
+// Drops fixes that are more than 30 days from the others, if they are fewer than half. A wrong
+// month or year causes such a gap.
 void KeepTogether(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext& place) {
   constexpr std::int64_t kLongestGap_s = 30 * 86400;
   std::size_t best = 0;

@@ -50,8 +50,8 @@ class RingScale {
     return EstimateRadius(path_.wind_kt[k], wind_.mps, point_.latitude, point_.averaging_min)
         .median_km;
   }
-  // Returns the ratio of recorded to estimated radius of the next weaker wind that has both, else
-  // StormPoint::size.
+  // Returns the ratio of recorded to estimated radius for the next weaker wind that has both.
+  // Without such a wind, returns StormPoint::size.
   double AnomalyOutside(std::size_t k) const {
     for (std::size_t outer = k + 1; outer < path_.rings; ++outer) {
       if (point_.median_km[outer] <= 0.0 || point_.radius[outer] <= 0.0) continue;

@@ -11,7 +11,8 @@
 namespace aquafarm {
 namespace {
 
-// Returns the waypoints within 60 degrees of the frame's origin, which must be consecutive.
+// Returns the waypoints within 60 degrees of the frame's origin.
+// @throws InputError if there are no such waypoints, or if they are not consecutive
 std::vector<StormWaypoint> Facing(const StormRings& storm, const GeoFrame& frame) {
   const auto faces = [&frame](const StormWaypoint& at) { return frame.Faces(at.position); };
   const auto& all = storm.waypoints;
@@ -55,7 +56,7 @@ StormPoint ToPoint(const StormWaypoint& from, const StormPath& path, const GeoFr
   return point;
 }
 
-// Sets the direction of motion at each fix to that from the previous fix to the next one.
+// Sets the direction of motion at each point to the direction from the previous to the next point.
 void SetDirections(std::vector<StormPoint>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const StormPoint& from = points[i == 0 ? 0 : i - 1];

@@ -22,7 +22,8 @@ double Largest(const Quadrants& quadrants) {
   return *std::max_element(quadrants.begin(), quadrants.end());
 }
 
-// Returns the quadrants of a ring; unless they are kept, all have the radius of the circle.
+// Returns the radii of a ring by quadrant. Without kQuadrants, they are reduced to those of a
+// circle.
 Quadrants Reduced(const WindRing& ring, RingReduction reduction) {
   Quadrants quadrants = ring.radius_km;
   if (reduction == RingReduction::kQuadrants) return quadrants;
@@ -43,8 +44,8 @@ std::vector<std::int32_t> WindsOf(const StormTrack& track) {
   return {64, 50, 34};
 }
 
-// Adds the ring of 34 kt, as estimated, where a fix has one of 30 kt only: both differ from their
-// medians by the same factor.
+// Adds a ring of 34 kt, marked as estimated, to a fix with a ring of 30 kt but without one of 34
+// kt. Both radii are assumed to differ from their medians by the same factor.
 void DeriveGale(StormFix& fix) {
   const WindRing* wider = fix.Ring(30);
   if (wider == nullptr || fix.Ring(34) != nullptr || !fix.wind_mps) return;
@@ -103,7 +104,7 @@ StormRings ToRings(const StormTrack& track, RingReduction reduction,
     waypoint.wind_mps = fix.wind_mps;
     waypoint.averaging_min = fix.averaging_min;
     waypoint.forecast = fix.forecast;
-    // Without a wind, use the lower limit of the grade. Below TS there are no rings.
+    // If the wind is unknown and the grade is at least TS, uses the lower limit of the grade.
     if (!fix.wind_mps && fix.grade >= StormGrade::kTropicalStorm) {
       fix.wind_mps = LowestWindOf(fix.grade);
     }

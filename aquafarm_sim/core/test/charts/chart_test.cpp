@@ -91,8 +91,8 @@ TEST(Coast, FillsPolygonsAndLeavesTheirLakes) {
   ASSERT_EQ(coast.polygons.size(), 2U);
   EXPECT_EQ(coast.polygons[0].size(), 2U) << "a shore and a lake";
   EXPECT_TRUE(coast.warnings.empty());
-  // A cell has 964.6 m, which is approximately 0.01 degrees of longitude; 0.01 degrees of latitude
-  // are 1108.5 m. The island covers x from 0.43 to 5.43 and y from 0.39 to 6.13.
+  // A cell is 964.6 m wide, which is approximately 0.01 degrees of longitude; 0.01 degrees of
+  // latitude are 1108.5 m. The island covers x from 0.43 to 5.43 and y from 0.39 to 6.13.
   const GeoFrame frame({29.9966, 121.9957}, 964.6);
   const LandShare share = ShareOfLand(coast, frame, 12, 8);
   EXPECT_EQ(share(1, 1), 1.0F);
@@ -103,7 +103,7 @@ TEST(Coast, FillsPolygonsAndLeavesTheirLakes) {
   EXPECT_NEAR(share.sum(), (5.0 * 5.0 - 1.0 + 0.5) * 1108.5 / 964.6, 0.8) << "in all";
 }
 
-// The projection on the tangent plane maps the far hemisphere onto the ranch.
+// The projection on the tangent plane would map the far hemisphere onto the ranch, too.
 TEST(Coast, OfTheFarSideIsIgnored) {
   const auto land = [](const std::string& ring, GeoPoint origin) {
     const Coast coast = ParseCoast(R"({"type": "Polygon", "coordinates": [)" + ring + "]}", "x");

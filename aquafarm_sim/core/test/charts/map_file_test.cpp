@@ -57,7 +57,7 @@ std::vector<int> Values(const Grid<std::int8_t>& grid) {
   return {grid.data(), grid.data() + grid.size()};
 }
 
-// Grey values 0, 128, 255 and 100 are occupied by 1, 0.498, 0 and 0.608.
+// Grey values 0, 128, 255 and 100. Their occupied fractions are 1, 0.498, 0 and 0.608.
 const std::string kPicture = std::string("P5\n# a comment\n2 2 255\n") + '\0' + "\x80\xff\x64";
 
 TEST_F(MapFiles, TurnThePictureSouthUp) {
@@ -265,7 +265,8 @@ TEST(RealMaps, AreReadAsMapServerReadsThem) {
                          "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
   const MapFile bmp = LoadMap(yaml.string());
   EXPECT_EQ(Values(bmp.occupancy), Values(png.occupancy));
-  // Its bytes are blue, green and red, starting in the south; rows are padded to four bytes.
+  // A pixel of the BMP has bytes for blue, green and red. Rows start in the south and are padded to
+  // four bytes.
   const std::string bytes = Bytes(maps / "testmap.bmp");
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
   const std::size_t start = at(10) + 256U * at(11);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A client that is compiled with AVX instructions, for which Eigen would align memory to 32 bytes,
-// shares Eigen members with the library, which is compiled without. Both must allocate alike.
+// This client is compiled with AVX instructions, and the library is compiled without them. With
+// AVX, Eigen would align memory to 32 bytes. The client and the library share Eigen members, so
+// both must allocate memory in the same way.
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -74,7 +74,7 @@ TEST(Accounts, AtSeaLossIsTheShareOfTheRemainingValue) {
   scenario.disasters = {test::StillDisaster(2.0F, 2.0F, {1.0F}, {-5.0F})};
   Farm farm = MakeFarm(scenario);
   while (!farm.over()) StepOne(farm, Action::kHold);
-  // Ten steps at a risk of 5 take half of the health; of the rest a quarter is lost.
+  // Ten steps at a risk of 5 take half of the health. A quarter of the remaining value is lost.
   Expect(MonitoringOf(farm), 100000, 37500, 50000, 12500);
   EXPECT_EQ(farm.record().ship_steps, 0) << "the ship stayed in the port";
   EXPECT_EQ(farm.SettleAccounts()->OperatingCost(), 0);
@@ -130,7 +130,7 @@ TEST(Accounts, MoneyChangesNoEpisode) {
   EXPECT_EQ(a.Hash(), b.Hash());
 }
 
-// A scenario whose rules and prices are drawn, with amounts down to the cent.
+// A scenario with random rules and prices. Amounts have two decimals.
 Scenario RandomInsured(RandomStream& rng) {
   Scenario scenario = test::CrowdedScenario(1 + static_cast<std::int32_t>(rng.Below(3)),
                                             static_cast<std::int32_t>(rng.Below(3)));

@@ -17,7 +17,8 @@ namespace {
 using test::MakeFarm;
 using test::StillDisaster;
 
-/// A storm that moves north along x = 5, one cell per step, and ships that only see near things.
+/// A storm that moves north along x = 5, one cell per step. The sensors of the ships have a short
+/// range.
 Scenario NorthernStorm(ViewMode mode = ViewMode::kPartial) {
   Scenario scenario = test::CrowdedScenario(2, 0);
   DisasterSpec storm;
@@ -33,7 +34,7 @@ Scenario NorthernStorm(ViewMode mode = ViewMode::kPartial) {
   return scenario;
 }
 
-/// A forecast from step 10 that leads the storm east and lets it grow.
+/// A forecast issued at step 10. It leads the storm east and lets it grow.
 IssuedForecast Eastward() {
   IssuedForecast forecast{10.0F,
                           {{40.0F, 35.0F, -50.0F, 4, {3.0F, 6.0F}, {-20.0F, -5.0F}},
@@ -128,7 +129,7 @@ TEST(IssueForecast, KeepsTheLastKnownMotionAndGrowthAfterItsLastPoint) {
   Farm farm = At10(scenario);
   const Disaster now = farm.disasters()[0];
   ASSERT_FLOAT_EQ(now.radius[0], 3.25F);
-  // One point: its present motion continues from there.
+  // A forecast with one point: after it, the disaster continues with its present motion.
   farm.IssueForecast(0, {5.0F, {{30.0F, 14.0F, 4.0F}}});
   EXPECT_FLOAT_EQ(ForecastAt(farm, 0, 10, 50)[0], 14.0F + 20.0F * now.dx);
   EXPECT_FLOAT_EQ(ForecastAt(farm, 0, 10, 50)[1], 4.0F + 20.0F * now.dy);
@@ -143,7 +144,7 @@ TEST(IssueForecast, KeepsTheLastKnownMotionAndGrowthAfterItsLastPoint) {
   FollowTrack(ghost, track, 70);
   EXPECT_NEAR(ghost.radius[0], 3.25F + 60.0F * 0.125F, 1e-4F);
   EXPECT_NEAR(ghost.x, 14.0F + 40.0F * now.dx, 1e-4F);
-  // Two points: their motion continues, and rings of its own grow after the last point.
+  // A forecast with two points: after the last one, their motion continues and their rings grow.
   farm.IssueForecast(0, {6.0F,
                          {{30.0F, 14.0F, 4.0F, 3, {4.0F}, {-10.0F}, {}},
                           {40.0F, 24.0F, 9.0F, 3, {5.0F}, {-10.0F}, {}}}});

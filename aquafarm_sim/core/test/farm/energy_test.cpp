@@ -30,8 +30,8 @@ Scenario EnergyScenario() {
   return scenario;
 }
 
-// Worked out by hand: 2 kWh/km, half more for the device aboard, 0.4 · 10 / 20 more in the risk,
-// 0.1 kWh in each step; 500 m and 707.10678 m per move.
+// Computed by hand: 2 kWh/km, half more for the device aboard, 0.4 · 10 / 20 more in the risk, and
+// 0.1 kWh in each step. A move has 500 m or 707.10678 m.
 TEST(Energy, OfATrajectoryIsAsComputedByHand) {
   struct {
     Action action;

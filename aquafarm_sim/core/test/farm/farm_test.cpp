@@ -24,7 +24,7 @@ using test::TinyScenario;
 
 Farm TinyFarm() { return MakeFarm(TinyScenario()); }
 
-// Moves from the port (2,0) north to the device at (2,2).
+// Moves from the port (2,0) north to the device at (2,2) and picks it up.
 void FetchTheDevice(Farm& farm) {
   StepOne(farm, Action::kNorth);
   StepOne(farm, Action::kNorth);

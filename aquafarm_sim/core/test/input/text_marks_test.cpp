@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every text reader ignores a byte order mark and accepts DOS line ends.
+// Readers of text files ignore a byte order mark and accept DOS line ends.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -41,7 +41,7 @@ Named NamedFeatures(const Farm& farm, std::int32_t ship = 0) {
   return Name(encoder, values.data());
 }
 
-/// The tiny farm with a weak disaster far away and room for two more.
+/// The tiny farm with a weak disaster far away, and slots for two more.
 Scenario WithSlots() {
   Scenario scenario = TinyScenario();
   scenario.disasters = {StillDisaster(12, 0, {2}, {-5})};
@@ -89,7 +89,7 @@ TEST(DisasterSlots, KeepTheMostDangerousOfTooMany) {
                   (36.0F - static_cast<float>(farm.ships()[0].cell.x)) / 5.0F);
 }
 
-// The definition of the header, written as plain loops.
+// Slow oracle: the danger as RankByDanger defines it, in plain loops.
 double SlowDanger(const Farm& farm, const View& view, std::size_t id) {
   const Disaster& disaster = farm.disasters()[id];
   double worst = 0.0;

@@ -82,7 +82,7 @@ TEST(TabularIndex, ATinyFarmReachesExactlyItsStates) {
       seen.insert(index);
     }
   }
-  // All devices are delivered only at the port: 8 cells × 7 sets plus one state.
+  // The state with all devices delivered is only reached in the port: 8 cells × 7 sets plus one.
   EXPECT_EQ(seen.size(), 8U * 7 + 1);
 }
 

@@ -67,18 +67,21 @@ TEST(Tokens, DescribeARouteAndTheRisk) {
   EXPECT_FLOAT_EQ(tokens.at("device0.worth"), 0.8F);
   EXPECT_FLOAT_EQ(tokens.at("device0.port_distance"), 3.0F / kTokenLength);
   EXPECT_EQ(tokens.at("device0.monitoring"), 1.0F);
-  // From (13, 9) to (8, 13); and to the port (9, 15) and on, which is shorter than by (15, 12).
+  // Devices are at (13, 9) and (8, 13). The shortest route between them with a port goes through
+  // (9, 15), not (15, 12).
   EXPECT_FLOAT_EQ(tokens.at("device0.onward_device"), 5.0F / kTokenLength);
   EXPECT_FLOAT_EQ(tokens.at("device0.onward_port"), 0.5F * (6.0F + 2.0F) / kTokenLength);
   EXPECT_FLOAT_EQ(tokens.at("port0.onward"), 3.0F / kTokenLength);
   EXPECT_FLOAT_EQ(tokens.at("port1.onward"), 2.0F / kTokenLength);
-  // The disaster's edge, 3.5 cells from (13, 11), is past (9, 15)'s row of ports: never there.
+  // The disaster moves west along y = 11 with a radius of 3.5 cells, so it never reaches (9, 15).
   EXPECT_EQ(tokens.at("port1.risk_now"), 0.0F);
-  // The device at (13, 9) is inside the outer ring: risk 6 of 20, and loses 0.01 · 6 · 80.
+  // The device at (13, 9) is inside the outer ring. Its risk is 6 of 20, and it loses 0.01 · 6 ·
+  // 80.
   EXPECT_FLOAT_EQ(tokens.at("device0.risk_now"), 0.3F);
   EXPECT_FLOAT_EQ(tokens.at("device0.loss"), 4.0F);  // 4.8, clamped
   EXPECT_EQ(tokens.at("device0.rings_in"), 1.0F);
-  // The edge moves west by 0.25 a step; (8, 13) is sqrt(3.5² − 2²) east of the edge's crossing.
+  // The disaster moves west by 0.25 cells per step. It reaches (8, 13), which is 2 cells north of
+  // its path, when its centre is sqrt(3.5² − 2²) cells east of it.
   const float steps = (5.0F - std::sqrt(3.5F * 3.5F - 4.0F)) / 0.25F;
   EXPECT_NEAR(tokens.at("device1.rings_in"), 8.0F / (8.0F + steps), 1e-5F);
   EXPECT_EQ(tokens.at("ship.near_blocked.-2.1"), 1.0F);  // the rock at (9, 11)
@@ -233,7 +236,7 @@ TEST(Tokens, MoreEntitiesThanSlotsKeepTheNearest) {
     crowded.devices.sites.push_back({{23, 23 - i}, DeviceKind::kMonitoring, 50.0F, false});
   }
   const Tokens tokens = Named(crowded, {20, 5});
-  // The devices of rows 23 to 11 are the farthest first: ids 0, 1 and 2 are left out.
+  // The devices are in rows 23 to 11. The farthest three, ids 0, 1 and 2, have no slot.
   EXPECT_FLOAT_EQ(tokens.at("device0.north"), (20.0F - 5.0F) / kTokenLength);
   EXPECT_FLOAT_EQ(tokens.at("device9.north"), (11.0F - 5.0F) / kTokenLength);
 }

@@ -94,7 +94,8 @@ TEST(PartialView, OutOfSightRingsAreThoseOfTheBulletin) {
   }
 }
 
-// Setting a disaster announces it; where it is now stays unknown out of sight.
+// SetDisaster announces the rings and the grade of a disaster. Its position stays unknown to a ship
+// without a sensor in range.
 TEST(PartialView, OutOfSightAReplacementIsAnnouncedButNotItsPlace) {
   Scenario scenario = PartialScenario();
   scenario.view.bulletin_period = 10;
@@ -311,7 +312,7 @@ TEST(MonitoringDevice, ChangesNothingInFullViewOrWithoutARadius) {
   EXPECT_EQ(view.sensors.size(), 1U);
 }
 
-// Compares the sight over all cells of a farm with a search by whole numbers.
+// Compares the visible cells of a farm with an oracle that computes distances in integers.
 TEST(MonitoringDevice, AgreesWithASlowOracleOnEveryCell) {
   for (const std::int32_t radius : {1, 4, 7}) {
     Scenario scenario = BuoyScenario();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The message names the inputs of a ranch that do not fit together. Longitudes are equal modulo
-// 360.
+// Inputs of a ranch that do not fit together are named in the message. Longitudes that differ by
+// 360 degrees are equal.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -125,7 +125,8 @@ TEST_F(ForecastRanch, KeepsTheLastWindWhereAForecastHasNone) {
   const BuiltRanch ranch = Make(
       R"(, "forecast": [{"points": [{"time": "2021-07-25T20:00:00", "lat": 30.2, "lng": 122.0}]}])");
   EXPECT_TRUE(Says(ranch.decided, "34 kt over the ranch for "));
-  // 300 km in cells of 500 m. The storm keeps its size relative to the estimate, farther north.
+  // 300 km are 600 cells of 500 m. The estimated radius increases to the north, and the storm keeps
+  // its size relative to it.
   EXPECT_NEAR(ranch.scenario.disasters.at(0).track.back().radii.back(), 623.0F, 1.0F);
 }
 

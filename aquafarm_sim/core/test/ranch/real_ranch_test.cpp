@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranches built from published files: excerpts of every clone, and whole files, without which a
-// test is skipped.
+// Ranches built from published files: from excerpts, which every clone has, and from whole files. A
+// test whose whole files are missing is skipped.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ TEST(RealExcerpts, GiveDevicesTheirValueFromTheSea) {
   EXPECT_NE(Refused(request).find("expected an area with the ranch at"), std::string::npos);
 }
 
-// Chart and track of every clone: the track has the rings of its own agency.
+// Every clone has this chart and this track. The track has the rings of its own agency.
 TEST(RealExcerpts, OfJmaMakeARanch) {
   RanchRequest request = Request();
   request.track = (kData / "real" / "jma_in_fa_2021.txt").string();
@@ -80,8 +80,9 @@ TEST(RealFiles, OfBulletinsHaveNoForecasts) {
             "202106.json, expected bulletins with forecast points");
 }
 
-// Returns a scenario with the waypoints of its first storm that are at a step of another one's. The
-// shipped files were made before the command wrote waypoints between those of the track.
+// Returns a scenario without the waypoints of its first storm that are between those of another
+// scenario. The shipped files were made before the command wrote waypoints between those of the
+// track.
 Scenario AtStepsOf(const Scenario& other, Scenario scenario) {
   std::vector<Waypoint>& track = scenario.disasters[0].track;
   const std::vector<Waypoint>& steps = other.disasters[0].track;

@@ -19,7 +19,7 @@ Scenario Family() {
   return LoadScenario(AQUAFARM_CORE_DIR "/../scenarios/families/ranch_family.yaml");
 }
 
-/// Extremes of what was drawn.
+/// Smallest and largest drawn value.
 struct Seen {
   void Add(std::int32_t value) {
     min = std::min(min, value);

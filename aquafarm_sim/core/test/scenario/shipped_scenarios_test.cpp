@@ -106,7 +106,7 @@ TEST(Truncated, IsTruncatedBeforeItsDisasterEnds) {
   EXPECT_TRUE(farm.disasters()[0].active());
 }
 
-// The same episodes as `paper`, so that one clairvoyant optimum serves both.
+// Both scenarios have the same episodes, so that one clairvoyant optimum applies to both.
 TEST(PaperPlain, DiffersFromPaperInItsViewAlone) {
   Scenario plain = Load("paper_plain");
   const Scenario paper = Load("paper");

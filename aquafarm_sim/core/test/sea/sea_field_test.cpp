@@ -355,7 +355,7 @@ TEST_F(SeaFields, WithCoordinatesThatAreNoneAreRefused) {
   EXPECT_EQ(refused({30.1, 30.2, 30.3}, {122.1, 122.2, 122.3}), "was read");
   EXPECT_EQ(refused({30.1, 30.2, 95}, {122.1, 122.2, 122.3}),
             "lat: got a latitude of 95, expected [-90, 90]");
-  // Steps of 360 degrees from the ranch to such a longitude took minutes, or never ended.
+  // Moving such a longitude to the ranch in steps of 360 degrees would take minutes or never end.
   EXPECT_EQ(refused({30.1, 30.2, 30.3}, {122.1, 122.2, 1.0e18}),
             "lon: got a longitude of 1e+18, expected [-180, 360]");
   EXPECT_EQ(refused({30.1, 30.2, 30.2}, {122.1, 122.2, 122.3}),

@@ -88,7 +88,7 @@ TEST(DrawnStorms, AreNearestWithinTheEpisode) {
         at = step;
       }
     }
-    // 18 to 30 hours of 7.5 steps.
+    // 18 to 30 hours; an hour has 7.5 steps.
     EXPECT_GE(at, 18.0 * 7.5 - 1.0) << episode;
     EXPECT_LE(at, 30.0 * 7.5 + 1.0) << episode;
   }
@@ -346,7 +346,7 @@ TEST(StormsKey, OfAnArchiveOfDecadesIsReadInHalfASecond) {
   text.replace(text.find("[2000"), 5, "[1979");
   double least_s = 1e9;
   for (int i = 0; i < 5; ++i) {
-    const std::clock_t start = std::clock();  // of this process: others use the machine, too
+    const std::clock_t start = std::clock();  // CPU time of this process
     ParseScenario(text, "ranch.yaml");
     least_s = std::min(least_s, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
   }

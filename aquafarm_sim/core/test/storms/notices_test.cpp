@@ -71,7 +71,8 @@ TEST(Anchorages, WithoutForecastsAreSaid) {
   }
 }
 
-// Periods of the sample, with the time of publication and the text with days and hours.
+// Returns the start of the first notice of the sample, after replacing its time of publication and
+// its periods.
 std::int64_t StartOf(const std::string& published, const std::string& period) {
   std::string text = Sample("anchorage.json");
   text.replace(text.find("2026043011"), 10, published);

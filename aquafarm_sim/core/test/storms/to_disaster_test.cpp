@@ -31,7 +31,7 @@ WindRing Ring(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& ra
   return {wind_kt, radius_km, false};
 }
 
-// Passes the ranch from east to west in 20 hours, with one degree of longitude (96.5 km) in five
+// Passes the ranch from east to west in 20 hours. One degree of longitude (96.5 km) takes five
 // hours.
 StormTrack WestGoing() {
   StormTrack track;

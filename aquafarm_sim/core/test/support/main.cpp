@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// main() of the tests of a folder. With --file=NAME it runs those of NAME.cpp alone.
+// main() of the tests of a folder. With --file=NAME it runs only the tests of NAME.cpp.
 #include <gtest/gtest.h>
 
 #include <cstdio>

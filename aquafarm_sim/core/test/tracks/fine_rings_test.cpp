@@ -102,7 +102,7 @@ TEST_F(Fine, WindsOfTwoAveragingPeriodsAreNotMixed) {
   EXPECT_EQ(Gale(6), 300.0);
 }
 
-// Unknown winds stay unknown: a radius of 0 there is no calm.
+// Where the wind is unknown, a radius of 0 does not mean calm.
 TEST_F(Fine, NothingIsAddedNextToAPointWithoutWindAndRadii) {
   Add(0, 32.0, 300.0);
   Add(12, std::nullopt);

@@ -119,7 +119,7 @@ TEST(FindTrack, TakesIdsBeforeNamesAndNoEmptyWord) {
   }
 }
 
-// No reader waits for a pipe, or reads from a device without end.
+// A reader neither waits for a pipe nor reads endlessly from a device.
 TEST(LoadStormFile, NamesAFileThatIsNot) {
   const std::string pipe =
       (std::filesystem::temp_directory_path() / ("hazard_file_test." + std::to_string(getpid())))
@@ -167,7 +167,7 @@ TEST(LoadStormFile, RefusesAHugeFileWithoutReadingIt) {
   std::filesystem::remove(path);
 }
 
-// A search for the line of each bad value once took a minute for a file of 150 MB.
+// Searching the line of each bad value would take a minute for a file of 150 MB.
 TEST(StormFile, OfManyBadValuesIsReadInTime) {
   const std::string point =
       R"({"time": "2021-07-25T14:00:00", "lat": 30, "lng": 122, "pressure": 50})";

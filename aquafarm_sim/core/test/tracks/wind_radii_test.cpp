@@ -149,9 +149,10 @@ TEST(WindRadii, MatchTheRecordedRings) {
   }
 }
 
-// The rings of two storms alone. Over 24,494 bulletin rings the median ratios of the former
-// estimate were 0.68, 1.27 and 1.79; over these two storms they are 0.93, 1.60 and 2.36, as the
-// storms are smaller than most. The relation is fitted to the former.
+// Uses only the rings of two storms, which are smaller than most. The median ratios of a former
+// estimate at 34, 50 and 64 kt were 0.68, 1.27 and 1.79 over 24,494 bulletin rings, and 0.93, 1.60
+// and 2.36 over these two storms. The ratios of the present estimate are scaled by the quotients,
+// because its coefficients for the CMA follow from the 24,494 rings.
 TEST(WindRadii, OfBulletinsAllowForTwoSmallStorms) {
   std::vector<StormTrack> tracks;
   for (const char* name : {"202106.json", "201909.json"}) {

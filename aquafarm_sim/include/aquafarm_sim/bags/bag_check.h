@@ -5,10 +5,12 @@
 ///
 ///   spec ------> scenario, seed, episode --> farm
 ///   state k ---> actions of its ships -----> step --> compare every field and the hash
+///   chart -----> compare if it has the stamp of the spec
+///   risk ------> compare if it has the stamp of state k
 ///   episode ---> compare the summary
 ///
-/// Values that the simulation does not determine are copied from the recording and not compared:
-/// stamps, pace, rate, pauses, frames, number of farms.
+/// Some values are not compared, because the simulation does not determine them: stamps, pace,
+/// rate, pauses, frames, the number of farms and the index of the farm.
 
 #include <cstdint>
 #include <string>
@@ -30,8 +32,8 @@ struct BagCheck {
 /// Returns ", changed from outside at step 20, 31"; empty if there was no external change.
 std::string ChangesInWords(const BagCheck& check);
 
-/// Checks every episode of the bag at `path`.
-/// @param ns namespace of the ranch; empty if the bag contains only one ranch
+/// Checks the episodes of a ranch in the bag at `path`, up to the first difference.
+/// @param ns namespace of the ranch; may be empty if the bag contains only one ranch
 /// @throws InputError if the bag cannot be checked, for example because it is damaged, contains no
 ///         spec, or was recorded by another version
 BagCheck CheckBag(const std::string& path, const std::string& ns);

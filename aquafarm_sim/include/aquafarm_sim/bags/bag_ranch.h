@@ -9,10 +9,11 @@
 
 namespace aquafarm_sim {
 
-/// Returns the namespace of a ranch in a bag, with a trailing slash.
+/// Returns the prefix of the topics of a ranch in a bag, for example "/aquafarm/".
 /// @param path path of the bag, for error messages
-/// @param ns namespace of the ranch; empty if the bag contains only one ranch
-/// @throws aquafarm::InputError if the bag has no such ranch, or several and `ns` is empty
+/// @param ns namespace of the ranch; may be empty if the bag contains only one ranch
+/// @throws aquafarm::InputError if the bag does not contain this ranch, or if `ns` is empty and the
+///         bag contains several ranches
 std::string FindRanch(const rosbag::Bag& bag, const std::string& path, const std::string& ns);
 
 }  // namespace aquafarm_sim

@@ -13,8 +13,9 @@ struct Damage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Checks that the index of a bag agrees with its content. A bag without an index passes, because
-/// rosbag reports the missing index when it opens the bag.
+/// Checks that the index of a bag agrees with its content. Does not check a bag without an index,
+/// an unreadable file and a file of at most 13 bytes, because rosbag reports these when it opens
+/// the bag.
 /// @throws Damage or rosbag::BagException if the bag is damaged or not a bag of version 2.0
 /// @throws aquafarm::InputError if the bag is encrypted or the file does not exist
 void CheckStructure(const std::string& path);

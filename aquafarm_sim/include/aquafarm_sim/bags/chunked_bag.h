@@ -3,7 +3,7 @@
 
 /// Writes a bag of format 2.0 (http://wiki.ros.org/Bags/Format/2.0) with lz4 compression. Each
 /// chunk is assembled in memory and written when it is complete. docs/decisions/chunked_bag.md
-/// gives the reasons for not using rosbag::Bag.
+/// explains why rosbag::Bag is not used.
 
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
@@ -31,7 +31,7 @@ class ChunkedBag {
   /// @param time must not be earlier than the time of the previous message
   /// @throws std::invalid_argument if `time` is earlier
   /// @throws std::length_error if the chunk would exceed 256 MiB
-  /// @throws std::system_error if the file cannot be written
+  /// @throws std::system_error if the chunk cannot be compressed or the file cannot be written
   template <typename Message>
   void Write(const std::string& topic, const ros::Time& time, const Message& message) {
     namespace traits = ros::message_traits;
@@ -49,7 +49,7 @@ class ChunkedBag {
 
   /// Writes the last chunk and the index. If Close was not called, `rosbag reindex` can recover the
   /// chunks that were written.
-  /// @throws std::system_error if the file cannot be written
+  /// @throws std::system_error if the chunk cannot be compressed or the file cannot be written
   void Close();
 
  private:

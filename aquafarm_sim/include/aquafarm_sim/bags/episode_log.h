@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Compact log of an episode: seed, index, actions and external changes, with one byte per agent
-/// and step. From this log the episode is simulated again, bit-identically, and written as a bag.
+/// Compact log of an episode: seed, index, actions and external changes. The actions take one byte
+/// per agent and step. From this log the episode is simulated again, bit-identically, and written
+/// as a bag.
 
 #include <cstdint>
 #include <memory>
@@ -24,7 +25,7 @@ struct ReplayError : std::runtime_error {
 struct EpisodeLog {
   /// The farm's saved state after an external change, such as a bulletin.
   struct Change {
-    std::int32_t step{};  ///< number of steps taken before the change
+    std::int32_t step{};  ///< number of steps of the episode before the change
     std::string state;
   };
   std::int32_t farm{};
@@ -32,10 +33,12 @@ struct EpisodeLog {
   std::uint64_t episode{};
   bool paced{};                       ///< pace at the start of the episode
   double rate_hz{};                   ///< rate at the start of the episode; 0: that of BagFormat
-  std::int32_t first_step{};          ///< steps before the log starts; > 0 if a state was loaded
+  std::int32_t first_step{};          ///< number of steps that were taken before the log starts
   std::vector<std::uint8_t> actions;  ///< [steps, agents]
-  std::vector<Change> changes;        ///< by ascending step; includes a loaded state
-  aquafarm::EpisodeRecord record;     ///< valid after the end of the episode
+  /// External changes by ascending step. If first_step > 0, the first entry is the farm's state at
+  /// this step.
+  std::vector<Change> changes;
+  aquafarm::EpisodeRecord record;  ///< valid after the end of the episode
 };
 
 /// Properties of the bags that are the same for all episodes.
@@ -60,9 +63,9 @@ class EpisodeBagWriter {
  public:
   EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> scenario, BagFormat format);
 
-  /// Writes spec, chart, risk (of every tenth and the last step), all states, the external changes
-  /// and the summary to a bag. The bag is written to path.partial and then renamed to `path`. After
-  /// an error no partial bag remains.
+  /// Writes a bag with spec, chart, all states, the external changes and the summary. Risk is
+  /// written for every tenth step and for the last one. The file is first written as `path`.partial
+  /// and then renamed. After an error no partial bag remains.
   /// @throws ReplayError if the number of steps, the return or the end reason differs from the
   ///         log's record
   /// @throws std::runtime_error if the bag cannot be written

@@ -20,8 +20,8 @@
 
 namespace aquafarm_sim {
 
-/// Selects the episodes to keep. kBest keeps one bag, which each episode with a higher return
-/// replaces; kWorst keeps the bag of the lowest return. kFailures keeps episodes in which not every
+/// Selects the episodes to keep. kBest keeps one bag: that of the episode with the highest return
+/// so far. kWorst keeps that of the lowest return. kFailures keeps episodes in which not every
 /// device was delivered.
 struct Keep {
   enum class Which : std::uint8_t { kNone, kAll, kEvery, kBest, kWorst, kFailures };
@@ -35,8 +35,9 @@ Keep ParseKeep(const std::string& text);
 
 /// Limits of the backlog of unwritten episodes.
 struct RecorderLimits {
-  /// Max size of the unwritten actions [bytes]; the farms wait while it is reached. The default is
-  /// the work of about one second: the thread writes about 300,000 steps per second.
+  /// The farms wait while the size of the unwritten actions is at least this [bytes]. With one
+  /// agent the default is the work of about one second: the thread writes about 300,000 steps per
+  /// second.
   std::size_t waiting_bytes{300'000};
   std::chrono::milliseconds wait{10'000};  ///< max wait of the farms; recording stops after it
 };
@@ -53,13 +54,13 @@ class EpisodeRecorder final : public FarmRecorder {
 
   void OnStart(const aquafarm::Farm& farm, std::int32_t number,
                const MessageContext& context) override;
-  /// Appends a step. After the last step of a kept episode it waits while the backlog reaches
-  /// limits.waiting_bytes. After limits.wait it stops recording.
+  /// Appends a step. After the last step of a kept episode, waits while the backlog has at least
+  /// limits.waiting_bytes. If this takes longer than limits.wait, recording stops.
   void OnStep(const aquafarm::Farm& farm, std::int32_t number,
               const std::uint8_t* actions) override;
   void OnIntervention(const aquafarm::Farm& farm, std::int32_t number) override;
 
-  std::uint64_t kept() const;  ///< number of bags written so far
+  std::uint64_t kept() const;  ///< number of bags written so far, also of replaced ones
   std::string fault() const;   ///< reason why recording stopped; empty if it has not
 
  private:
@@ -72,8 +73,8 @@ class EpisodeRecorder final : public FarmRecorder {
   const std::string folder_;
   EpisodeBagWriter writer_;  // used only by the writing thread
   const RecorderLimits limits_;
-  std::vector<EpisodeLog> logs_;  // by farm; used only by the ranch's thread
-  std::optional<float> extreme_;  // kBest, kWorst: best or worst return so far
+  std::vector<EpisodeLog> logs_;  // by farm; used only in callbacks, under the FarmServer's mutex
+  std::optional<float> extreme_;  // kBest, kWorst: best or worst return so far; as logs_
   std::string extreme_path_;      // bag of that episode; used only by the writing thread
 
   mutable aquafarm::Mutex mutex_;

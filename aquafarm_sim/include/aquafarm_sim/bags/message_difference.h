@@ -11,12 +11,12 @@
 
 namespace aquafarm_sim {
 
-/// Returns the first difference between two printed messages: "ships[0].reward: got -1, simulated
-/// -6".
+/// Returns the first difference between two printed messages, for example "ships[0].reward: got -1,
+/// simulated -6". If the texts are equal, returns that the bits differ.
 std::string FirstDifferentLine(const std::string& got, const std::string& simulated);
 
-/// Returns the first field in which a message differs from a simulated one; empty if both are
-/// bit-identical.
+/// Returns the first difference between a message and a simulated one, as FirstDifferentLine.
+/// Returns an empty text if both are bit-identical.
 template <typename Message>
 std::string FirstDifference(const Message& got, const Message& simulated) {
   const auto bytes = [](const Message& message) {

@@ -25,8 +25,8 @@
 
 namespace aquafarm_sim {
 
-/// Returns the error message for a bag without a FarmSpec, to append to the bag's path. It states
-/// whether the bag has no topic spec, or the topic has another type.
+/// Returns the error message for a bag without a FarmSpec. The caller appends it to the bag's path.
+/// The message states whether the topic spec is missing or has another type.
 std::string NoSpec(const rosbag::Bag& bag);
 
 /// Returns "recorded by version X" or, if `version` is empty, "recorded by an unnamed version".
@@ -74,9 +74,10 @@ class MemoryLimit {
   bool is_set_{};
 };
 
-/// Calls `work`, which allocates the memory that a bag requests.
+/// Calls `work` and limits the memory that it can allocate to 2 GiB plus 4 times `size`. No valid
+/// bag needs more.
 /// @param size size of the bag [bytes]
-/// @throws Damage if `work` requests more than 2 GiB plus 4 times `size`, which no valid bag needs
+/// @throws Damage if `work` needs more memory, or requests an impossible array length
 template <typename Work>
 auto Bounded(std::uintmax_t size, const Work& work) -> decltype(work()) {
   constexpr std::uintmax_t kSpareBytes = std::uintmax_t{2} << 30U;
@@ -117,22 +118,23 @@ void Deserialize(std::vector<std::uint8_t>& bytes, Message& message) {
 
 }  // namespace internal
 
-/// Returns whether the text of a message definition in a bag is accepted for this version.
+/// A function that returns whether the text of a message definition in a bag is accepted.
 using SameText = bool(const std::string& type, const std::string& in_bag,
                       const std::string& in_this_version);
 
-/// Checks that the bag's definitions of the given message types equal those of this version or of
-/// an earlier one that it can read (translate_message.h).
+/// Checks the bag's definitions of the given message types. Each must equal that of this version or
+/// one of kOlderMessages (translate_message.h).
 /// @param is_same_text compares the text of a definition, comments included, with this version's;
 ///        nullptr: only the md5 sums are compared
 /// @throws aquafarm::InputError if a topic of one of these types has another definition
 void CheckMessages(const rosbag::Bag& bag, const std::string& path,
                    std::initializer_list<MessageType> types, SameText* is_same_text = nullptr);
 
-/// Opens a bag after checking its lengths and offsets: rosbag's reader crashes if they are wrong.
+/// Opens a bag after checking its lengths and offsets. rosbag's reader may crash if they are wrong.
 /// @tparam Messages message types to read; their definitions in the bag must be those of this
 ///         version, or of an earlier version that can be translated (translate_message.h)
-/// @throws aquafarm::InputError with a message of one line that contains the bag's path
+/// @throws aquafarm::InputError if the bag cannot be read; the message is one line that contains
+///         the bag's path
 template <typename... Messages>
 void OpenBag(rosbag::Bag& bag, const std::string& path) {
   internal::OpenChecked(bag, path);
@@ -140,7 +142,7 @@ void OpenBag(rosbag::Bag& bag, const std::string& path) {
 }
 
 /// Returns a message of a bag; null if it has another type or an unknown definition. A message of
-/// an earlier version is translated; fields that its definition lacks are zero.
+/// an earlier version is translated. Fields that its definition lacks become zero.
 /// @throws an exception that ReadingBag converts to InputError
 template <typename Message>
 boost::shared_ptr<Message> Instantiate(const rosbag::MessageInstance& message) {
@@ -163,9 +165,9 @@ boost::shared_ptr<Message> Instantiate(const rosbag::MessageInstance& message) {
   });
 }
 
-/// Sets each field that the definition of an earlier version lacks to zero, as Instantiate does.
-/// @param definition definition of the type in a bag; if it is empty or that of this version,
-///        nothing changes
+/// Sets the fields that `definition` lacks to zero, as Instantiate does.
+/// @param definition definition of the type in a bag. If it is empty or that of this version,
+///        nothing changes.
 /// @throws an exception that ReadingBag converts to InputError
 template <typename Message>
 void DropAddedFields(const std::string& definition, Message& message) {
@@ -177,8 +179,8 @@ void DropAddedFields(const std::string& definition, Message& message) {
 }
 
 /// Calls `work`, which opens and reads a bag with OpenBag and Instantiate.
-/// @throws aquafarm::InputError with a message of one line that contains the bag's path, if the bag
-///         is damaged
+/// @throws aquafarm::InputError if the bag is damaged; the message is one line that contains the
+///         bag's path
 template <typename Work>
 auto ReadingBag(const std::string& path, const Work& work) -> decltype(work()) {
   try {

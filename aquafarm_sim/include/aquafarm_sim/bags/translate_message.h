@@ -6,7 +6,8 @@
 /// lacks become zero: numbers 0, strings and arrays empty.
 ///
 /// If you add fields to a message that bags contain, add the md5 sum of its previous definition to
-/// kOlderMessages. No other change is needed, because both definitions are parsed.
+/// kOlderMessages. If other messages contain this message, add their previous md5 sums too. The
+/// translation itself needs no change, because both definitions are parsed.
 
 #include <array>
 #include <cstdint>
@@ -54,7 +55,7 @@ class MessageDefinition {
     std::int64_t count;  ///< length of an array of fixed length; else kScalar or kAnyLength
   };
   struct Type {
-    std::size_t bytes{};  ///< size of a number; 0: a string or a message
+    std::size_t bytes{};  ///< size of a number, time or duration; 0: a string or a message
     bool is_string{};
     std::vector<Field> fields;  ///< fields of a message, in order
   };

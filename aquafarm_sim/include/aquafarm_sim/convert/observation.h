@@ -12,9 +12,10 @@ namespace aquafarm_sim {
 /// Converts a ship's information about a disaster.
 aquafarm::KnownDisaster FromMsg(const aquafarm_msgs::DisasterState& message);
 
-/// Restores the View that Observe filled for a ship from the observation message. The message does
-/// not contain `sensors` and some fields of disasters (border, turns, growth), which keep default
-/// values. Forecast positions are computed from the motion in the message.
+/// Converts the observation message of a ship to the View that Observe fills for this ship. The
+/// message does not contain View::sensors, which is left unchanged. It also lacks some fields of
+/// disasters (for example border, turns and growth), which get default values. Forecast positions
+/// are computed from the motion in the message.
 /// @param layout layout of the observation's episode; scenario and layout must outlive the view
 /// @throws InputError if the message is not a ship's observation of a farm of `scenario`
 void FromMsg(const aquafarm_msgs::FarmState& message, const aquafarm::Scenario& scenario,

@@ -12,16 +12,19 @@
 
 namespace aquafarm_sim {
 
-/// Serves calls with a function, which receives the request, the response and the name of the
-/// calling node. It returns whether the call succeeded.
+/// Serves the calls of a service with a function (Handler).
 template <typename Service>
 class CheckedService : public ros::ServiceCallbackHelper {
  public:
+  /// Receives the request and the name of the calling node, and fills the response. Returns whether
+  /// the call succeeded.
   using Handler = std::function<bool(typename Service::Request&, typename Service::Response&,
                                      const std::string&)>;
 
   explicit CheckedService(Handler handler) : handler_(std::move(handler)) {}
 
+  /// @throws ros::serialization::StreamOverrunException if the request is too short; roscpp then
+  ///         logs an error, and the call fails
   bool call(ros::ServiceCallbackHelperCallParams& params) override {
     typename Service::Request request;
     typename Service::Response response;
@@ -35,7 +38,7 @@ class CheckedService : public ros::ServiceCallbackHelper {
   const Handler handler_;
 };
 
-/// Advertises a service that a helper serves.
+/// Advertises a service. `helper` serves its calls.
 template <typename Service>
 ros::ServiceServer AdvertiseHelper(ros::NodeHandle& node, const std::string& name,
                                    const ros::ServiceCallbackHelperPtr& helper) {

@@ -10,11 +10,11 @@
 
 namespace aquafarm_sim {
 
-/// Publishes the state of a farm server to /diagnostics every second.
+/// Publishes the status and the counters of a farm server to /diagnostics every second.
 class FarmDiagnostics {
  public:
-  /// @param recorder null if no episodes are kept. Server, publisher and recorder must outlive this
-  ///        object.
+  /// Server, publisher and recorder must outlive this object.
+  /// @param recorder null if no episodes are kept
   FarmDiagnostics(ros::NodeHandle& node, const ros::NodeHandle& private_node, FarmServer& server,
                   const FarmPublisher& publisher, const EpisodeRecorder* recorder);
   FarmDiagnostics(const FarmDiagnostics&) = delete;

@@ -2,15 +2,16 @@
 #pragma once
 
 /// Publishes the topics of a ranch:
-///   - state, risk, tf and clock at a limited wall rate; with SimParams::record after every step
-///   - spec, chart, sea layers and tf_static (if the map has an origin) with the first state of an
-///     episode
-///   - the observation of each ship that has subscribers: after every step, but after joint steps
-///     only with the state
+///   - state, risk (if it has subscribers), tf and clock: at a limited wall rate, or with
+///     SimParams::record after every change
+///   - spec, chart, sea layers and tf_static (if the map has an origin): with the first published
+///     state of an episode
+///   - observations that have subscribers: after every change, but after joint steps only together
+///     with the state
 ///   - the summary of each ended episode
-/// Usually a step only sets a flag, and a separate thread publishes. The thread that steps
-/// publishes the observations itself, except after joint steps. With SimParams::record it publishes
-/// all topics except the summaries.
+/// A change is a call of OnChange. Usually OnChange only sets a flag, and a separate thread
+/// publishes. The observations are published in OnChange itself, except after joint steps. With
+/// SimParams::record, OnChange publishes all topics except the summaries.
 
 #include <aquafarm_msgs/EpisodeSummary.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -48,9 +49,10 @@ class FarmPublisher : public FarmListener {
   FarmPublisher(const FarmPublisher&) = delete;
   FarmPublisher& operator=(const FarmPublisher&) = delete;
 
-  /// Waits for a recorder: until `episode` and `state` have subscribers, and the number of
-  /// subscribers has not changed for half a second. Usually only recorders subscribe to `episode`.
-  /// @returns false if this takes longer than `limit_s`, or ROS shuts down
+  /// Waits for a recorder. It is ready if `episode` and `state` have subscribers and the number of
+  /// subscribers (CountSubscribers) has not changed for half a second. Usually only recorders
+  /// subscribe to `episode`.
+  /// @returns false if no recorder is ready after `limit_s`, or if ROS shuts down
   bool WaitForRecorder(double limit_s);
 
   void OnChange(const ServerView& view) override;
@@ -62,7 +64,7 @@ class FarmPublisher : public FarmListener {
   std::uint64_t dropped_summaries() const { return dropped_summaries_; }
 
  private:
-  /// A topic that sends its last message to each new subscriber, without the latched flag.
+  /// A topic that is not latched, but sends its last message to each new subscriber.
   template <typename Message>
   struct Topic {
     ros::Publisher publisher;
@@ -104,14 +106,15 @@ class FarmPublisher : public FarmListener {
   aquafarm::Mutex message_mutex_;  // also guards the messages of the topics above
   std::uint64_t published_episode_ AQUAFARM_GUARDED_BY(message_mutex_){};
   bool episode_is_new_ AQUAFARM_GUARDED_BY(message_mutex_){};
-  // With SimParams::record, earliest time of the next message, so that rosbag drops no message.
+  // With SimParams::record, the earliest time of the next state. If states followed each other
+  // faster, rosbag could drop messages.
   std::chrono::steady_clock::time_point next_record_ AQUAFARM_GUARDED_BY(message_mutex_);
   MessageContext context_ AQUAFARM_GUARDED_BY(message_mutex_);
   aquafarm_msgs::FarmSpec spec_message_ AQUAFARM_GUARDED_BY(message_mutex_);
   nav_msgs::OccupancyGrid chart_message_ AQUAFARM_GUARDED_BY(message_mutex_);
   std::vector<aquafarm::Disaster> disasters_ AQUAFARM_GUARDED_BY(message_mutex_);
   std::vector<geometry_msgs::TransformStamped> frame_messages_ AQUAFARM_GUARDED_BY(message_mutex_);
-  // Bearing of each ship's last move [degrees].
+  // Bearing of each ship's last published move [degrees]; 0 before the first in an episode.
   std::vector<std::int32_t> bearings_ AQUAFARM_GUARDED_BY(message_mutex_);
 
   aquafarm::Mutex observation_mutex_;  // also guards the messages of the observations
@@ -122,7 +125,7 @@ class FarmPublisher : public FarmListener {
   std::vector<Observation> observations_;
   aquafarm::View view_ AQUAFARM_GUARDED_BY(observation_mutex_);  // scratch
 
-  aquafarm::Mutex queue_mutex_;  // locked last
+  aquafarm::Mutex queue_mutex_;  // no other mutex is locked while this one is locked
   std::condition_variable wake_;
   std::deque<aquafarm_msgs::EpisodeSummary> summaries_ AQUAFARM_GUARDED_BY(queue_mutex_);
   std::atomic<bool> dirty_{};

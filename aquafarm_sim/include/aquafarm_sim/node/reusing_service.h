@@ -14,8 +14,8 @@
 namespace aquafarm_sim {
 
 /// Serves calls one at a time. Every request is deserialized into the same object, and the response
-/// is serialized without a copy. If requests have a constant size of at most 64 KiB, the class
-/// allocates only the buffer of the serialized response in each call.
+/// is serialized without a copy. If all requests have the same size of at most 64 KiB, each call
+/// allocates only the buffer of the serialized response.
 template <typename Service>
 class ReusingService : public ros::ServiceCallbackHelper {
  public:

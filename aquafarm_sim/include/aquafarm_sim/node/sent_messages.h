@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Waits for roscpp's queue of published messages. Publishing adds a message to this queue, and the
-/// poll thread of roscpp takes it from there to the connections of the subscribers. A message to
-/// one subscriber (SingleSubscriberPublisher) bypasses the queue, and would arrive before messages
-/// that were published earlier and are still in the queue.
+/// Waits until published messages have left roscpp's queue. Publishing adds a message to it. The
+/// poll thread of roscpp then passes the message to the subscribers' connections. A message to one
+/// subscriber (SingleSubscriberPublisher) bypasses the queue. Without a wait it would arrive before
+/// messages that were published earlier and are still in the queue.
 
 #include <boost/signals2/connection.hpp>
 #include <chrono>

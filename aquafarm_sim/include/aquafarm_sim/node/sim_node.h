@@ -25,12 +25,12 @@ namespace aquafarm_sim {
 class SimNode {
  public:
   /// @param node namespace of the topics and services
-  /// @throws InputError if a parameter or the scenario is invalid
+  /// @throws InputError if a parameter or the scenario is invalid, or keep_dir cannot be written
   SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   ~SimNode();
 
-  /// If a trainer is running, waits a limited time until the trainer has saved the farms' state.
-  /// Services continue meanwhile.
+  /// Waits until a running trainer has saved the farms' state, at most 8 s. A trainer is running if
+  /// the last joint step was less than 2 s ago. Services continue meanwhile.
   void LetClientsSave();
   SimNode(const SimNode&) = delete;
   SimNode& operator=(const SimNode&) = delete;
@@ -55,7 +55,7 @@ class SimNode {
 };
 
 /// Runs the node until ROS shuts down or SIGINT or SIGTERM arrives.
-/// @returns the exit code: 0; 2 if a parameter or the scenario is invalid; 1 for other errors
+/// @returns the exit code: 0 without an error, 2 for an InputError of SimNode, 1 for other errors
 int RunSimNode();
 
 }  // namespace aquafarm_sim

@@ -19,8 +19,10 @@ struct SimParams {
   /// ~farms, ~threads, ~seed (-1: from the wall clock), ~pace, ~rate_hz, ~barrier_timeout_s,
   /// ~late_ships_hold, ~claim_timeout_s
   ServerOptions ranch;
-  double publish_hz{10.0};           ///< max rate of states without `record`; 0: no states
-  bool record{};                     ///< publish every step of farm 0
+  /// Max rate of states without `record` [states per second of wall time]. 0: neither states nor
+  /// the topics that are sent with them (farm_publisher.h) are published.
+  double publish_hz{10.0};
+  bool record{};                     ///< publish the state after every change of farm 0
   std::string keep{"none"};          ///< episodes to write as bags, in the syntax of ParseKeep
   std::string keep_dir{"episodes"};  ///< folder of these bags
   double recorder_wait_s{};          ///< max time to wait for a recorder at the start; 0: no wait
@@ -36,12 +38,13 @@ struct SimParams {
 ///         message lists the known ones
 SimParams ReadSimParams(const ros::NodeHandle& private_node);
 
-/// Returns the names of the scenarios in a folder, sorted.
+/// Returns the names of the scenarios in a folder, sorted; empty if the folder cannot be read.
 std::vector<std::string> ShippedScenarios(const std::string& folder);
 
 /// Returns the path of a scenario file.
-/// @param scenario a path (with a slash or .yaml), or the name of a shipped scenario
-/// @throws InputError that lists the shipped names if the file does not exist
+/// @param scenario a path (contains a slash or ends in .yaml), or the name of a shipped scenario
+/// @param folder folder of the shipped scenarios
+/// @throws InputError if the file does not exist; the message lists the shipped names
 std::string ResolveScenario(const std::string& scenario, const std::string& folder);
 
 /// Returns the folder of the shipped scenarios, in the source tree or in the installed package.

@@ -8,14 +8,14 @@
 
 namespace aquafarm_sim {
 
-/// Records which node has claimed which ship. A claim expires if its holder is not present for
-/// `timeout_s`. Every ship id must be in [0, ships - 1]. Not thread-safe.
+/// Records which node has claimed which ship. A claim expires if its holder is not marked as
+/// present for `timeout_s`. Every ship id must be in [0, ships - 1]. Not thread-safe.
 class ClaimTable {
  public:
   ClaimTable(std::int32_t ships, double timeout_s);
 
   /// Returns true if a node other than `caller` holds the ship. Removes an expired claim.
-  /// @param is_waiting true if a command of the ship waits for other ships: the claim then does not
+  /// @param is_waiting true if a command of the ship waits for its step: the claim then does not
   ///        expire
   bool IsHeldByAnother(std::int32_t ship, const std::string& caller, bool is_waiting);
   /// Sets the node that holds the ship, and marks it as present. An empty name releases the ship.
@@ -31,7 +31,7 @@ class ClaimTable {
   using Clock = std::chrono::steady_clock;
   struct Claim {
     std::string holder;
-    Clock::time_point present_at;  // time of the holder's last command or claim
+    Clock::time_point present_at;  // last time at which the holder was present
   };
 
   std::chrono::duration<double> timeout_;

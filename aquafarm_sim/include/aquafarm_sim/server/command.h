@@ -19,15 +19,15 @@ struct ShipCommand {
     return a.ship == b.ship && a.action == b.action && a.episode == b.episode && a.step == b.step &&
            a.token == b.token;
   }
-  /// Returns false if the command contains neither a step nor a token: its retry cannot be
+  /// Returns false if episode, step and token are all 0. A retry of such a command cannot be
   /// distinguished from a new command.
   bool IsIdentified() const { return episode != 0 || step != 0 || token != 0; }
 };
 
-/// Identifies a request of a client. Each client has its own sequence numbers; 0: not numbered.
+/// Identifies a request of a client. Each client has its own sequence numbers.
 struct RequestKey {
-  std::uint64_t sequence{};
-  std::string caller;
+  std::uint64_t sequence{};  ///< 0: the request has no number
+  std::string caller;        ///< name of the calling node
   friend bool operator==(const RequestKey& a, const RequestKey& b) {
     return a.sequence == b.sequence && a.caller == b.caller;
   }

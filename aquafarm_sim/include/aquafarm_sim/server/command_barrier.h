@@ -20,7 +20,7 @@ namespace aquafarm_sim {
 
 /// Collects the commands of the ships for the next step of a farm. It keeps only the newest command
 /// of each ship. In lockstep the caller of each command waits until no ship is missing (IsMissing).
-/// The owner must hold one mutex during every call; Wait releases it while it waits.
+/// The owner must hold the same mutex during every call. Wait releases it while it waits.
 class CommandBarrier {
  public:
   using Clock = std::chrono::steady_clock;
@@ -38,13 +38,13 @@ class CommandBarrier {
   /// Returns the answer to the ship's last executed or accepted command if `command` is a retry of
   /// it; null if it is not.
   const aquafarm_msgs::CommandResult* FindAnswer(const ShipCommand& command) const;
-  /// Stores a command for the next step. It replaces an earlier command of the ship, whose call
-  /// ends with kSuperseded.
-  /// @param call receives the answer; it must stay valid until Wait returns and, after kTimedOut,
-  ///        until Withdraw; null: no call waits
+  /// Stores a command for the next step. It replaces an earlier command of the ship. The call of
+  /// the earlier command ends with kSuperseded.
+  /// @param call receives the answer. It must stay valid until Wait returns, and after kTimedOut
+  ///        until it is answered or Withdraw is called. null: no call waits
   void Add(const ShipCommand& command, Call* call);
   /// Waits until the call is answered, superseded or dropped. Returns kTimedOut at `deadline`, or
-  /// if `ending` is true; the command then stays until it is executed or Withdraw removes it.
+  /// if `ending` is true. After kTimedOut the command is still pending.
   /// @param lock lock of the owner's mutex
   WaitEnd Wait(aquafarm::MutexLock& lock, const Call& call, Clock::time_point deadline,
                const bool& ending);
@@ -60,8 +60,8 @@ class CommandBarrier {
   bool HasCommand(std::int32_t ship) const { return slots_[Index(ship)]->pending.has_value(); }
   /// Writes the action of each ship; a ship without a command holds. @param actions [ships]
   void WriteActions(std::uint8_t* actions) const;
-  /// Stores the answer to the ship's command and removes the command, which must exist. The caller
-  /// must call Wake after the last answer.
+  /// Stores the answer to the ship's command and removes the command. The ship must have a command.
+  /// The caller must call Wake after the last answer.
   void Answer(std::int32_t ship, const aquafarm_msgs::CommandResult& answer);
   /// Stores the answer that accepts a command. The command stays until it is executed.
   void Accept(const ShipCommand& command, const aquafarm_msgs::CommandResult& answer);

@@ -3,9 +3,9 @@
 
 /// The protocol of docs/ros_api.md for a FarmBatch, independent of the transport: retries that are
 /// not executed again (RequestLog), the lockstep barrier (CommandBarrier), claims of ships
-/// (ClaimTable), pace (PaceClock), joint steps, save and load. Every public function may be called
-/// from any thread. Requests never throw: an invalid request returns a code and does not change the
-/// farms.
+/// (ClaimTable), pace (PaceClock), joint steps, save and load. All public functions are
+/// thread-safe, but calls of Step must not overlap. Requests do not throw: an invalid request
+/// returns a code and does not change the farms.
 ///
 ///   lockstep:  ship 0 --Command--> waits ----------+--> result of step k+1
 ///              ship 1 -----------------Command-----+--> result of step k+1   (or TIMEOUT)
@@ -59,7 +59,8 @@ struct ServerOptions {
   double rate_hz{10.0};
   double barrier_timeout_s{10.0};
   bool late_ships_hold{};  ///< lockstep: after the timeout the farm steps without the late ships
-  double claim_timeout_s{10.0};  ///< a claim expires if its holder sends nothing for this time
+  /// A claim expires if its holder sends neither a command nor a claim of the ship for this time.
+  double claim_timeout_s{10.0};
   std::string map_frame{"map"};
 };
 
@@ -74,10 +75,12 @@ struct ServerCounters {
   std::uint64_t dropped_clients{};   ///< number of expired claims
   std::uint64_t refused{};           ///< number of refused requests, for any reason
   std::uint64_t saves{};             ///< number of successful save_state calls
-  std::vector<std::int32_t> absent;  ///< late ships; lockstep waits again after their next command
+  /// Ids of the ships that lockstep does not wait for. A ship leaves the list with its next
+  /// command.
+  std::vector<std::int32_t> absent;
   std::vector<std::uint64_t> absences;  ///< by ship: how often lockstep stopped waiting for it
   double joint_step_age_s{1e9};         ///< time since the last joint step; 1e9 before the first
-  std::string fault;  ///< error that paused the paced farm; empty if there is none
+  std::string fault;  ///< last error that paused the paced farm; empty if there was none
   std::uint64_t dropped_notifications{};  ///< number of failed notifications of the listener
   std::string dropped_reason;             ///< reason of the last failure; empty if there is none
 };
@@ -99,7 +102,7 @@ class FarmListener {
  public:
   virtual ~FarmListener() = default;
   /// Called after a change of farm 0 (a step, a new or loaded episode, a bulletin), of the pace or
-  /// of the pause.
+  /// of the pause. SetListener also calls it.
   virtual void OnChange(const ServerView& view) = 0;
   /// Called after the last step of an episode of any farm.
   virtual void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) = 0;
@@ -109,11 +112,12 @@ class FarmListener {
 };
 
 /// Receives everything that determines the farms' episodes, in order, while no farm steps.
-/// Callbacks must not call the FarmServer, whose mutex is locked.
+/// Callbacks must not call the FarmServer, whose mutex is locked. An exception of a callback makes
+/// the request or the paced step fail.
 class FarmRecorder {
  public:
   virtual ~FarmRecorder() = default;
-  /// Called after farm `number` has started or loaded an episode.
+  /// Called after farm `number` has started or loaded an episode. SetRecorder also calls it.
   /// @param context pace and rate of the farms at this time
   virtual void OnStart(const aquafarm::Farm& farm, std::int32_t number,
                        const MessageContext& context) = 0;
@@ -141,14 +145,14 @@ class FarmServer {
   ///        recorder
   void SetRecorder(FarmRecorder* recorder);
 
-  /// Executes a command. In lockstep it returns after the step, or when the command is refused or
-  /// times out. In paced running it returns at once.
+  /// Executes a command. In lockstep the call returns after the step, or when the command is
+  /// refused or times out. In paced running the call returns at once.
   aquafarm_msgs::CommandResult Command(const ShipCommand& command);
   /// Claims a ship for the calling node, or releases the claim.
   /// @param ship in [0, agents() - 1]; not checked
   void Claim(std::int32_t ship, const std::string& caller, bool release,
              aquafarm_msgs::Claim::Response& response);
-  /// As Command, but refuses an action that is not a move.
+  /// Does the same as Command, but refuses an action that is not a move.
   aquafarm_msgs::CommandResult MoveShip(const ShipCommand& command);
   /// Executes a joint step. The response stays valid until the next call of Step. Calls of Step
   /// must not overlap.
@@ -172,9 +176,10 @@ class FarmServer {
   /// Calls Tick when each paced step is due. Returns after Shutdown.
   void RunPaced();
   /// Takes one paced step of farm 0, or starts its next episode if the current one has ended. Does
-  /// nothing while the farms are paused. An error pauses the farms.
+  /// nothing while the farms are paused, or after Shutdown. An error pauses the farms.
   void Tick();
-  /// Makes all waiting and all later commands and joint steps return SHUTTING_DOWN.
+  /// Makes waiting commands return SHUTTING_DOWN, refuses later commands and joint steps, and ends
+  /// RunPaced. Retries still return their stored responses.
   void Shutdown();
 
   /// Calls `look` while no farm steps. `look` must not call the FarmServer.

@@ -10,8 +10,9 @@
 
 namespace aquafarm_sim {
 
-/// The clock of the farms: the stamp of each step, the pace (lockstep or paced), the rate and
-/// pauses. The owner must hold one mutex during every call; WaitForTick releases it while it waits.
+/// The clock of the farms: the stamp of each step, the pace (lockstep or paced), the rate and the
+/// pauses. The owner must hold the same mutex during every call. WaitForTick releases it while it
+/// waits.
 class PaceClock {
  public:
   explicit PaceClock(const MessageContext& start) : context_(start) {}

@@ -3,8 +3,9 @@
 
 namespace aquafarm_sim {
 
-/// The last completed request of a kind and its answer. A client that lost the answer repeats the
-/// request and receives the same answer, and the request is not executed again.
+/// The last completed request of a kind and its answer. A client that did not receive the answer
+/// can repeat the request. It then receives the stored answer, and the request is not executed
+/// again.
 /// @tparam Key has operator== and IsIdentified(), which returns false if a retry cannot be
 ///         recognized
 template <typename Key, typename Answer>
@@ -15,7 +16,7 @@ class RequestLog {
     return is_complete_ && key.IsIdentified() && key_ == key ? &answer_ : nullptr;
   }
   /// Forgets the last request and returns the object that the caller must fill with the next
-  /// answer. Complete must follow.
+  /// answer. Find ignores this answer until Complete is called.
   Answer& Begin() {
     is_complete_ = false;
     return answer_;

@@ -22,7 +22,8 @@ inline constexpr double kMaxDistance = 1.0e6;
 std::string CheckSpec(const aquafarm_msgs::FarmSpec& spec);
 
 /// Returns the reason why a state cannot be drawn, in one line; empty if it can be drawn. Ships and
-/// devices outside the grid are allowed and are not drawn. Unknown disasters are not checked.
+/// devices outside the grid are allowed and are not drawn. Disasters whose `known` is false are not
+/// checked.
 std::string CheckState(const aquafarm_msgs::FarmState& state);
 
 /// Returns true if a cell is inside the farm.

@@ -15,9 +15,9 @@ std::size_t DisasterKindCount();
 /// Returns the name of a kind, such as "red tide"; "disaster" for an unknown kind.
 std::string DisasterName(std::uint8_t kind);
 
-/// Returns the distance of a pixel to the nearest line or dot of a kind's pattern [pixels]. The
-/// pattern repeats after two periods on both axes. An unknown kind has the pattern of the last
-/// kind.
+/// Returns the distance of a pixel to the nearest line or dot of a kind's pattern [pixels]; for
+/// waves, the distance along y. The pattern repeats after two periods on both axes. An unknown kind
+/// has the pattern of the last kind.
 /// @param period distance between lines along an axis [pixels]
 float DistanceToPattern(std::uint8_t kind, int x, int y, int period);
 

@@ -37,7 +37,7 @@ inline constexpr Rgb kUnknown{0xb4, 0xbd, 0xc4};
 /// Colour of the choice of a compared policy: cyan, which neither risks nor values have.
 inline constexpr Rgb kChoiceColor{0x4d, 0xe3, 0xff};
 
-/// Colour of legal moves at ports and of labels of devices: pale, and no risk has it.
+/// Colour of the arrows of legal moves and, in rviz, of the labels of devices. No risk has it.
 inline constexpr Rgb kDirectionColor{0xdd, 0xf4, 0xff};
 
 /// Returns the colour of a device kind (DeviceState.kind); grey for an unknown kind. No risk has
@@ -48,7 +48,7 @@ Rgb DeviceColor(std::uint8_t kind);
 std::string DeviceName(std::uint8_t kind);
 
 /// Returns the outline of a device kind around the origin: y up, within the unit circle,
-/// counter-clockwise.
+/// counter-clockwise. An unknown kind has a diamond.
 const std::vector<cv::Point2f>& DeviceOutline(std::uint8_t kind);
 
 /// Returns the colour of a health: green at 1, amber at 0.5, red at 0, interpolated in between.
@@ -87,7 +87,7 @@ inline constexpr Rgb kDropOffColor{0xff, 0x8c, 0x42};
 /// Returns the bearing of a move [degrees], clockwise from north; -1 if the action is not a move.
 int MoveBearingDeg(std::uint8_t action);
 
-/// Returns the nearest of the 16 compass points to a bearing [degrees], such as "NE" or "NNE".
+/// Returns the compass point, one of 16, that is nearest to a bearing [degrees]: "NE" or "NNE".
 std::string CompassPoint(int bearing_deg);
 
 /// Returns the letters of a port, by id: A, B, …, Z, AA, AB, …

@@ -55,8 +55,8 @@ class Font {
 /// bold; empty if neither is installed.
 std::string FindFontFile(bool bold);
 
-/// Formats a number with `decimals` decimal places, from 1e12 on with an exponent; "-" if it is not
-/// finite.
+/// Formats a number with `decimals` decimal places, or with an exponent if its magnitude is at
+/// least 1e12; "-" if it is not finite.
 std::string Number(double value, int decimals);
 
 /// Formats a count with commas between thousands.

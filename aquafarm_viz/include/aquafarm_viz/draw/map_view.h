@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Maps cells to pixels. The origin of an image is its top left corner. The origin of the farm is
-/// its south-west corner, so the y axes have opposite directions.
+/// Maps cells to pixels. The origin of an image is its top left pixel. The origin of the farm is
+/// the centre of its south-west cell. The y axes have opposite directions.
 ///
 ///       picture                     farm
 ///   (0,0)--> column               ^ y (north)

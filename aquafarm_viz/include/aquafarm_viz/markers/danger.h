@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Markers of the danger to devices, with the same words as in pictures.
+/// Markers of the danger to devices and of the disasters outside the farm.
 ///
 ///     | namespace        | id       | content                                                |
 ///     | alarm            | 0        | text below the clock: the danger to the devices        |
 ///     | outside          | 0        | text above the clock: strength, position and motion of |
-///     |                  |          | the disasters whose centres lie outside the farm       |
+///     |                  |          | up to two disasters whose centres lie outside the farm |
 ///     | danger           | device   | circle around a device that a ring covers or reaches   |
-///     | danger_label (1) | device   | the ring over the device, and the arrival of the worst |
+///     | danger_label (1) | device   | the ring over the device now, and the worst one ahead  |
 ///     | pointer          | disaster | triangle at the edge, towards a centre outside         |
 ///
 /// A label lies on a dark plate, which has the namespace `danger_label_plate`. If a label is not
-/// next to its device, a line of the namespace `danger_label_leader` connects them.
+/// next to its device, a line of the namespace `danger_label_leader` connects them, unless the line
+/// would cross another label.
 ///
-/// (1) Up to 40 devices get a label if there is free space near them. Devices that a ring reaches
-/// earlier get theirs first, and the first one always gets one.
+/// (1) Up to 40 devices get a label if there is free space near them, the most urgent ones first.
+/// The most urgent device always gets one.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>

@@ -14,11 +14,13 @@
 ///     | sign_legend, sign_legend_text (4) | 0, 1, …: one sequence    |
 ///     | port, port_letter               | port                       |
 ///     | device, health, health_frame    | device                     |
+///     | fetched (outline in former cell) | device                    |
 ///     | ship, ship_deck, ship_name      | ship                       |
 ///     | path (5)                        | ship                       |
 ///     | ring, ring_edge                 | disaster * kMaxRings + ring |
 ///     | ring_pattern                    | disaster                   |
-///     | heading, disaster, disaster_name (3) | disaster              |
+///     | heading, disaster (3)           | disaster                   |
+///     | disaster_name, disaster_name_plate (3) | disaster            |
 ///     | status                          | 0                          |
 ///     | port_direction (1)              | port                       |
 ///     | device_label (2)                | device                     |
@@ -37,8 +39,8 @@
 
 namespace aquafarm_viz {
 
-/// Returns the markers that are constant during an episode: sea, islands, rocks, axes, legend and
-/// the legal moves at ports.
+/// Returns the markers that are constant during an episode: sea, islands, rocks, axes, legend and,
+/// with the layer `directions`, the legal moves at ports.
 /// @param clear true: the first marker deletes all markers; use it at the start of an episode
 visualization_msgs::MarkerArray SpecMarkers(const aquafarm_msgs::FarmSpec& spec, bool clear,
                                             const Layers& layers = {});

@@ -35,7 +35,8 @@ struct ReplayParams {
 /// @throws InputError if `bag` is missing, a value is not allowed, or a parameter is unknown
 ReplayParams ReadReplayParams(const ros::NodeHandle& node);
 
-/// Publishes the messages of a bag and /clock, and offers the services.
+/// Publishes the messages of a bag, except drawings (markers, paths and images), and /clock. Offers
+/// the services.
 class ReplayNode {
  public:
   /// @param node namespace of the services and of topics without a leading slash

@@ -28,13 +28,14 @@ struct VizParams {
 };
 
 /// Reads the parameters.
-/// @throws InputError if a number is out of range or a parameter is unknown
+/// @throws InputError if a parameter is out of range, has another type or is unknown
 /// @throws std::invalid_argument if a name in `layers` or `style` is unknown
 VizParams ReadVizParams(const ros::NodeHandle& node);
 
-/// Publishes `markers`, `moves`, `image`, `image/compressed` and each ship's `ship_<id>/route`, at
-/// most rate_hz times per second of wall time. A topic is published only if it has a subscriber,
-/// and if its content has changed or a subscriber is new.
+/// Publishes `markers`, `moves`, `image`, `image/compressed`, and `ship_<id>/route` of the ships 0
+/// to 63, at most rate_hz times per second of wall time. A topic is published only if it has a
+/// subscriber, and if its content has changed or a subscriber is new. A new subscriber of `markers`
+/// gets the current markers immediately.
 class VizNode {
  public:
   /// @param node  namespace of the topics

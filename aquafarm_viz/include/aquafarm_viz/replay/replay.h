@@ -28,7 +28,8 @@ bool IsState(const rosbag::MessageInstance& message);
 /// @param queue queue size of the publisher
 ros::AdvertiseOptions AdvertiseOptionsOf(const rosbag::MessageInstance& message,
                                          std::uint32_t queue);
-/// Publishes a message of a bag. A message of an earlier version is translated to this version.
+/// Publishes a message of a bag. A message of an earlier version is translated to this version; it
+/// is not published if this fails.
 /// @param publisher advertised with AdvertiseOptionsOf
 void PublishMessage(const rosbag::MessageInstance& message, const ros::Publisher& publisher);
 
@@ -45,8 +46,7 @@ class ReplayTape {
   };
 
   static constexpr std::size_t kMaxStates = 10'000;  ///< max earlier states that a jump publishes
-  /// Queue size of publishers and subscribers of states, because a jump publishes all states at
-  /// once.
+  /// Queue size for states in ReplayNode and VizNode, because a jump publishes all states at once.
   static constexpr std::uint32_t kQueueOfStates = kMaxStates + 100;
 
   /// @throws std::runtime_error with a message of one line if the bag cannot be shown: it is not a
@@ -67,16 +67,16 @@ class ReplayTape {
   std::optional<Step> Find(const Step& shown, std::uint64_t episode, std::uint64_t step) const;
 
   /// Returns the positions of the messages that must be published to show a step. The first is the
-  /// spec of the episode. Then follow, in ascending order, the newest message of each other topic
-  /// and up to kMaxStates earlier states of the run, for trails and routes. The state of the step
-  /// is the last one.
+  /// spec of the episode, if it is recorded. Then follow, in ascending order, the newest message of
+  /// each other topic and up to kMaxStates earlier states of the run, for trails and routes. The
+  /// state of the step is the last one.
   std::vector<std::size_t> UpTo(const Step& step) const;
 
   /// Returns warnings about the bag, one line each: missing steps, and a bag of another version.
   /// @param version version of aquafarm that is running
   std::vector<std::string> Notes(const std::string& version) const;
 
-  /// Returns the mean bag time between two steps of a run [s]; 0.1 if the bag does not give it.
+  /// Returns the mean bag time between two steps of a run [s]; 0.1 if it cannot be computed.
   double StepPeriod_s(std::size_t run) const;
 
  private:
@@ -96,7 +96,7 @@ class ReplayTape {
   std::vector<rosbag::MessageInstance> messages_;
   std::vector<Step> steps_;
   std::vector<Spec> specs_;
-  std::map<std::string, Step> last_;  // last state of each topic that was read
+  std::map<std::string, Step> last_;  // the last state that was read, by topic
   std::size_t runs_{};                // number of runs found so far
   std::uint64_t missing_{};           // number of missing steps between recorded ones
   std::set<std::string> versions_;    // versions of aquafarm that recorded the bag

@@ -43,7 +43,8 @@ std::string StatusName(std::uint8_t status);
 /// Returns the label of a device: F and its id, such as "F2" (F_j in Fig. 5 of the paper).
 std::string DeviceLabel(std::int32_t id);
 
-/// Returns true if drawings label the device: it is deployed, and its cell is inside the grid.
+/// Returns true if drawings label the device in its cell: it is deployed, and the cell is inside
+/// the grid.
 bool IsLabelled(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::DeviceState& device);
 
 /// Returns the name of a training phase, such as "evaluating"; empty for an unknown phase.

@@ -11,12 +11,12 @@ namespace aquafarm_viz {
 struct Layers {
   bool trail{true};   ///< recent trail of each ship
   bool risk{true};    ///< rings of disasters, shaded by severity
-  bool route{};       ///< whole trail of each ship, coloured in time order (Fig. 11)
+  bool route{};       ///< whole trail of each ship; older parts are fainter (Fig. 11)
   bool sight{};       ///< sensor range of each ship, if the scenario has partial view
   bool values{};      ///< V_π of each cell, if a policy publishes it
   bool moves{};       ///< greedy actions of the policy, see ShownActions
   bool directions{};  ///< arrows of the legal moves at each port (Fig. 5)
-  bool labels{};      ///< F and the id of each device (Fig. 5); if fetched, at its former cell
+  bool labels{};      ///< F and the id of deployed devices (Fig. 5); pictures: also of fetched ones
   std::string sea{};  ///< sea layer of the scenario, drawn below all others; empty: none
 };
 

@@ -56,8 +56,8 @@ class RanchModel {
   /// Returns "paper   episode 12   step 17 / 5,000   return -42.5   seed 7", followed by "paused"
   /// if the ranch is paused; "no ranch yet" before the first state.
   std::string Headline() const;
-  /// Returns the last reward and its terms, "reward -5.0:   disaster -5.0"; empty before the first
-  /// state.
+  /// Returns the last reward and its terms that are not 0, "reward -5.0:   disaster -5.0"; empty
+  /// before the first state.
   std::string RewardLine() const;
   /// Returns the progress of the training, such as "q_learning, training   120 / 2,000 episodes
   /// mean return 81.2   success 62 %   1.23 k steps/s   left 0:42"; empty without a training.
@@ -70,7 +70,7 @@ class RanchModel {
   /// Returns the column titles of the table of Disasters.
   static const Row& DisasterColumns();
   /// Returns a row for each known disaster that has not ended; empty before the first state. The
-  /// closest approach is empty unless a track or a forecast gives it.
+  /// closest approach is empty if the course is extrapolated or comes no nearer.
   std::vector<Row> Disasters() const;
   /// Returns a row for each ship and self-propelled device; empty before the first state.
   std::vector<Row> Ships() const;
@@ -99,7 +99,8 @@ class RanchModel {
   /// @param radius radius of the largest of its three rings [cells]
   aquafarm_msgs::DisasterInfo MakeDisaster(std::uint8_t kind, std::uint8_t grade,
                                            double radius) const;
-  /// Returns the id with which `set_disaster` adds a disaster: the number of present disasters.
+  /// Returns the id with which `set_disaster` adds a disaster: the number of disasters of the
+  /// state, or 0 before the first state.
   std::int32_t NextDisaster() const;
 
  private:

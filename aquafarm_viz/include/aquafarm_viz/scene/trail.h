@@ -18,8 +18,8 @@ namespace aquafarm_viz {
 struct ShipTrail {
   int bearing_deg{};             ///< bearing of the last move, [0, 359]; 0 before the first move
   std::deque<cv::Point> places;  ///< visited cells, oldest first, the current one last
-  /// Per cell: whether the ship reached it with a device aboard. A self-propelled device always
-  /// did.
+  /// Per cell: whether the ship reached it with a device aboard; always true for a self-propelled
+  /// device.
   std::deque<bool> loaded;
 
   /// Returns the index of the first cell after the last gap; 0 if there is no gap (IsGap).
@@ -31,7 +31,7 @@ class Trail {
  public:
   static constexpr std::size_t kLength = 24;        ///< max cells of a trail
   static constexpr std::size_t kWhole = 1'000'000;  ///< max cells of a route
-  static constexpr int kMaxJump = 2;  ///< max distance [cells] along an axis that is not a gap
+  static constexpr int kMaxJump = 2;  ///< a larger distance [cells] along an axis is a gap
 
   /// @param length max cells of each trail; kWhole: routes
   explicit Trail(std::size_t length = kLength) : length_(length) {}

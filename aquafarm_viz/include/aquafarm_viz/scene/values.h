@@ -43,8 +43,8 @@ struct Values {
 };
 
 /// Reads a message of `values/points` for the farm of `spec`. Points outside the farm are ignored.
-/// @throws std::invalid_argument if a field is missing or has another type, or if the size of the
-///         data is wrong: "values/points: got no field value, expected x, y, value and action"
+/// @throws std::invalid_argument if a field is missing or has another type, or if the data have a
+///        wrong size, such as "values/points: got no field value, expected x, y, value and action"
 Values ReadValues(const sensor_msgs::PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec);
 
 /// Returns the cells whose greedy action is drawn: one of `every` cells along each axis, so that
@@ -52,9 +52,10 @@ Values ReadValues(const sensor_msgs::PointCloud2& cloud, const aquafarm_msgs::Fa
 /// and there are at most 12 of them.
 std::vector<cv::Point> ShownActions(const Values& values, int every);
 
-/// Returns values and greedy actions as markers. `values` 0 contains the coloured cells, `moves` 0
-/// the arrows of the moves, `moves` 1 the pickups and `moves` 2 the drop-offs. The moves of at most
-/// 13 cells along the longer side of the farm are drawn, see ShownActions.
+/// Returns values and greedy actions as markers. The namespace `values` has one marker, id 0: the
+/// coloured cells. In the namespace `moves`, id 0 contains the arrows of the moves, id 1 the
+/// pickups and id 2 the drop-offs. Moves are drawn in at most 13 cells along the longer side of the
+/// farm, see ShownActions.
 visualization_msgs::MarkerArray MoveMarkers(const Values& values,
                                             const aquafarm_msgs::FarmSpec& spec);
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A mutex whose use clang checks at compile time (-Wthread-safety; tools/check_locks runs it). A
-/// member declared AQUAFARM_GUARDED_BY(mutex_) may only be accessed while mutex_ is locked. A
-/// function declared AQUAFARM_REQUIRES(mutex_) may only be called while mutex_ is locked, and one
-/// declared AQUAFARM_EXCLUDES(mutex_) only while it is not. Other compilers ignore the attributes.
+/// A mutex whose use clang checks at compile time (-Wthread-safety). tools/check_locks runs this
+/// check. A thread may access a member declared AQUAFARM_GUARDED_BY(mutex_) only while it holds
+/// mutex_. It may call a function declared AQUAFARM_REQUIRES(mutex_) only while it holds mutex_. It
+/// may call a function declared AQUAFARM_EXCLUDES(mutex_) only while it does not hold mutex_. Other
+/// compilers ignore the attributes.
 /// Source: https://clang.llvm.org/docs/ThreadSafetyAnalysis.html
 
 #include <chrono>
@@ -33,8 +34,8 @@ class AQUAFARM_CAPABILITY("mutex") Mutex {
   std::mutex mutex_;
 };
 
-/// Locks a mutex on construction and unlocks it on destruction. Before destruction, Unlock may
-/// release the mutex early, and Lock may acquire it again.
+/// Locks a mutex on construction and unlocks it on destruction. Unlock releases the mutex before
+/// destruction, and Lock locks it again.
 class AQUAFARM_SCOPED_CAPABILITY MutexLock {
  public:
   explicit MutexLock(Mutex& mutex) AQUAFARM_ACQUIRE(mutex) : lock_(mutex.mutex_) {}
@@ -45,10 +46,10 @@ class AQUAFARM_SCOPED_CAPABILITY MutexLock {
   void Unlock() AQUAFARM_RELEASE() { lock_.unlock(); }
   void Lock() AQUAFARM_ACQUIRE() { lock_.lock(); }
 
-  /// Releases the mutex, waits until `changed` is notified, and locks the mutex again. Spurious
-  /// wake-ups are possible: call it in a loop that checks the condition.
+  /// Releases the mutex, waits until `changed` is notified, and locks the mutex again. Because of
+  /// spurious wake-ups, call Wait in a loop that checks the condition.
   void Wait(std::condition_variable& changed) { changed.wait(lock_); }
-  /// As Wait, but waits until `time` at the latest. @return false after a timeout
+  /// Does the same as Wait, but waits until `time` at the latest. @returns false after a timeout
   template <typename Clock, typename Duration>
   bool WaitUntil(std::condition_variable& changed,
                  const std::chrono::time_point<Clock, Duration>& time) {

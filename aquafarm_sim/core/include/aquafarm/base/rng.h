@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Counter-based random numbers keyed by (seed, episode, purpose, stream). A draw does not depend
-/// on the order of calls, the number of threads or the compiler. The generator is Philox4x32-10
-/// (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011), as implemented in
-/// Random123.
+/// Counter-based random numbers. A draw depends only on its key (seed, episode, purpose, stream)
+/// and its index in the stream. The generator is Philox4x32-10 (Salmon et al., "Parallel random
+/// numbers: as easy as 1, 2, 3", SC 2011), as implemented in Random123.
 
 #include <array>
 #include <cstdint>

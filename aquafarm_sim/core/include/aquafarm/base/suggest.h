@@ -12,8 +12,8 @@
 
 namespace aquafarm {
 
-/// Returns the smallest number of characters to insert, remove or replace that turns `a` into `b`
-/// (Levenshtein 1966).
+/// Returns the edit distance (Levenshtein 1966): the smallest number of insertions, removals and
+/// replacements of one byte that turn `a` into `b`.
 inline std::size_t EditDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -36,10 +36,10 @@ inline std::string WithoutSeparators(std::string name) {
   return name;
 }
 
-/// Returns " (did you mean 'NAME'?)" with the name that needs the fewest edits. Of several such
-/// names it returns the first. Returns "" if every name needs more than two edits, or more edits
-/// than half of the length of `text`. Also returns "" if `text` has more than 100 bytes.
-/// A difference only in separators counts as no edit: for INFA the suggestion is IN-FA, not LINFA.
+/// Returns " (did you mean 'NAME'?)" with the name that has the smallest EditDistance from `text`;
+/// the first of several such names. A name that differs from `text` only in separators counts as
+/// distance 0: for INFA the suggestion is IN-FA, not LINFA. Returns "" if this distance is above 2
+/// or above half of the length of `text`. Also returns "" if `text` has more than 100 bytes.
 inline std::string DidYouMean(const std::string& text, const std::vector<std::string>& names) {
   constexpr std::size_t kLongest = 100;
   std::size_t limit = std::min<std::size_t>(3, text.size() / 2 + 1);

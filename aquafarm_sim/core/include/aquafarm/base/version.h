@@ -2,7 +2,7 @@
 #pragma once
 
 namespace aquafarm {
-/// Version of the suite. Bags, saved states, checkpoints and the JSON files of results contain it.
+/// Version of the suite. Bags, saved states, checkpoints and JSON files of results contain it.
 /// CMake reads it from this file.
 inline constexpr const char* kVersion = "0.1.0";
 }  // namespace aquafarm

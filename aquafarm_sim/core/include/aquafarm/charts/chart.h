@@ -16,13 +16,13 @@
 
 namespace aquafarm {
 
-/// Fraction of land in each cell, in [0, 1]; [H, W].
+/// Fraction of land in each cell, [H, W], in [0, 1].
 using LandShare = Grid<float>;
 
 /// Min land share of an island cell ([decided]).
 inline constexpr float kLandShare = 0.4F;
-/// Min land share of a rock cell ([decided]). A rock cell has too little land for an island and too
-/// much for ships.
+/// Min land share of a rock cell ([decided]). A rock cell has too little land for an island cell
+/// and too much for ships.
 inline constexpr float kRockShare = 0.05F;
 
 /// Cell types of a ranch. All water is connected.

@@ -22,16 +22,16 @@ struct Coast {
   std::vector<std::string> warnings;  ///< "coast.json:3: features[0]…: the ring crosses itself; …"
 };
 
-/// Parses a GeoJSON text. A ring that crosses or overlaps itself is kept with a warning. After 50
-/// million comparisons of segments in a file, the check of rings ends with a warning.
+/// Parses a GeoJSON text. A ring that crosses or overlaps itself is kept, with a warning. This
+/// check stops, with a warning, after 50 million comparisons of segments in a file.
 /// @throws InputError "coast.json:7: features[0].geometry.coordinates[0]: the ring is open, …",
 ///   also if there is no polygon
 Coast ParseCoast(const std::string& text, const std::string& origin_name);
-/// Reads a file and parses it as ParseCoast does. @throws InputError also if it cannot be read
+/// Does the same as ParseCoast, for a file. @throws InputError also if the file cannot be read
 Coast LoadCoast(const std::string& path);
 
 /// Returns the land share [height, width] from 5 × 5 sample points per cell. A point is land if it
-/// is inside a polygon by the even-odd rule, applied to all rings of the polygon.
+/// is inside a polygon. The even-odd rule is applied to all rings of a polygon together.
 LandShare ShareOfLand(const Coast& coast, const GeoFrame& frame, std::int32_t width,
                       std::int32_t height);
 

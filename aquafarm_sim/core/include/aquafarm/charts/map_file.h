@@ -11,8 +11,9 @@
 ///   free_thresh: 0.196      a pixel with a lower occupancy is free
 ///   mode: trinary           between the thresholds: unknown (trinary), or linear (scale)
 ///
-/// The occupancy of a pixel is 0 if it is white and 1 if it is black (negate: 0). With mode: raw,
-/// grey values from 0 to 100 are the occupancy in percent, and larger values are unknown. Source:
+/// With negate: 0, the occupancy of a white pixel is 0 and that of a black pixel is 1. With mode:
+/// scale, pixels between the thresholds are unknown unless they are opaque. With mode: raw, grey
+/// values from 0 to 100 are the occupancy in percent, and larger values are unknown. Source:
 /// wiki.ros.org/map_server
 
 #include <array>
@@ -33,13 +34,13 @@ struct MapFile {
 MapFile LoadMap(const std::string& yaml_path);
 
 /// Writes `yaml_path` and, next to it, the image with the extension .pgm. Each file has a temporary
-/// name until it is complete. Grey values are those of map_saver: 254 for an occupancy from 0 to
-/// 19, 0 from 65, and 205 for the values between and for unknown.
+/// name until it is complete. Grey values are those of map_saver: 254 for an occupancy of 0 to 19,
+/// 0 for 65 and above, and 205 for 20 to 64 and for unknown.
 /// @throws InputError if a file cannot be written
 void SaveMap(const MapFile& map, const std::string& yaml_path);
 
 /// Returns the land share of each cell: its occupancy divided by 100. Unknown cells are land,
-/// because ships must not enter them ([decided], see docs/model.md).
+/// because ships must not enter them (our choice, see docs/model.md).
 /// @throws InputError for a rotated map, because the grid of a ranch points north
 LandShare ShareOfLand(const MapFile& map);
 

@@ -10,7 +10,7 @@
 /// The remaining value of a device is insured - damaged. The three parts of a device's insured
 /// value are:
 ///
-///   damaged   the share of its initial health that the device lost, times its insured value
+///   damaged   the share of its initial health that the device has lost, times its insured value
 ///   lost      0 if the device was delivered to a port, else the remaining value times
 ///             money.at_sea_loss
 ///   saved     the remaining value minus `lost`

@@ -3,19 +3,19 @@
 
 /// Disasters that move over the farm (paper §2.1, see docs/model.md).
 ///
-///      . . r2 . .        The risk at a cell is that of the smallest ring whose radius is at least
-///    .   . r1 .   .      the Euclidean distance from the centre c to the centre of the cell. It is
-///   .  .   c--->.  .     0 outside all rings. With several disasters the worst risk applies. Risks
-///    .   . . .   .       are computed from the rings, without a grid.
+///      . . r2 . .        The risk at a cell is that of the smallest ring that contains the centre
+///    .   . r1 .   .      of the cell (Euclidean distance from the centre c). It is 0 outside all
+///   .  .   c--->.  .     rings. With several disasters the worst risk applies. Risks are computed
+///    .   . . .   .       from the rings, without a grid.
 ///
 /// A ring may have a separate radius for each quadrant, as in typhoon bulletins. A cell due north
 /// of the centre belongs to the north-east quadrant, a cell due east to the south-east quadrant,
 /// and so on clockwise.
 ///
 /// Difference from the paper: the centre moves by a real number of cells along a heading in whole
-/// degrees. By default it is reflected at a border outside the map, whose distance from the map is
-/// the largest initial radius. Border has alternatives. A disaster with a track follows its track
-/// instead.
+/// degrees. By default it is reflected at a border outside the map. The distance from the map to
+/// the border is the largest initial radius. Border lists the alternatives. A disaster with a track
+/// follows its track instead.
 
 #include <array>
 #include <cstdint>
@@ -42,12 +42,12 @@ struct Bulletin {
   float speed{};               ///< [cells/step]
   std::int32_t heading_deg{};  ///< compass bearing
   std::int32_t step{kNone};    ///< step of issue; kNone: not issued yet
-  /// Radii at `step` [cells]. Farm::SetDisaster replaces them by radii of the new disaster.
+  /// Radii at `step` [cells]. Farm::SetDisaster replaces them by those of the new disaster.
   std::array<float, kMaxRings> radius{};
   std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< by quadrant; see `radius`
 };
 
-/// The part of a disaster's state that views copy. It contains only plain data.
+/// The part of a disaster's state that views copy.
 struct ObservableDisaster {
   DisasterKind kind{};
   Border border{};
@@ -89,7 +89,8 @@ inline void CopyRings(const ObservableDisaster& disaster, Bulletin& bulletin) {
   bulletin.quadrant = disaster.quadrant;
 }
 
-/// Waypoints of a disaster. They do not change during an episode; Farm::SetDisaster replaces them.
+/// Waypoints of a disaster. During an episode the vector is not modified: Farm::SetDisaster
+/// replaces it by another one.
 using Track = std::shared_ptr<const std::vector<Waypoint>>;
 
 /// Creates a disaster. If the spec does not set the centre or the heading, they are drawn from
@@ -108,9 +109,10 @@ Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t 
 void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_key,
                   std::int32_t step, std::int32_t width, std::int32_t height);
 
-/// Sets position, rings, risks, grade and motion of a disaster to those of its track at `step`.
-/// Before the first waypoint they are those of the first one, and after the last waypoint those of
-/// the last one.
+/// Sets position, rings and risks of a disaster to those of its track at `step`. Before the first
+/// waypoint they are those of the first one, and after the last waypoint those of the last one.
+/// Sets grade and motion only if `step` is 0 or a new leg of the track has begun. Before the first
+/// waypoint the motion is that of the first leg, and after the last waypoint it is 0.
 /// @param disaster `waypoint` must not be kNone. The search for the current leg starts there, so
 ///   `step` must not decrease from call to call.
 void FollowTrack(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
@@ -125,8 +127,8 @@ void SetRing(ObservableDisaster& disaster, std::size_t ring, const QuadrantRadii
 void GrowRings(ObservableDisaster& disaster, float by);
 
 /// Returns the index of the quadrant (0 NE, 1 SE, 2 SW, 3 NW) in which a point lies.
-/// @param west distance of the point west of the centre, negative in the east
-/// @param south distance of the point south of the centre, negative in the north
+/// @param west how far the point is west of the centre; negative if it is east
+/// @param south how far the point is south of the centre; negative if it is north
 constexpr std::size_t QuadrantOf(float west, float south) {
   if (west <= 0.0F && south < 0.0F) return 0;
   if (west < 0.0F) return 1;
@@ -134,7 +136,8 @@ constexpr std::size_t QuadrantOf(float west, float south) {
   return west > 0.0F ? 3 : 0;
 }
 
-/// Returns the risk of a disaster with quadrants at a point; 0 outside its rings.
+/// Returns the risk of a disaster with quadrants at a point; 0 outside its rings. Does not check
+/// whether the disaster has ended.
 /// @param west, south position of the point as in QuadrantOf [cells]
 /// @param distance_squared squared distance of the point from the centre
 float RiskByQuadrant(const ObservableDisaster& disaster, float west, float south,
@@ -165,8 +168,8 @@ inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
   return worst;
 }
 
-/// Returns the risk that damages a device at a cell: the worst product of the risk of a disaster
-/// and the factor of its kind. The result may be worse than kWorstRisk.
+/// Returns the risk that damages a device at a cell. The risk of each disaster is multiplied by the
+/// factor of its kind, and the worst product applies. It may be worse than kWorstRisk.
 /// @param factors factors of the device's kind, indexed by DisasterKind (DamageSpec::FactorsOf)
 inline float DamagingRiskAt(const std::vector<Disaster>& disasters, Cell cell,
                             const std::array<float, kDisasterKindCount>& factors) {

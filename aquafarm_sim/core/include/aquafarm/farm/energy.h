@@ -5,10 +5,10 @@
 ///
 ///   idle_per_step + per_km · distance · (1 + per_device · aboard) · (1 + rough_sea · risk / -20)
 ///
-/// `distance` is the distance travelled in the step [km]. A diagonal move covers √2 cells. A ship
-/// that stays in its cell, for example because it crashes, covers 0. `aboard` is the number of
-/// devices aboard, and `risk` is the risk at the cell of the ship, both after the action. The other
-/// names are fields of EnergyFigures. See docs/model.md.
+/// `distance` is the distance travelled in the step [km]: √2 cells for a diagonal move, and 0 for a
+/// ship that stays in its cell, for example because it crashes. `aboard` is the number of devices
+/// aboard, and `risk` is the risk at the cell of the ship, both after the action. The other names
+/// are fields of EnergyFigures. See docs/model.md.
 
 #include <cmath>
 

@@ -2,8 +2,9 @@
 #pragma once
 
 /// One episode on one farm (Algorithm 1 of the paper; rules in docs/model.md). A step calls, in
-/// this order: MoveDisasters; Act for each ship in id order, so the lower id has right of way;
-/// Damage; Consume if the scenario has energy; Reward; CountShipSteps if it has money; Finish.
+/// this order: MoveDisasters; Act for each ship in id order, so that the lower id has right of way;
+/// Damage; Consume if the scenario has energy; Reward; CountShipSteps if the scenario has money;
+/// Finish.
 ///
 /// Step never allocates memory. Reset allocates only in two cases: its buffers grow, as in the
 /// first episodes, or another owner still holds the track of a drawn storm.
@@ -30,8 +31,8 @@ namespace aquafarm {
 class Hasher;
 struct SavedDisaster;
 
-/// Forecasts of one disaster that were issued during an episode, in order of issue. Null if none
-/// was issued.
+/// Forecasts of one disaster that SetDisaster or IssueForecast set during an episode, in order of
+/// issue; null if there are none.
 using Forecasts = std::shared_ptr<const std::vector<IssuedForecast>>;
 
 /// A rescue ship, or a self-propelled device that acts as a ship.
@@ -70,7 +71,7 @@ struct EpisodeRecord : EpisodeStatistics {
 /// Returns the summary of an episode. @param farm index of the farm that played it
 EpisodeSummary SummaryOf(const EpisodeRecord& record, std::int32_t farm);
 
-/// Storms that the disasters of a farm have drawn for the current episode.
+/// Storms that are drawn for the disasters of a farm in the current episode.
 struct DrawnStorms {
   std::vector<std::shared_ptr<std::vector<Waypoint>>>
       tracks;                                ///< by disaster; null without DisasterSpec::storms
@@ -84,7 +85,7 @@ class Farm {
  public:
   /// Creates a farm at the start of episode 0 of seed 0.
   /// @param scenario must have passed ValidateScenario
-  /// @throws InputError if its layout cannot be drawn
+  /// @throws InputError if the layout cannot be drawn
   explicit Farm(std::shared_ptr<const Scenario> scenario);
   /// Creates a farm that uses a shared layout in all episodes instead of drawing layouts.
   /// @param fixed_layout layout of the same scenario; null: the farm draws layouts
@@ -96,8 +97,8 @@ class Farm {
   ///   to another episode before it is used.
   void Reset(std::uint64_t seed, std::uint64_t episode);
 
-  /// Loads the first ship, device and disaster into the cache, for a call of Step about 50 ns
-  /// later.
+  /// Loads the first ship, device and disaster into the processor's cache. Call it shortly before
+  /// Step.
   void Prefetch() const;
 
   /// Executes one step.
@@ -122,8 +123,8 @@ class Farm {
   const Bulletin& BulletinOf(std::size_t disaster) const;
   /// Waypoints of each disaster; empty for a disaster without a track.
   const std::vector<Track>& tracks() const { return tracks_; }
-  /// Forecasts of each disaster that were issued during this episode. They affect only what agents
-  /// observe. NewestForecast (forecast.h) also considers the forecasts of the scenario.
+  /// Forecasts of each disaster that were set during this episode. They affect only observations
+  /// and plans. NewestForecast (forecast.h) also considers the forecasts of the scenario.
   const std::vector<Forecasts>& forecasts() const { return forecasts_; }
   /// Statistics of this episode so far.
   const EpisodeRecord& record() const { return record_; }
@@ -143,9 +144,8 @@ class Farm {
 
   /// Returns the worst current risk of disasters and sea at a cell of the map; 0 or negative.
   float RiskAt(Cell cell) const;
-  /// Returns the current risk that damages a kind of device at a cell of the map. It is computed as
-  /// in RiskAt, but the risk of each disaster is first multiplied by its factor of
-  /// DamageSpec::kinds.
+  /// Returns the current risk that damages a kind of device at a cell of the map. In contrast to
+  /// RiskAt, the risk of each disaster is first multiplied by its factor of DamageSpec::kinds.
   float DamagingRiskAt(Cell cell, DeviceKind kind) const;
 
   /// Returns the current cell of a device: the cell of its carrier, or its own cell without a
@@ -189,16 +189,16 @@ class Farm {
   /// bit-identically. The two farms may have different scenario objects with the same hash, for
   /// example with different ViewSpecs.
   /// @throws LogicError if the hashes of the scenarios differ
-  /// @throws InputError if only one of the farms needs routes (ViewSpec::NeedsRoutes), so that a
-  ///   layout must be drawn for this farm, and it cannot be drawn
+  /// @throws InputError if a layout must be drawn for this farm and cannot be drawn. A layout is
+  ///   drawn only if exactly one of the two farms needs routes (ViewSpec::NeedsRoutes).
   void CopyStateFrom(const Farm& from);
 
   /// Applies a bulletin: replaces disaster `id`, or adds a disaster if `id` is the number of
   /// disasters. If the spec has neither start nor track, the disaster keeps the centre of the one
   /// that it replaces. A new disaster needs a start or a track. The disaster follows the track of
   /// the spec. The steps of the track count from the start of the episode.
-  /// Agents receive the forecasts of the spec, which replace all earlier ones. In partial view, a
-  /// spec with forecasts also issues a bulletin of the new state at once.
+  /// Agents receive the forecasts of the spec, which replace those set earlier in this episode. In
+  /// partial view, a spec with forecasts also issues a bulletin of the new state at once.
   /// @throws InputError if the id or the spec is invalid or the spec has storms; the farm is then
   ///   unchanged
   void SetDisaster(std::int32_t id, const DisasterSpec& spec);
@@ -211,11 +211,12 @@ class Farm {
   /// @throws InputError if the id or the forecast is invalid; the farm is then unchanged
   void IssueForecast(std::int32_t id, const IssuedForecast& forecast);
 
-  /// Returns whether PlaceShip may move a ship to a cell. The cell must be on the map and not
-  /// blocked. It must also be a port, the ship's own cell, or a cell without another active ship.
+  /// Returns whether PlaceShip may move a ship to a cell. The cell must be on the map and must not
+  /// be a rock or island. It must also be a port, the ship's own cell, or a cell without another
+  /// active ship.
   /// @throws LogicError if there is no such ship
   bool CanPlaceShip(std::int32_t ship, Cell cell) const;
-  /// Moves a ship to another cell, so that the caller can query what an agent does there.
+  /// Moves a ship to another cell, so that the caller can query the agent's action there.
   /// @throws InputError if CanPlaceShip returns false; the farm is then unchanged
   void PlaceShip(std::int32_t ship, Cell cell);
 

@@ -4,8 +4,8 @@
 /// A farm as text, with one character per cell and north at the top:
 ///   0-9 ship (last digit of its id)   d device to fetch   P port   # island   o rock
 ///   ~ water with a risk               . other water
-/// A cell with several objects shows the first of them in this order. If it contains several ships,
-/// it shows the one with the lowest id. Ships that are not active are not shown.
+/// A cell with several objects shows the object that is listed first above. A cell with several
+/// ships shows the ship with the lowest id. Ships that are not active are not shown.
 
 #include <cstdint>
 #include <string>
@@ -21,8 +21,8 @@ inline constexpr const char kMapKey[] =
 /// Returns the mark of a chart cell. @param bits CellBits @param device_mark mark of a device site
 char ChartMark(std::uint8_t bits, char device_mark);
 
-/// Returns the current state as text. The first line has the name of the scenario, the step, the
-/// return, the deliveries and, after the end, the end reason. The map follows.
+/// Returns the current state as text. The first line contains the name of the scenario, the step,
+/// the return, the deliveries and, after the end, the end reason. The map follows.
 std::string RenderText(const Farm& farm);
 
 }  // namespace aquafarm

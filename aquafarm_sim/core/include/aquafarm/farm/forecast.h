@@ -11,18 +11,18 @@
 ///               issued +24 h +48 h     which is 0 at the step of issue
 ///
 /// The newest forecast of an authority applies until the step of its last point; see
-/// NewestForecast. Its path leads from the current position to its future points. After the last
-/// point the disaster keeps the motion between the last two points, or its current motion if there
-/// is only one point. It stops at the end of the true track. Without a track, it stops when the
-/// disaster ends.
+/// NewestForecast. Its path leads from the last known position to its later points. After the last
+/// point the disaster keeps the motion between the last two points, or its last known motion if
+/// there is only one point. It stops at the end of the true track. Without a track, it stops when
+/// the disaster ends.
 ///
-/// The rings of this forecast are those of its points. If the points have no rings, the rings of
-/// the true track apply. For a disaster without a track its current rings apply, and they grow by
+/// The rings of this forecast (ForecastTrack) are those of its points. If the points have no rings,
+/// the rings of the true track apply. Without a true track, the current rings apply and grow by
 /// radius_growth per step. If the points of a disaster without a track have rings, these rings grow
-/// after the last point by radius_growth per step, if it is positive.
+/// only after the last point, and only if radius_growth is positive.
 ///
 /// While no forecast of an authority applies, agents observe the second source if the scenario has
-/// view.forecast_error_km and the disaster has a track. If not, they observe the current motion.
+/// view.forecast_error_km and the disaster has a track. If not, they observe the last known motion.
 /// The forecasts of the scenario apply only while the disaster follows the track in the scenario.
 ///
 /// The vector u is drawn once per episode and disaster. Its mean length is 1, and its direction is
@@ -51,9 +51,10 @@ float MeanForecastError(const Scenario& scenario, float lead);
 std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episode,
                                          std::int32_t disaster);
 
-/// Returns the newest forecast of an authority that was issued at or before step `issued`; nullptr
-/// if there is none, or if it has no point after that step. The pointer is valid until the farm
-/// changes.
+/// Returns the forecast of an authority that applies at step `issued`; nullptr if there is none.
+/// The candidates are the newest forecast in the scenario and the newest one in Farm::forecasts,
+/// each issued at or before `issued`. A candidate without a point after `issued` is excluded.
+/// Returns the newer candidate. The pointer is valid until the farm changes.
 const IssuedForecast* NewestForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
 /// Checks a forecast. @throws InputError if Farm::IssueForecast does not accept it
@@ -61,17 +62,16 @@ void CheckForecast(const Farm& farm, std::int32_t disaster, const IssuedForecast
 
 /// Prepares a storm for Farm::SetDisaster; does nothing if it has no forecast. If its newest
 /// forecast is issued after the farm's current step, changes the forecast: it is then issued now,
-/// and its points are the later waypoints of the track.
-/// With view.forecast_error_km, also subtracts the error (MeanForecastError times
-/// ForecastErrorVector) from the waypoints after the step of issue. The truth then differs from the
-/// forecast as real storms differ from published forecasts. Without view.forecast_error_km the
-/// track does not change.
+/// and its points are the later waypoints of the track. With view.forecast_error_km, also subtracts
+/// the error (MeanForecastError times ForecastErrorVector) from the waypoints after the step of
+/// issue. The true track then differs from the forecast as real tracks differ from published
+/// forecasts. Without view.forecast_error_km the track does not change.
 void FitArrival(const Farm& farm, std::int32_t disaster, DisasterSpec& spec);
 
-/// Returns the newest forecast of a storm, prepared for Farm::IssueForecast. If it is issued after
-/// the farm's current step, the result is issued now, and its points are the later waypoints of the
-/// storm's track. The result has no rings if storm and disaster differ in the number of rings, or
-/// if only one of the two has quadrants.
+/// Returns the newest forecast of a storm, prepared for Farm::IssueForecast. If the forecast is
+/// issued after the farm's current step, the result is issued now, and its points are the later
+/// waypoints of the storm's track. The result has no rings if storm and disaster differ in the
+/// number of rings, or if only one of the two has quadrants.
 /// @param storm must have a forecast and a track
 /// @throws InputError if the farm has no such disaster
 IssuedForecast FitForecast(const Farm& farm, std::int32_t disaster, const DisasterSpec& storm);
@@ -82,9 +82,9 @@ Waypoint RingsOf(const ObservableDisaster& disaster);
 /// Implements HasForecast for a disaster with a track or an issued forecast.
 bool HasForecastOfTrack(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
-/// Returns whether agents observe a forecast of a disaster if their newest information on it is
-/// from step `issued`. Inline, because each observation calls it, and most disasters have neither a
-/// track nor an issued forecast.
+/// Returns whether agents observe a forecast of a disaster. Inline, because each observation calls
+/// it, and most disasters have neither a track nor an issued forecast.
+/// @param issued step of the agents' newest information on the disaster
 inline bool HasForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
   const auto id = static_cast<std::size_t>(disaster);
   if (farm.tracks()[id]->empty() && farm.forecasts()[id] == nullptr) return false;
@@ -97,7 +97,7 @@ inline bool HasForecast(const Farm& farm, std::int32_t disaster, std::int32_t is
 std::array<float, 2> ForecastAt(const Farm& farm, std::int32_t disaster, std::int32_t issued,
                                 std::int32_t step);
 
-/// Returns the forecast of step `issued` as a track that starts at that step.
+/// Returns the forecast of step `issued` as a track with rings that starts at that step.
 std::vector<Waypoint> ForecastTrack(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
 }  // namespace aquafarm

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The layout of an episode: the islands of the scenario, and positions of ports, rocks and devices
-/// drawn from (scenario, seed, episode). A breadth-first search ensures that water connects all
-/// devices and ports (paper §2.4, see docs/model.md).
+/// The layout of an episode: the islands of the scenario, and the positions of ports, rocks and
+/// devices. The scenario sets these positions, or they are drawn from (scenario, seed, episode). A
+/// breadth-first search ensures that water connects all devices and ports (paper §2.4, see
+/// docs/model.md).
 
 #include <cstdint>
 #include <vector>
@@ -35,8 +36,8 @@ struct Layout {
   std::vector<Cell> ports;
   std::vector<Cell> rocks;
   std::vector<PlacedDevice> devices;
-  /// [H, W, route_count()]. Routes from each cell to each port, followed by the routes to each
-  /// device that ships fetch, both in id order. Empty unless ViewSpec::NeedsRoutes().
+  /// [H, W, route_count()]. For each cell, the routes to all ports and then to all devices that
+  /// ships must fetch, both in id order. Empty unless ViewSpec::NeedsRoutes().
   std::vector<RouteEntry> routes;
 
   /// Returns the number of targets in `routes`.
@@ -46,13 +47,13 @@ struct Layout {
 };
 
 /// Draws layouts. Keeps its scratch memory, so drawing into the same Layout again does not
-/// allocate. First places islands and the objects whose cells the scenario gives. Then places
+/// allocate. First places the islands, and the objects whose cells the scenario sets. Then places
 /// random ports, devices and rocks, in this order. Placements of devices:
 ///   uniform  divides the map into `count` parts of about equal size; one device near the middle of
 ///            each part
 ///   linear   devices in straight rows, all from west to east or all from south to north
 ///   random   anywhere on free water
-///   explicit at the cells given in the scenario
+///   explicit at the cells that the scenario sets
 class LayoutGenerator {
  public:
   /// Keeps a reference to the scenario, which must have passed ValidateScenario.
@@ -61,8 +62,8 @@ class LayoutGenerator {
   /// Draws the layout of one episode into `layout` and reuses its memory. With LayoutMode::kFixed
   /// the layout depends only on the scenario: Scenario::layout_seed replaces `seed`, and 0 replaces
   /// `episode`.
-  /// @throws InputError if 100 attempts find no layout in which water connects all ports and
-  ///   devices; the message names a parameter to change
+  /// @throws InputError if 100 attempts fail, because too few cells are free or because water does
+  ///   not connect all ports and devices. The message names a parameter to change.
   void Generate(std::uint64_t seed, std::uint64_t episode, Layout& layout);
 
  private:
@@ -83,8 +84,8 @@ class LayoutGenerator {
   void AddRock(Cell cell, float reward, Layout& layout) const;
   void ChartAllWays(Layout& layout);
   bool AtShore(const Layout& layout, Cell cell) const;
-  /// Returns the first cell without bits in growing squares around `wanted`; its x is kNone if
-  /// there is no such cell.
+  /// Returns the first cell without bits in growing squares around `wanted`. If there is no such
+  /// cell, the x of the result is kNone.
   Cell NearestFree(const Layout& layout, Cell wanted) const;
   /// Returns whether all ports and devices are connected through cells without the bits in
   /// `blocked`.

@@ -15,7 +15,7 @@ namespace aquafarm {
 inline constexpr std::int32_t kUnreachable = 1 << 28;
 
 /// Computes the number of moves by water from every cell of a chart to the nearest of `count`
-/// targets. It is kUnreachable on land and where no route exists.
+/// targets. On land, and where no route exists, the number is kUnreachable.
 /// @param cells [H, W] CellBits
 /// @param targets [count] cells of the chart
 /// @param steps [H, W] result; resized
@@ -24,17 +24,18 @@ void StepsByWater(const Grid<std::uint8_t>& cells, const Cell* targets, std::siz
                   Grid<std::int32_t>& steps, std::vector<Cell>& queue);
 
 /// The next move of a shortest route from a cell to a target, and the number of moves left. If
-/// several moves are on shortest routes, the entry is the move to the cell with the smallest
+/// several moves are on shortest routes, the entry has the move to the cell with the smallest
 /// straight-line distance to the target.
 struct RouteEntry {
-  std::int32_t steps{kUnreachable};
-  std::int8_t east{};   ///< next move to the east; 0 at the target and without a route
-  std::int8_t north{};  ///< next move to the north; 0 at the target and without a route
+  std::int32_t steps{kUnreachable};  ///< moves left; 0 at the target
+  std::int8_t east{};   ///< next move to the east; 0 at the target, or if there is no route
+  std::int8_t north{};  ///< next move to the north; 0 at the target, or if there is no route
 };
 
 /// Computes the routes from every cell to `target`. The route of the cell with linear index i is
 /// written to routes[i * stride].
-/// @param routes first element to write; H · W routes at distances of `stride`
+/// @param cells [H, W] CellBits
+/// @param routes first element to write; the array has (H · W - 1) · stride + 1 or more elements
 /// @param steps, queue scratch memory, as in StepsByWater
 void ComputeRoutes(const Grid<std::uint8_t>& cells, Cell target, RouteEntry* routes,
                    std::size_t stride, Grid<std::int32_t>& steps, std::vector<Cell>& queue);

@@ -13,8 +13,8 @@
 namespace aquafarm {
 
 /// Actions of a ship in one step (Eq. 1, §2.2). With kHold the ship stays in its cell. Learners do
-/// not use kHold. A server executes it for a ship without a command, and some policies that do not
-/// learn use it.
+/// not use kHold. The server executes kHold for a ship without a command, and some policies that do
+/// not learn use it.
 enum class Action : std::uint8_t {
   kNorth,
   kSouth,
@@ -40,6 +40,7 @@ inline constexpr std::array<Cell, kMoveCount> kMoves{
 
 /// Legal-action mask: bit a is set if action a is legal.
 using ActionMask = std::uint16_t;
+/// Mask of all moves.
 inline constexpr ActionMask kMoveMask = (1U << kMoveCount) - 1;
 
 /// Returns the mask that contains one action.
@@ -47,9 +48,9 @@ constexpr ActionMask MaskOf(Action action) {
   return static_cast<ActionMask>(1U << static_cast<unsigned>(action));
 }
 
-/// Index of the feature "blocked.north", the first of eight consecutive features "blocked.<move>"
-/// of an agent. With entity tokens their names are "ship.blocked.<move>". Encoder::feature_names
-/// lists all features.
+/// Index of the feature "blocked.north" in an agent's feature vector (Encoder::feature_names). It
+/// is the first of eight consecutive features "blocked.<move>". With entity tokens they are called
+/// "ship.blocked.<move>".
 inline constexpr std::int32_t kFirstBlockedFeature = 5;
 
 /// Outcome of a ship's action in the last step.

@@ -9,8 +9,8 @@
 ///        |         (0, 0)  . . . (W-1, 0)     as in nav_msgs/OccupancyGrid; image row 0 is north
 ///        +------> x (east)
 ///
-/// Lengths are in cells and times in steps, unless a name contains another unit. Source: §2.4 and
-/// Eq. 1 of the paper, see docs/model.md.
+/// Lengths are in cells and times in steps, unless a name or comment states another unit. Source:
+/// §2.4 and Eq. 1 of the paper, see docs/model.md.
 
 #include <cstdint>
 

@@ -15,11 +15,11 @@ namespace aquafarm {
 struct EpisodeField {
   const char* name;    ///< name of the struct member
   const char* column;  ///< column in metrics.csv and evaluation.csv
-  bool is_added{};     ///< true if files and saved states of version 0.1.0 lack it
+  bool is_added{};     ///< true if older files and saved states may lack it
 };
 
-/// Calls visit(field, member…) for every statistic. `member…` are the members of that name in the
-/// given records. Each record is an EpisodeStatistics or a message EpisodeSummary. Append new
+/// Calls visit(field, member…) for every statistic. `member…` are the members called field.name in
+/// the given records. Each record is an EpisodeStatistics or a message EpisodeSummary. Append new
 /// statistics at the end, with is_added = true.
 template <typename Visit, typename... Records>
 void VisitEpisodeFields(const Visit& visit, Records&... records) {
@@ -38,7 +38,7 @@ void VisitEpisodeFields(const Visit& visit, Records&... records) {
   visit(EpisodeField{"distance", "distance_km", true}, records.distance...);
 }
 
-/// Copies every statistic from one record to another and converts the types.
+/// Copies every statistic from one record to another. Converts it to the type of the target.
 template <typename From, typename To>
 void CopyEpisodeFields(const From& from, To& to) {
   VisitEpisodeFields([](const EpisodeField&, const auto& value,
@@ -54,8 +54,8 @@ struct EpisodeStatistics {
   float episode_return{};  ///< sum of the rewards of all ships and steps, before sharing
   std::int32_t delivered{};
   std::int32_t devices{};
-  /// In an EpisodeSummary: mean health of the delivered devices, 0 without a delivery. In an
-  /// EpisodeRecord: sum of their health.
+  /// In an EpisodeSummary: mean health of the delivered devices; 0 without a delivery. In an
+  /// EpisodeRecord: sum of the health of the delivered devices.
   float delivered_health{};
   std::int32_t crashes{};
   std::int32_t collisions{};

@@ -2,7 +2,7 @@
 #pragma once
 
 /// The reward terms and their weights. The farm, scenario files, messages, pictures and Python use
-/// the two lists below. Append new terms at the end, because saved episodes store the first seven
+/// the two lists below. Append new terms at the end, because saved states store the first seven
 /// terms by position. They store later terms by name. [decided] marks our choice where the paper
 /// gives no value, see docs/model.md.
 
@@ -11,8 +11,8 @@
 
 namespace aquafarm {
 
-/// Calls visit(name, member…) for every reward term. `member…` are the members of that name in the
-/// given records. Each record is the struct or the message RewardTerms.
+/// Calls visit(name, member…) for every reward term. `member…` are the members with this name in
+/// the given records. Each record is the struct or the message RewardTerms.
 template <typename Visit, typename... Records>
 constexpr void VisitRewardTerms(const Visit& visit, Records&... records) {
   visit("crash", records.crash...);
@@ -42,7 +42,7 @@ inline constexpr std::array<std::string_view, kRewardTermCount> kRewardTermNames
 /// The reward of one ship in one step, by term (paper §2.5, see docs/model.md).
 struct RewardTerms {
   float crash{};     ///< crash reward of the rock or island that the ship tried to enter
-  float disaster{};  ///< risk of disasters and sea at the ship's cell after its action
+  float disaster{};  ///< worst risk of disasters and sea at the ship's cell after its action
   float pickup{};
   float drop_off{};  ///< includes health × value of each device delivered
   float illegal{};
@@ -59,8 +59,9 @@ struct RewardTerms {
 };
 static_assert(sizeof(RewardTerms) == kRewardTermCount * sizeof(float));
 
-/// Rewards that a scenario sets (paper §2.5). Two rewards are elsewhere: RockSpec::reward for
-/// crashes into rocks, and EnergySpec::weight for energy.
+/// Rewards that a scenario sets under `rewards` (paper §2.5). Other members of Scenario set the
+/// rest: RockSpec::reward for crashes into rocks, EnergySpec::weight for energy, and the risks of
+/// disasters and sea.
 struct RewardWeights {
   float island_crash{-20.0F};
   float pickup{20.0F};
@@ -76,8 +77,8 @@ struct RewardKey {
   bool is_penalty{};  ///< true if the value must not be positive
 };
 
-/// Calls visit(key, member…) for every weight. `member…` are the members of that name in the given
-/// records. Each record is a RewardWeights or a message RewardTable.
+/// Calls visit(key, member…) for every weight. `member…` are the members called key.name in the
+/// given records. Each record is a RewardWeights or a message RewardTable.
 template <typename Visit, typename... Records>
 constexpr void VisitRewardWeights(const Visit& visit, Records&... records) {
   visit(RewardKey{"island_crash", true}, records.island_crash...);

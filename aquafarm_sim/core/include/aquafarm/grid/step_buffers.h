@@ -7,7 +7,7 @@
 
 namespace aquafarm {
 
-/// Resizes the arrays of a step's results and sets the pointers of an output to them. For a field
+/// Resizes the arrays of a step's results and sets the pointers of `output` to them. For a field
 /// that `bits` excludes, the array becomes empty and the pointer null.
 /// @param results arrays, with the members that VisitStepFields lists
 /// @param output pointers, such as BatchOutput

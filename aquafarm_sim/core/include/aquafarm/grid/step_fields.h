@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The list of the fields of a step's results. Every struct with such results has one member per
-/// field, of the same name: BatchOutput has pointers; the StepResults of learners and the message
-/// StepResult have arrays. Every array is flat and row-major.
+/// The list of the fields of a step's results. Every struct with such results has one member for
+/// each field, with the name of the field. The members of BatchOutput are pointers. Those of the
+/// learners' StepResults and of the message StepResult are arrays. Every array is flat and
+/// row-major.
 
 #include <cstddef>
 #include <cstdint>
@@ -58,8 +59,8 @@ struct StepField {
   }
 };
 
-/// Calls visit(field, member…) for every field. `member…` are the members of that name in the given
-/// structs.
+/// Calls visit(field, member…) for every field. `member…` are the members called field.name in the
+/// given structs.
 template <typename Visit, typename... Results>
 void VisitStepFields(const Visit& visit, Results&... results) {
   using Columns = StepField::Columns;

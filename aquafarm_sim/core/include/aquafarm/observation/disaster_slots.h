@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Slots of features of the disasters that a ship knows (view.disaster_slots). With slots, the
+/// Slots for the features of the disasters that a ship knows (view.disaster_slots). With slots, the
 /// features are ordered by danger instead of by disaster id. Slot 0 describes the most dangerous
-/// disaster, slot 1 the next one, and so on (RankByDanger in view.h). Disasters that arrive during
-/// an episode therefore look the same to a learner as those of the scenario.
+/// disaster, slot 1 the next one, and so on (RankByDanger in view.h). To a learner, disasters that
+/// arrive during an episode therefore look the same as those of the scenario.
 ///
 /// The number of slots is the number of disasters in the scenario plus view.disaster_slots. If
 /// there are more known disasters than slots, the least dangerous ones are left out. Unused slots

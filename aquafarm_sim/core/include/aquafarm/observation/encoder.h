@@ -8,7 +8,7 @@
 /// deployed, aboard this ship, or gone (delivered or aboard another ship). A ship of capacity C
 /// carries at most C devices, so combinations with more devices aboard have no number. For C = 1
 /// and D devices there are 2^D + D·2^(D−1) combinations. As in the paper, the index does not
-/// contain the disaster. The paper prints |S| = 128,000 and |O| = 32,000, but its products
+/// contain the disaster. The paper states |S| = 128,000 and |O| = 32,000, but its products
 /// 25·25·2³·4 and 25·25·2³ are 20,000 and 5,000.
 ///
 /// feature_names() and plane_names() list the features and planes in order.
@@ -55,7 +55,7 @@ class Encoder {
     Cell cell{};
     std::vector<DeviceStatus> status;  ///< kDelivered: delivered or aboard another ship
   };
-  /// Inverse of Index. @param index in [0, state_count())
+  /// Inverse of Index. @param index in [0, state_count()), else LogicError is thrown
   TabularState Decode(std::uint32_t index) const;
 
   /// Writes the feature vector. @param out [feature_count()]

@@ -2,7 +2,7 @@
 #pragma once
 
 /// Many farms of one scenario, stepped together. Observations are written directly to the caller's
-/// memory. If the episode of a farm has ended, the next Step ignores the action of that farm and
+/// memory. If the episode of a farm has ended, the next Step ignores the actions for that farm and
 /// starts its next episode (next-step auto-reset, as in Gymnasium 1.x). No final observation is
 /// lost, and one call per step is enough.
 
@@ -21,17 +21,17 @@ namespace aquafarm {
 /// Destination buffers of a step's results (step_fields.h); N farms × S agents, row-major. Null
 /// pointers are skipped.
 struct BatchOutput {
-  float* rewards{};          ///< [N, S]
-  float* terms{};            ///< [N, S, kRewardTermCount]
-  float* energy{};           ///< [N, S] consumed in the step [kWh]
-  float* distance{};         ///< [N, S] travelled in the step [km]
-  std::uint8_t* outcomes{};  ///< [N, S] Outcome
-  ActionMask* legal{};       ///< [N, S] legal actions of the next step
-  std::uint8_t* active{};    ///< [N, S] 0: the agent is a self-propelled device that is delivered
+  float* rewards{};             ///< [N, S]
+  float* terms{};               ///< [N, S, kRewardTermCount]
+  float* energy{};              ///< [N, S] consumed in the step [kWh]
+  float* distance{};            ///< [N, S] travelled in the step [km]
+  std::uint8_t* outcomes{};     ///< [N, S] Outcome
+  ActionMask* legal{};          ///< [N, S] legal actions of the next step
+  std::uint8_t* active{};       ///< [N, S] 0: a self-propelled device that is delivered; else 1
   std::uint8_t* end_reasons{};  ///< [N] EndReason; kNone while the episode runs
-  std::uint8_t* is_first{};     ///< [N] 1: the first observation of an episode; no step precedes it
+  std::uint8_t* is_first{};     ///< [N] 1 for the first observation of an episode, before any step
   std::uint64_t* hashes{};      ///< [N] state hash
-  std::uint32_t* index{};       ///< [N, S] tabular index
+  std::uint32_t* index{};       ///< [N, S] tabular index; must be null if state_count() is 0
   float* features{};            ///< [N, S, F]
   std::uint8_t* planes{};       ///< [N, S, P, H, W]
 };
@@ -51,7 +51,7 @@ class FarmBatch {
   /// @param threads number of threads that step the farms; results do not depend on it. If the
   ///   process has stepped farms on several threads and then forks, its child processes use one
   ///   thread.
-  /// @throws InputError if the scenario is a family, or if its layout cannot be drawn
+  /// @throws InputError if the scenario is a family, or if the layout cannot be drawn
   FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farms, std::int32_t threads = 1);
 
   /// Starts the sequence `seed` in all farms, with farm i at episode first_episode + i, and writes
@@ -63,10 +63,11 @@ class FarmBatch {
              std::uint64_t stride = 0);
 
   /// Steps every farm. @param actions [N, S], each in [0, kActionCount] (kHold allowed)
-  /// @throws InputError if an episode's layout cannot be drawn. With several threads, all other
-  ///   farms have then been stepped. With one thread, the farms after the failed one have not been
-  ///   stepped.
+  /// @throws InputError if an episode's layout cannot be drawn
   /// @throws LogicError for an invalid action of an active ship
+  ///
+  /// With one thread, an error ends the step: the farms after the failed one are not stepped. With
+  /// several threads, all other farms are stepped before the error is thrown.
   void Step(const std::uint8_t* actions, const BatchOutput& output);
 
   /// Writes the results of the current state without stepping, for example after Load.
@@ -87,14 +88,14 @@ class FarmBatch {
   Farm& farm(std::int32_t i) { return farms_[static_cast<std::size_t>(i)]; }
 
   /// Starts farm i's next episode.
-  /// @throws InputError when its layout cannot be drawn
+  /// @throws InputError if the layout cannot be drawn
   void StartNext(std::int32_t i);
   /// Starts farm i's next episode and writes its first observation.
-  /// @throws InputError when its layout cannot be drawn
+  /// @throws InputError if the layout cannot be drawn
   void StartNext(std::int32_t i, const BatchOutput& output);
   /// Starts episode `episode` of the sequence `seed` in farm i only, sets the stride of this farm,
   /// and writes its first observation.
-  /// @throws InputError if its layout cannot be drawn
+  /// @throws InputError if the layout cannot be drawn
   void Start(std::int32_t i, std::uint64_t seed, std::uint64_t episode, std::uint64_t stride,
              const BatchOutput& output);
   /// Difference between the numbers of successive episodes of farm i. Initially farms(); Reset,

@@ -4,22 +4,22 @@
 /// Features as entity tokens (view.tokens). Their number depends neither on the size of the map nor
 /// on the number of entities, so one network can play every ranch:
 ///
-///   ship       1 token    the observing ship, its near surroundings and the risk of its courses
+///   ship       1 token    the observing ship, its near surroundings and the risk on its courses
 ///   device    10 tokens   fetchable devices that are deployed or aboard the observing ship
 ///   port       6 tokens
 ///   disaster   4 tokens   known disasters that have not ended
 ///   other      4 tokens   other visible ships
 ///
-/// A slot without an entity holds zeros. Feature 0 of each slot is its validity flag; the ship's
-/// slot has none. Entities fill the slots in id order. If there are more entities than slots, those
-/// nearest to the ship are kept. The distance of a device or a port is the number of moves by
-/// water; devices aboard are nearest. The distance of a disaster is that to the edge of its largest
-/// ring. The distance of another ship is the number of moves on open water.
+/// A slot without an entity contains zeros. Feature 0 of a slot is 1 if the slot has an entity; the
+/// ship's slot lacks this feature. Entities fill the slots in id order. If there are more entities
+/// than slots, those nearest to the ship are kept. The distance of a device or a port is the number
+/// of moves by water; devices aboard count as nearest. The distance of a disaster is that to the
+/// edge of its largest ring. The distance of another ship is the number of moves on open water.
 ///
 /// Lengths are in units of kTokenLength cells and clamped to [-4, 4]. Risks are divided by the
 /// worst risk of §2.1 of the paper (see docs/model.md). Forecast risks assume that each known
-/// disaster keeps its motion and its size until it ends. The features ship.risk and ship.course
-/// ignore the ends of disasters. docs/generalist.md lists every feature.
+/// disaster keeps its motion and its size until it ends. The features ship.risk.<move> and
+/// ship.course.<move> ignore the ends of disasters. docs/generalist.md lists every feature.
 
 #include <array>
 #include <cstdint>
@@ -39,9 +39,9 @@ inline constexpr std::int32_t kTokenRoute = 32;     ///< max steps of a route wh
 
 /// Slots of one kind of entity, consecutive in the feature vector.
 struct TokenGroup {
-  std::int32_t begin{};  ///< first feature
+  std::int32_t begin{};  ///< index of the first feature
   std::int32_t slots{};
-  std::int32_t size{};  ///< features of one slot
+  std::int32_t size{};  ///< number of features of one slot
   std::int32_t end() const { return begin + slots * size; }
 };
 inline constexpr std::size_t kTokenGroupCount = 5;

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Observation of a farm by one ship (paper §2.3, see docs/model.md). A full view contains
-/// everything.
+/// Observation of a farm by one ship (paper §2.3, see docs/model.md). A full view contains the
+/// chart, all devices, all active ships and the current state of all disasters.
 ///
 /// A partial view always contains the chart, and the initial cell and the status of every device.
-/// It contains other ships, disasters and the health of devices only within sensor_radius of the
-/// ship. A disaster is within this radius if its edge is. For a disaster outside of it, the view
-/// contains the last bulletin and its age. Networked agents (shared_sight) use the sensors of all
-/// active agents, and so know their cells.
+/// It contains another ship, and the health of a device, only if the ship or the device is in range
+/// of a sensor (View::sensors). The ship's own sensor has the range view.sensor_radius. The view
+/// contains the current state of a disaster if the edge of the disaster is in range. For a disaster
+/// out of range, it contains the last bulletin and its age. Networked agents (view.shared_sight)
+/// use the sensors of all active agents, and so know their cells.
 ///
-/// A deployed monitoring device observes for all ships within view.monitoring_radius, unless its
-/// health is 0 or it is self-propelled.
+/// In partial view, all ships also use the sensors of deployed monitoring devices, with the range
+/// view.monitoring_radius. A device that is self-propelled or has health 0 has no such sensor.
 
 #include <array>
 #include <cstdint>
@@ -23,9 +24,9 @@ namespace aquafarm {
 
 struct KnownShip {
   std::int32_t id{};
-  Cell cell{};  ///< meaningless when not visible
+  Cell cell{};  ///< valid only if `visible`
   bool visible{};
-  std::int32_t aboard{};  ///< devices aboard; meaningless when not visible
+  std::int32_t aboard{};  ///< devices aboard; valid only if `visible`
 };
 
 /// A place from which a ship observes.
@@ -46,9 +47,9 @@ struct KnownDevice {
 };
 
 struct KnownDisaster {
-  bool known{};        ///< visible or in a bulletin; if false, the other fields are meaningless
+  bool known{};        ///< visible or in a bulletin; if false, the other fields are not valid
   bool visible{};      ///< in sensor range now; if false, the last bulletin applies
-  std::int32_t age{};  ///< age of the information [steps]; 0 when visible
+  std::int32_t age{};  ///< age of the information [steps]; 0 if visible
   /// State `age` steps ago: the centre is not extrapolated to now. Only steps_left is counted from
   /// now. If agents receive a forecast, dx and dy are the mean motion of the forecast in the period
   /// from `age` steps ago until kForecastSteps after now.

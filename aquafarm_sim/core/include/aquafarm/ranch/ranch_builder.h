@@ -21,7 +21,7 @@ struct BuiltRanch {
 
 /// Builds a scenario.
 /// @throws InputError for a value out of range, an unreadable or unsuitable file, a place without
-///   water, or a storm that is not in the file
+///   water or too small for the ports and devices, or a storm that is not in the file
 BuiltRanch BuildRanch(const RanchRequest& request);
 
 /// Returns a layout of the scenario as text, north up: # island, o rock, P port, d device, . water.

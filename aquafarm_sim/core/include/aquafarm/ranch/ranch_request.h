@@ -26,7 +26,8 @@ struct ArchiveRequest {
   double within_km{300.0};  ///< max distance of a storm's closest approach to the ranch's middle
 };
 
-/// Inputs of BuildRanch. It chooses values for unset fields and lists them in BuiltRanch::decided.
+/// Inputs of BuildRanch. BuildRanch chooses values for unset fields. BuiltRanch::decided lists
+/// these choices.
 struct RanchRequest {
   std::string name{"my_ranch"};
   std::string chart;  ///< GeoJSON, map_server YAML or ASCII grid; empty for open sea
@@ -38,7 +39,7 @@ struct RanchRequest {
   double cell_size_m{200.0};
   float sea_level{0.0F};  ///< heights of an ASCII grid above this are land
 
-  std::string track;  ///< file with the storm; empty for calm weather
+  std::string track;  ///< file with the storm; empty: no storm from a file
   std::string storm;  ///< name or id of the storm; may be empty if the file has only one
   std::string radii;  ///< file with radii for fixes without radii; empty if unused
   RingReduction reduction{RingReduction::kEqualArea};
@@ -55,17 +56,17 @@ struct RanchRequest {
   std::int32_t ports{4};
   std::vector<GeoPoint>
       port_places;     ///< each is moved to the nearest shore water; replaces `ports`
-  bool exact_ports{};  ///< a place of `port_places` on land or outside is an error
+  bool exact_ports{};  ///< whether places of `port_places` on land or off the map are errors
   std::int32_t devices{4};
   DevicePlacement placement{DevicePlacement::kRandom};
   std::int32_t ships{1};
-  /// Speed of a ship that tows a device. It determines the duration of a step, because a ship moves
-  /// one cell per step.
+  /// Speed of a ship that tows a device. The speed determines the duration of a step, because a
+  /// ship moves one cell per step.
   double speed_kn{4.0};
   std::optional<double> step_s;  ///< duration of a step [s]; replaces speed_kn
-  /// Hours from the start until the widest ring reaches the ranch. If no ring reaches it, the start
-  /// is 12 hours before the storm is nearest. The start is rounded down to a full hour and is not
-  /// before the first position of the storm.
+  /// Hours from the start until the widest ring reaches the ranch. If no ring reaches the ranch,
+  /// the start is 12 hours before the storm is nearest. The start is rounded down to a full hour
+  /// and is not before the first position of the storm.
   double lead_h{3.0};
   std::optional<std::int64_t> start;  ///< UTC of step 0 [s since 1970]; replaces lead_h
   std::uint64_t seed{1};              ///< seed of the layout
@@ -77,8 +78,8 @@ struct RanchRequest {
   std::string value;     ///< expression over the layers for the value of each device; empty: random
   std::string sea_risk;  ///< expression over the layers for the risk of each cell; empty if unused
 
-  /// File of warnings or anchorage forecasts. BuiltRanch::decided lists those that are in force
-  /// during the episode, or all of them if the episode has no date.
+  /// File of warnings or anchorage forecasts. BuiltRanch::decided lists the notices in force during
+  /// the episode, or all notices if the episode has no date.
   std::string notices;
 };
 

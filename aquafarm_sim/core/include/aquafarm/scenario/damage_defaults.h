@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Damage factors for real ranches, by kind of device and kind of disaster. The order of the
-/// factors within a row or column follows from published reasons. The values themselves are our
+/// Damage factors for real ranches, by kind of device and kind of disaster. Published reasons
+/// determine which factors of a row or column are larger than others. The values themselves are our
 /// assumption (docs/data.md, Damage by kinds).
 
 #include "aquafarm/scenario/scenario.h"
 
 namespace aquafarm {
 
-/// The damage.kinds of the shipped scenarios of real places and of the scenarios that
+/// Value of damage.kinds in the shipped scenarios of real places, and in the scenarios that
 /// `aquafarm scenario` writes. Rows: kind of device. Columns: kind of disaster.
 inline constexpr DamageFactors kRealDamage{{
     // typhoon, storm_surge, wave, red_tide, oil_spill, chemical_spill

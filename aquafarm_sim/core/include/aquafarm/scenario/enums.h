@@ -21,7 +21,8 @@ inline constexpr int kDeviceKindCount = 4;
 enum class DeviceStatus : std::uint8_t { kDeployed, kAboard, kDelivered };
 inline constexpr int kDeviceStatusCount = 3;
 
-/// The kinds of disasters. DamageSpec::kinds sets the damage that each does to each kind of device.
+/// The kinds of disasters. DamageSpec::kinds has a factor of the damage for each kind of device and
+/// each kind of disaster.
 enum class DisasterKind : std::uint8_t {
   kTyphoon,
   kStormSurge,
@@ -41,14 +42,14 @@ std::string_view ToString(DisasterKind value);
 /// Whether all episodes have the layout of Scenario::layout_seed, or each episode draws its own.
 enum class LayoutMode : std::uint8_t { kFixed, kPerEpisode };
 inline constexpr int kLayoutModeCount = 2;
-/// How the places of devices are chosen; see `placement` in docs/scenario.md.
+/// How the cells of devices are chosen; see `placement` in docs/scenario.md.
 enum class DevicePlacement : std::uint8_t { kUniform, kLinear, kRandom, kExplicit };
 inline constexpr int kDevicePlacementCount = 4;
 /// What a disaster without a track does at a border outside the map; see `border` in
 /// docs/scenario.md.
 enum class Border : std::uint8_t { kReflect, kWrap, kLeave };
 inline constexpr int kBorderCount = 3;
-/// Whether ships observe the whole map, or mainly what is near them; see ViewSpec.
+/// Whether ships observe the whole map, or mainly their surroundings; see ViewSpec.
 enum class ViewMode : std::uint8_t { kFull, kPartial };
 inline constexpr int kViewModeCount = 2;
 /// Whether each agent receives its own reward, or all agents receive the sum of all rewards.

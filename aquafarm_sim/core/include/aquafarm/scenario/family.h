@@ -25,8 +25,8 @@ inline constexpr std::int32_t kMaxRanchSteps = 3000;
 ///   disasters    of all kinds, with one to three rings; they wander, and some grow or shrink.
 ///                storm_share of the ranches have the scenario's own disasters instead.
 ///   step_limit   a rough estimate of the time in which one ship fetches all devices, times a
-///                random factor in [1, 2]. Generated disasters last as long. Ranches with the
-///                scenario's own disasters keep its step_limit.
+///                random factor in [1, 2]. Generated disasters last equally long. Ranches with the
+///                scenario's own disasters keep the step_limit of the scenario.
 ///
 /// @param family scenario with Scenario::family
 /// @param attempt from 0. If the layout of the ranch cannot be drawn, the caller draws another

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Limits of scenarios and farms. Each number is defined only here.
+/// Limits of scenarios and farms.
 
 #include <cstdint>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 /// All parameters of a farm, as plain structs. § marks sections of the paper. [decided] marks
-/// defaults that the paper does not give; docs/model.md explains them. Only scenario_yaml.h reads
-/// and writes scenario files.
+/// defaults that the paper does not give; docs/model.md explains them. scenario_yaml.h reads and
+/// writes scenarios as text.
 
 #include <array>
 #include <cstdint>
@@ -22,7 +22,7 @@
 
 namespace aquafarm {
 
-/// An inclusive range from which a number is drawn.
+/// A range of numbers, bounds included. Floats drawn from it are below max, except for rounding.
 template <typename T>
 struct Range {
   T min{};
@@ -72,10 +72,11 @@ struct DeviceSpec {
   std::int32_t count{3};
   std::vector<DeviceKind> kinds{DeviceKind::kTemporaryBreeding, DeviceKind::kMonitoring,
                                 DeviceKind::kBreedingRelease, DeviceKind::kDeepWaterBreeding};
-  Range<float> value{50.0F, 100.0F};  ///< range from which the value of each device is drawn
+  Range<float> value{50.0F, 100.0F};  ///< range of the values drawn for the devices
   float health{1.0F};                 ///< health at the start of an episode, in (0, 1]
-  std::int32_t self_propelled{0};     ///< number of self-propelled devices; they are the last ones
-  std::vector<DeviceSite> sites;      ///< for DevicePlacement::kExplicit
+  /// Number of self-propelled devices, which have the last ids; not used with kExplicit.
+  std::int32_t self_propelled{0};
+  std::vector<DeviceSite> sites;  ///< for DevicePlacement::kExplicit
   /// Returns the number of devices.
   std::int32_t Total() const {
     return placement == DevicePlacement::kExplicit ? static_cast<std::int32_t>(sites.size())
@@ -87,17 +88,18 @@ struct DeviceSpec {
 struct IssuedForecast {
   float step{};  ///< step of issue; may be negative
   /// Forecast positions in order of time, all after the step of issue. Either all points have
-  /// rings, or no point has rings and agents receive the true rings.
+  /// rings, or no point has rings. If the points have no rings, other rings apply; see forecast.h.
   std::vector<Waypoint> points{};
 };
 
 /// Random differences between a drawn storm and the recorded one (storms/draw_storm.h). The shifts
-/// have mean 0. The factor of the wind has mean 1, and that of the radii has median 1.
+/// have mean 0. The factor of the wind is drawn with mean 1; a factor below 0.3 becomes 0.3. The
+/// factor of the radii has median 1.
 struct StormPerturbation {
   double along_km{};   ///< standard deviation of the shift along the storm's motion
   double across_km{};  ///< standard deviation of the shift across the storm's motion
-  double start_h{};    ///< max shift of the time of the closest approach [hours]; uniform
-  double intensity{};  ///< standard deviation of the factor of the wind (at least 0.3)
+  double start_h{};    ///< max shift of the time of the closest approach; uniformly distributed
+  double intensity{};  ///< standard deviation of the factor of the wind
   double size{};       ///< standard deviation of the logarithm of the factor of the radii
 };
 
@@ -108,7 +110,8 @@ struct StormsSpec {
   double within_km{300.0};  ///< max distance of the closest approach to the middle of the farm
   double approach_h{24.0};  ///< hours from step 0 to the closest approach
   StormPerturbation perturbation;
-  std::string tracks;  ///< the storms of these years in reach, as an archive (tracks/archive.h)
+  /// The storms of both ranges of years that come in reach, as an archive (tracks/archive.h).
+  std::string tracks;
   /// The storms of `tracks` on the farm; set by the reader of scenarios.
   std::shared_ptr<const StormLibrary> library;
   GradeRisks risks;  ///< risks of the rings for grades 1 to 4; set by the reader of scenarios
@@ -127,24 +130,27 @@ struct DisasterSpec {
   Border border{Border::kReflect};
   std::int32_t duration{1000};                ///< [steps] [decided]
   std::optional<std::array<float, 2>> start;  ///< centre (x, y) [cells]; random if unset
-  std::vector<Waypoint> track;                ///< if not empty, determines position and rings
-  std::vector<QuadrantRadii> quadrants{};     ///< as in Waypoint
+  std::vector<Waypoint> track;  ///< if not empty, determines position, grade, rings and risks
+  std::vector<QuadrantRadii> quadrants{};  ///< as in Waypoint
   /// Risks of the rings for grades 1 to 4; empty if unset. Waypoints that specify no risks get
-  /// those of their grade. So do the waypoints of bulletins that arrive during an episode.
+  /// those of their grade. This also applies to the waypoints of bulletins that arrive during an
+  /// episode.
   GradeRisks grade_risks{};
   /// Factors of `risks` for grades 1 to 4, an alternative to grade_risks. If both are empty, the
   /// grade does not affect the risks. Waypoints that specify risks keep them.
   std::vector<float> grade_factors{};
   /// Forecasts issued by an authority, in order of issue. Agents observe the newest issued
-  /// forecast; the disaster itself follows the track. Requires a track; see forecast.h.
+  /// forecast until the step of its last point. The disaster itself follows the track. Forecasts
+  /// require a track; see forecast.h.
   std::vector<IssuedForecast> forecasts{};
   /// If set, every episode draws a storm, which the disaster follows instead of `track`. `track`
   /// then contains the first storm for training, as recorded.
   std::optional<StormsSpec> storms{};
-  /// Min wind in each ring [kn], strongest first, one per risk; empty if unknown. Pictures label
-  /// the rings with it; it has no other effect.
+  /// Min wind in each ring [kn], strongest first, one per risk; empty if unknown. Labels, legends
+  /// and warnings of pictures and rviz use these winds. They do not affect the farm.
   std::vector<std::int32_t> ring_winds_kt{};
-  /// Name of the storm, such as "In-Fa"; may be empty. Pictures show it; it has no other effect.
+  /// Name of the storm, such as "In-Fa"; may be empty. Pictures and rviz show the name. It does not
+  /// affect the farm.
   std::string name{};
 };
 
@@ -169,8 +175,11 @@ inline constexpr DamageFactors kEqualDamage = [] {
 }();
 
 struct DamageSpec {
-  float crash_probability{1.0F};  ///< probability that a crash damages the devices aboard, [0, 1]
-  float island_damage{0.2F};      ///< health that devices aboard lose in a crash into an island
+  /// Probability that a crash damages the devices aboard, or the self-propelled device that
+  /// crashes, [0, 1].
+  float crash_probability{1.0F};
+  /// Health that each of these devices loses in a crash into an island.
+  float island_damage{0.2F};
   float exposure_damage{0.001F};  ///< health lost per step and unit of |risk|
   /// Factors of exposure_damage. They do not apply to the risk of the sea.
   DamageFactors kinds{kEqualDamage};
@@ -185,28 +194,31 @@ struct DamageSpec {
 
 /// Energy consumption of a kind of vessel (farm/energy.h).
 struct EnergyFigures {
-  double per_km{};         ///< consumption in calm water without load [kWh/km]
+  double per_km{};         ///< consumption without load in calm water [kWh/km]
   double per_device{};     ///< relative increase of per_km for each device aboard
   double rough_sea{};      ///< relative increase of per_km at the worst risk; linear in the risk
-  double idle_per_step{};  ///< added in every step, with or without a move [kWh]
+  double idle_per_step{};  ///< added in each step, with or without a move [kWh]
 };
 
 /// Energy consumption of all agents.
 struct EnergySpec {
-  double weight{};               ///< subtracted from the reward per kWh
+  double weight{};               ///< reward that each kWh costs
   EnergyFigures ships;           ///< for rescue ships
   EnergyFigures self_propelled;  ///< for self-propelled devices; per_device has no effect
 };
 
-/// Values and prices in a currency, used by the equations of farm/accounts.h. They do not affect
-/// rewards and observations.
+/// Values and prices in a currency, used by the equations of farm/accounts.h and by rescue plans.
+/// They do not affect rewards and observations.
 struct MoneySpec {
-  std::string currency{"CNY"};                           ///< name of the unit; has no effect
+  /// Name of the unit. A rescue plan uses the prices only if its devices have values in this
+  /// currency.
+  std::string currency{"CNY"};
   std::array<double, kDeviceKindCount> device_values{};  ///< insured value by DeviceKind
-  double ship_hour{};       ///< price of an hour in which a rescue ship is not moored in a port
-  double kwh{};             ///< price of a kWh of energy
-  double at_sea_loss{1.0};  ///< share of a device's remaining value that is lost if the device is
-                            ///< not in a port when the episode ends, [0, 1]
+  double ship_hour{};  ///< price of an hour in which a rescue ship is not moored in a port
+  double kwh{};        ///< price of a kWh of energy
+  /// Share of a device's remaining value that is lost if the device is not delivered when the
+  /// episode ends, [0, 1].
+  double at_sea_loss{1.0};
 };
 
 /// Observation settings of the agents (§2.3).
@@ -215,25 +227,28 @@ struct ViewSpec {
   bool NeedsRoutes() const { return routes || tokens; }
 
   ViewMode mode{ViewMode::kFull};
-  float sensor_radius{5.0F};         ///< in partial view [cells]
+  float sensor_radius{5.0F};         ///< range of a ship's sensors in partial view [cells]
   std::int32_t bulletin_period{20};  ///< [steps]; 0: no bulletins
   float bulletin_noise{0.0F};        ///< max error of the reported centre on each axis [cells]
   bool shared_sight{};               ///< agents are networked and use each other's sensors
-  bool routes{};          ///< features include the shortest routes by water to ports and devices
-  bool lookahead_risk{};  ///< features include the forecast risk along each course
-  bool tokens{};          ///< features are entity tokens instead (observation/tokens.h)
-  bool kinds{};  ///< features include the kinds of devices, and kinds and grades of disasters
-  /// Sensor radius of deployed monitoring devices, which observe for all ships in partial view
-  /// [cells]; 0: they observe nothing.
+  bool routes{};  ///< features include the shortest routes by water to ports and devices
+  /// Features include the forecast risk after each move, and the mean forecast risk if the ship
+  /// keeps moving in each direction or stays.
+  bool lookahead_risk{};
+  bool tokens{};  ///< features are entity tokens instead (observation/tokens.h)
+  bool kinds{};   ///< features include the kinds of devices, and kinds and grades of disasters
+  /// Range of the sensors of deployed monitoring devices in partial view [cells]. All ships use
+  /// these sensors. Self-propelled monitoring devices, and those with health 0, do not have them.
+  /// 0: no monitoring device has them.
   float monitoring_radius{};
   /// Mean error of a disaster's forecast position after 24, 48 and 72 hours [km]. If not empty,
   /// agents observe a forecast track with this mean error; the disaster itself follows its track.
-  /// Issued forecasts take precedence. If empty and without an issued forecast, agents observe the
-  /// current motion. See forecast.h.
+  /// Issued forecasts take precedence. With no issued forecast and an empty list, agents observe
+  /// the last known motion. See forecast.h.
   std::vector<float> forecast_error_km{};
-  /// Number of disaster slots in addition to one per disaster of the scenario. They serve disasters
-  /// that arrive during an episode; see observation/disaster_slots.h. If 0, there are no slots, and
-  /// the features contain the scenario's own disasters by id.
+  /// If above 0, the features describe disasters by slot: one slot per disaster of the scenario,
+  /// plus this number for disasters that arrive during an episode (observation/disaster_slots.h).
+  /// If 0, they describe the scenario's own disasters by id.
   std::int32_t disaster_slots{};
   /// Lead times of the forecast positions in a slot [hours], ascending.
   std::vector<float> forecast_leads_h{};
@@ -241,7 +256,7 @@ struct ViewSpec {
 
 /// A field of the sea on the cells of a farm, read from netCDF or given in the scenario.
 struct SeaLayer {
-  std::string name;           ///< in expressions and topics: a-z, 0-9, _; starts with a letter
+  std::string name;           ///< in expressions and topics; a-z, 0-9 and _, the first a letter
   std::string units;          ///< units given by the source; may be empty
   std::vector<float> values;  ///< [H, W] from the south-west; NaN: land or unknown
 };
@@ -249,11 +264,11 @@ struct SeaLayer {
 /// Properties of the sea that stay constant during an episode.
 struct SeaSpec {
   std::vector<SeaLayer> layers;
-  /// Risk at each cell without disasters, [H, W]: 0, NaN (unknown) or a number in [-20, -5]. Empty
+  /// Risk of the sea itself at each cell, [H, W]: 0, NaN (unknown) or a number in [-20, -5]. Empty
   /// if unset.
   std::vector<float> risk;
-  /// Value of a device at the cell, [H, W]; NaN: the value is drawn from DeviceSpec::value.
-  /// DeviceSite::value overrides it. Empty if unset.
+  /// Value of a device at each cell, [H, W]; NaN: the value is drawn from DeviceSpec::value.
+  /// DeviceSite::value overrides the value of the cell. Empty if unset.
   std::vector<float> device_value;
 };
 
@@ -261,9 +276,9 @@ struct SeaSpec {
 struct FamilySpec {
   Range<std::int32_t> width{12, 60};   ///< [cells]
   Range<std::int32_t> height{12, 60};  ///< [cells]
-  Range<std::int32_t> islands{0, 8};   ///< blocks; their sides are at most a fifth of the map's
+  Range<std::int32_t> islands{0, 8};   ///< blocks with sides of up to a fifth of the map's sides
   float coast_share{0.3F};             ///< share of ranches with a coast along one side
-  Range<float> rocks{0.0F, 0.06F};     ///< share of the cells
+  Range<float> rocks{0.0F, 0.06F};     ///< share of the cells that are rocks
   Range<std::int32_t> devices{1, 10};
   Range<std::int32_t> ports{1, 6};
   Range<std::int32_t> capacity{1, 3};
@@ -300,8 +315,8 @@ struct Scenario {
   std::optional<MoneySpec> money;    ///< if unset, episodes have no accounts
   std::optional<FamilySpec> family;  ///< if set, every episode draws another ranch; see family.h
 
-  /// HashScenario of this scenario, set by the reader. Equal for files with the same parameters.
-  /// DrawRanch sets another hash, which identifies the ranch.
+  /// HashScenario of this scenario, set by the reader. DrawRanch sets another hash, which
+  /// identifies the ranch.
   std::uint64_t hash{};
 
   std::int32_t CellCount() const { return width * height; }
@@ -309,7 +324,7 @@ struct Scenario {
   std::int32_t PortCount() const {
     return ports.cells.empty() ? ports.count : static_cast<std::int32_t>(ports.cells.size());
   }
-  /// Risk of the sea at a cell of the map without disasters, 0 or negative; 0 if unknown or unset.
+  /// Risk of the sea itself at a cell, 0 or negative; 0 if unknown or unset. Excludes disasters.
   float SeaRiskAt(Cell cell) const {
     if (!seas || seas->risk.empty()) return 0.0F;
     const float risk = seas->risk[static_cast<std::size_t>(cell.y * width + cell.x)];

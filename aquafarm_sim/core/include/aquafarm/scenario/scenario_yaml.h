@@ -20,12 +20,12 @@ Scenario ParseScenario(const std::string& text, const std::string& origin_name);
 /// Writes every used parameter of a scenario, in a fixed order and in grid units.
 /// ParseScenario(ToYaml(s)) returns s, with defaults for the parameters that s does not use. Equal
 /// scenarios give equal texts. Run folders store this text.
-/// @param old_names whether renamed keys get the names of version 0.1.0
+/// @param old_names whether renamed keys get their old names
 std::string ToYaml(const Scenario& scenario, bool old_names = false);
 
-/// Returns a hash of the parameters that affect episodes. It is HashBytes of ToYaml with old names,
-/// without names, descriptions, and the winds of rings and waypoints. ParseScenario stores it in
-/// Scenario::hash.
+/// Returns a hash of a scenario: HashBytes of ToYaml with old names. The hash ignores the
+/// scenario's name and description, the names of disasters, and the winds of rings and waypoints.
+/// ParseScenario stores it in Scenario::hash.
 std::uint64_t HashScenario(const Scenario& scenario);
 
 /// Converts a time to UTC seconds since 1970. The format is YYYY-MM-DDTHH:MM[:SS] followed by a

@@ -5,8 +5,8 @@
 
 namespace aquafarm {
 
-/// Validates one disaster, such as one that set_disaster receives: numbers are finite and in range,
-/// radii ascend, and each radius has a risk.
+/// Validates one disaster, such as one that set_disaster receives. For example, numbers are finite
+/// and in range, radii ascend, and each radius has a risk.
 /// @throws InputError "radii[1]: got 2, expected more than radii[0] = 4"
 void ValidateDisaster(const DisasterSpec& disaster);
 

@@ -15,9 +15,9 @@ struct NamedLayer {
 };
 
 /// Evaluates an expression in muParser syntax (+ - * / ^, comparisons, ?:, min, max, exp …) at
-/// every cell. Each layer is a variable with the layer's name. The result is NaN where a layer that
-/// the expression uses is NaN.
-/// @param layers at least one. All must have the same shape, which is also the shape of the result.
+/// every cell. Each layer is a variable with the layer's name. The result is NaN in a cell where a
+/// layer that the expression uses is NaN.
+/// @param layers at least one; all of the same shape, which the result also has
 /// @throws InputError without layers, or for an invalid expression, for example "got 'sal * ',
 ///   expected an expression: …"
 /// @throws LogicError for layers of different sizes

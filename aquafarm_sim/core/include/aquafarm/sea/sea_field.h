@@ -6,10 +6,10 @@
 ///   value(time, depth, lat, lon) ── nearest time and depth ── window around the ranch ── Layer
 ///
 /// Packed values are unpacked with scale_factor and add_offset. A value becomes NaN (land or
-/// unknown) if its packed form equals _FillValue or missing_value, or lies outside valid_range or
-/// valid_min … valid_max. Without _FillValue, netCDF's default for the type applies. Latitude may
-/// ascend or descend. Longitude may be in [-180, 180] or [0, 360]. Depth may be positive down or
-/// up. Curvilinear grids cause an error.
+/// unknown) if its packed form equals _FillValue or missing_value, lies outside valid_range or
+/// valid_min … valid_max, or is above 9.9e35 in magnitude. Without _FillValue, netCDF's default for
+/// the type applies. Latitude and longitude may ascend or descend. Longitude may be in [-180, 180]
+/// or [0, 360]. Depth may be positive down or up. Curvilinear grids cause an error.
 
 #include <array>
 #include <limits>
@@ -28,7 +28,7 @@ inline constexpr float kNoSeaValue = std::numeric_limits<float>::quiet_NaN();
 /// Selects the field to read from a file.
 struct SeaFieldChoice {
   std::string variable;  ///< name or standard_name
-  /// UTC [s since 1970]: selects the nearest time. If unset: selects the first time of the file.
+  /// UTC [s since 1970]; selects the nearest time. If unset, selects the first time of the file.
   std::optional<std::int64_t> time;
   double depth_m{};  ///< depth below the surface; selects the nearest depth
 };
@@ -37,29 +37,30 @@ struct SeaFieldChoice {
 struct SeaField {
   std::string name;                  ///< name of the variable
   std::string units;                 ///< the variable's attribute `units`; "" if absent
-  std::optional<std::int64_t> time;  ///< time of the values, UTC; nullopt if the file has no time
-  std::optional<double> depth_m;     ///< depth of the values; nullopt if unknown
+  std::optional<std::int64_t> time;  ///< UTC [s since 1970]; nullopt if the field has no time axis
+  std::optional<double> depth_m;     ///< depth below the surface; nullopt if unknown
   std::vector<double> latitude;      ///< ascending [degrees]
   std::vector<double> longitude;     ///< ascending [degrees], shifted by 0 or ±360
   Grid<float> value;                 ///< [latitude, longitude]; NaN: land or unknown
-  /// South, north, west and east of the whole file [degrees]. West and east are shifted as
-  /// `longitude`.
+  /// Southernmost, northernmost, westernmost and easternmost coordinate of the whole field
+  /// [degrees]. West and east are shifted as `longitude` is.
   std::array<double, 4> extent{};
 };
 
 /// A field on the cells of a ranch, [H, W]; NaN where the field has no value nearby.
 using Layer = Grid<float>;
 
-/// Reads the part of a field around a ranch of width × height cells. If the file does not cover the
-/// ranch, reads the nearest values of the file.
+/// Reads the part of a field around a ranch of width × height cells. If the field does not cover
+/// the ranch, reads its values that are nearest to the ranch.
 /// @throws InputError for an unusable file or variable, for example "sea.nc: so: no such variable;
 ///         available: …". A build without netCDF (CMake: AQUAFARM_WITH_NETCDF=OFF) always throws.
 SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, const GeoFrame& frame,
                       std::int32_t width, std::int32_t height);
 
 /// Interpolates the field bilinearly at the centre of each cell: a weighted mean of four values.
-/// NaN values are left out of the mean. A cell is NaN if all values with a weight are NaN, or if
-/// its centre is more than half a grid step outside the field.
+/// NaN values are left out of the mean. A cell is NaN if all values with a weight above 0 are NaN.
+/// It is also NaN if its centre is outside the field by more than half a mean grid step, or by more
+/// than 0.5 degrees along an axis with a single value.
 Layer ToLayer(const SeaField& field, const GeoFrame& frame, std::int32_t width,
               std::int32_t height);
 

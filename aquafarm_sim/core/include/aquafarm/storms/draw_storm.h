@@ -21,8 +21,8 @@ struct DrawnStorm {
 /// years, and another seed from the years for training.
 const std::vector<ArchivedStorm>& StormsOf(const StormsSpec& storms, std::uint64_t seed);
 
-/// Draws one of StormsOf with equal probability, and its displacement. The displaced storm is
-/// closest to (x, y) storms.approach_h hours after step 0, plus or minus at most
+/// Draws one of the storms of StormsOf, all with equal probability, and its displacement. The
+/// displaced storm is closest to (x, y) storms.approach_h hours after step 0, plus or minus at most
 /// perturbation.start_h.
 /// @param disaster id of the disaster
 /// @param x, y middle of the farm [cells]

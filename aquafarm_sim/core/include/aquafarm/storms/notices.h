@@ -14,7 +14,7 @@ namespace aquafarm {
 
 /// A warning, or an anchorage forecast for a few hours.
 struct Notice {
-  std::string place;                 ///< anchorage, or the authority that warns; UTF-8
+  std::string place;                 ///< anchorage, or the authority of a warning; UTF-8
   std::string what;                  ///< hazard as written, such as "大风"; empty for a forecast
   std::int32_t grade{};              ///< 1 blue … 4 red; 0 for white and for a forecast
   std::int64_t start{};              ///< UTC [s since 1970]
@@ -35,7 +35,7 @@ struct NoticeFile {
 /// @throws InputError "file:line: warning[0].endTime: got '…', expected a time"
 NoticeFile LoadNotices(const std::string& path);
 
-/// As LoadNotices, for a text; `origin_name` replaces the file name in messages.
+/// Does the same as LoadNotices, for a text; `origin_name` replaces the file name in messages.
 NoticeFile ParseNotices(const std::string& text, const std::string& origin_name);
 
 /// Returns a description, such as "大风 of 上海中心气象台, grade 1, from … to …".

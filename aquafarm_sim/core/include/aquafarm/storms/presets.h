@@ -11,12 +11,12 @@
 ///   oil_spill:area_km2=2,wind_mps=8,wind_from_deg=315,current_mps=0.2,current_to_deg=90
 ///   chemical_spill:…                                     as oil_spill
 ///
-/// Each disaster has a grade and two rings with the risks of that grade. The inner ring has half of
-/// the area of the outer ring. The observed quantity determines the grade; for a spill, the key
-/// `grade` (default 3) does. Every disaster drifts with the current. Spills also drift with 3
-/// percent of the wind speed. This drift is turned from the direction of the wind by 15 degrees: to
-/// the right in the northern hemisphere, to the left in the southern. Both radii grow by
-/// `growth_m_h` [m/h]. The disaster ends after `duration_h` hours (default 24).
+/// Each disaster has a grade and two rings with the risks of that grade. At the start the inner
+/// ring has half of the area of the outer ring. The observed quantity determines the grade; for a
+/// spill, the key `grade` (default 3) does. Every disaster drifts with the current. Spills also
+/// drift with 3 percent of the wind speed. This drift is turned from the direction of the wind by
+/// 15 degrees: to the right in the northern hemisphere, to the left in the southern. Both radii
+/// grow by `growth_m_h` [m/h] (default 0). The disaster ends after `duration_h` hours (default 24).
 
 #include <string>
 #include <vector>
@@ -32,7 +32,7 @@ struct GridScale {
   bool south{};  ///< true if south of the equator
 };
 
-/// Returns the names of the kinds of presets.
+/// Returns the names of the presets, such as "oil_spill".
 std::vector<std::string> DisasterPresetNames();
 
 /// Parses the description of a disaster. DisasterSpec::start remains unset, so that each episode

@@ -2,7 +2,7 @@
 #pragma once
 
 /// Converts a published track to a disaster of a farm (paper §2.1, see docs/model.md). Each wind
-/// ring becomes a ring with a risk: a circle, or optionally four quadrants. The innermost risk is
+/// ring becomes a ring with a risk: a circle, or a ring with four quadrants. The innermost risk is
 /// the worst.
 ///
 ///   64 kt (force 12) ── risks[0]      The winds are 64, 50 and 34 kt, or 50 and 30 kt for tracks
@@ -26,30 +26,30 @@ const GradeRisks& DefaultGradeRisks();
 std::int32_t StepsToCover(double span_s, double step_duration_s);
 
 /// Returns the disaster that follows a storm on a grid. If a row of `risks` has more risks than the
-/// storm has rings, the last risks of the row apply. If it has fewer, the innermost rings share its
-/// first risk.
+/// storm has rings, the last risks of the row apply. If the row has fewer risks, the innermost
+/// rings share its first risk.
 /// @param storm with at least one waypoint and at most three rings
 /// @param risks of the grades 1 to 4
 /// @param start_time UTC of step 0 [s since 1970]
-/// @throws InputError as ToPath and StepsToCover do
+/// @throws InputError in the same cases as ToPath and StepsToCover
 DisasterSpec ToDisaster(const StormRings& storm, const GradeRisks& risks, const GeoFrame& frame,
                         double cell_size_m, double step_duration_s, std::int64_t start_time);
 
 /// Returns the disaster that a bulletin announces during an episode. Its risks by grade are those
-/// of the disaster that it replaces, if it has any. If not, they are those of the first disaster of
-/// the scenario that has risks by grade, else the defaults. The new disaster has quadrants if the
-/// replaced one has quadrants.
+/// of disaster `id` of the scenario. If that disaster does not exist or has no risks by grade, they
+/// are those of the first disaster of the scenario that has them, else DefaultGradeRisks. The new
+/// disaster has quadrants if disaster `id` of the scenario has quadrants.
 ///
 /// The disaster follows the recorded positions and then the newest forecast. Without a forecast the
 /// storm keeps its motion for 24 hours. The rings between the points are those of ToFineRings, as
-/// in a rescue plan. Agents receive the forecast as one of DisasterSpec::forecasts, issued at the
-/// last recorded position. With view.forecast_error_km, FitArrival (farm/forecast.h) later moves
-/// the true waypoints.
+/// in a rescue plan. DisasterSpec::forecasts contains the forecast, issued at the last recorded
+/// position. With view.forecast_error_km, FitArrival (farm/forecast.h) later moves the true
+/// waypoints.
 /// @param id id of the disaster that is replaced or added
 /// @param step_now present step of the episode; the disaster lasts from this step to its last
 ///   waypoint
 /// @throws InputError if the scenario has no grid.origin or time.start, or if the storm is not
-///   known after step_now; also as ToPath does
+///   known after step_now; also as ToPath and StepsToCover do
 DisasterSpec ToDisaster(const StormTrack& bulletin, const Scenario& scenario, std::int32_t id,
                         std::int32_t step_now);
 

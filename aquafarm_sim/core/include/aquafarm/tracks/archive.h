@@ -10,9 +10,9 @@
 ///   202107250600 30 122.2 TY 33 970 34=300,200,200,250 50=100,100,80,100
 ///
 /// A line `storm` has the id, the averaging period of the winds [min], the agency and the name. The
-/// next lines are its fixes. A fix has the time (UTC), latitude, longitude, grade, wind [m/s],
-/// pressure [hPa], and the radii [km] of each ring that the source gives. "-" replaces an unknown
-/// wind or pressure.
+/// next lines are the fixes of the storm. A fix has the time (UTC), latitude, longitude, grade,
+/// wind [m/s], pressure [hPa], and the radii [km] of each ring that the source gives. "-" replaces
+/// an unknown wind or pressure. A wind such as "<17" is an upper limit.
 
 #include <string>
 #include <vector>
@@ -27,8 +27,8 @@ namespace aquafarm {
 /// landfalls.
 StormTrack Archived(const StormTrack& track);
 
-/// Writes tracks as the text of an archive. ParseStormFile reads the tracks of Archived from it and
-/// computes their motion.
+/// Writes tracks as the text of an archive. ParseStormFile reads these tracks as Archived returns
+/// them, and computes their motion.
 /// @param comment comment lines after the first line, each without "#"
 std::string WriteArchive(const std::vector<StormTrack>& tracks,
                          const std::vector<std::string>& comment = {});

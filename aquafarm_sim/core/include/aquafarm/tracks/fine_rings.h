@@ -5,8 +5,8 @@
 ///
 /// A storm's radii are not linear in time. ln r is linear in sqrt(wind / w - 1) (wind_radii.h), so
 /// the 34 kt radius is about 160 km as soon as the wind reaches 34 kt. The forecast points of a
-/// bulletin are 12 to 24 hours apart. Linear interpolation between them gives radii that are too
-/// small.
+/// bulletin are 12 to 24 hours apart. Linear interpolation of the radii between these points gives
+/// radii that are too small.
 ///
 ///   wind   35 kt ●━━━━━━━━━━━━━━━━━━━━● 30 kt    position and wind are linear, at most 3 h apart;
 ///   radius 170 km ●━━━●━━━●━━━●                   radii that are not reported follow from the wind
@@ -20,26 +20,26 @@
 
 namespace aquafarm {
 
-/// Max time between two points of the result of FineTrack, where it adds points [s].
+/// Max time between neighbouring points where FineTrack or ToFineRings adds points [s].
 inline constexpr std::int64_t kFineTrack_s = 3 * 3600;
-/// Decay time of the size of a storm [h]. In this time the logarithm of reported radius / estimated
-/// radius, in units of SizeSigma, falls by a factor of e. docs/plan.md describes the fit.
+/// Decay time of the size of a storm [h]. The size is ln(reported radius / estimated radius) in
+/// units of SizeSigma. In the decay time it falls by a factor of e. docs/plan.md describes the fit.
 inline constexpr double kSizeMemory_h = 165.0;
 
-/// Returns the track with points at most kFineTrack_s apart. The position and wind of a new point
-/// are interpolated linearly between its neighbours, and so are the rings that both neighbours
-/// have. A ring whose radius is 0 at exactly one neighbour is left out. ToRings estimates the
-/// missing rings from the wind. No points are added next to a point without a known wind, between
-/// winds of different averaging periods, or between two points at or before `from`.
+/// Adds points to a track, so that neighbouring points are at most kFineTrack_s apart. The position
+/// and wind of a new point are interpolated linearly between its neighbours, and so are the rings
+/// that both neighbours have. A ring whose radius is 0 at exactly one neighbour is left out.
+/// ToRings estimates the missing rings from the wind. No points are added next to a point without a
+/// known wind, between winds of different averaging periods, or between two points at or before
+/// `from`.
 /// @param from UTC [s since 1970]
 StormTrack FineTrack(const StormTrack& track, std::int64_t from);
 
 /// Scales the estimated radii after the last report. The last report is the last recorded point
 /// with a reported radius of the weakest wind. Each radius becomes its estimate times a factor. At
-/// the report, the factor is reported radius / estimate. After the report, the logarithm of the
-/// factor, in units of its standard deviation at the storm's wind (SizeSigma), decays with
-/// `memory_h`. Also sets StormWaypoint::keeps_radii of the recorded points and StormWaypoint::size
-/// of the scaled points.
+/// the report, the factor is reported radius / estimate. After the report, ln(factor) in units of
+/// SizeSigma decays with the decay time `memory_h`. Also sets StormWaypoint::keeps_radii of the
+/// recorded points and StormWaypoint::size of the scaled points.
 /// @param storm result of ToRings for `track`
 /// @param memory_h see kSizeMemory_h
 /// @returns UTC of the last report [s since 1970]; nullopt if there is none
@@ -50,9 +50,9 @@ struct FineRings {
   StormRings storm;     ///< `estimated` and `silent` count the track's own points
   std::int32_t held{};  ///< number of intervals in which the larger radii of both ends apply
 };
-/// Returns the rings of a track after FineTrack and CarrySize. In a longer interval to which
-/// FineTrack adds no points, this function adds points at most kFineTrack_s apart. Each has the
-/// larger radii of both ends, to be on the safe side. No points are added next to a point whose
+/// Returns the rings of a track after FineTrack and CarrySize. Also adds points, at most
+/// kFineTrack_s apart, to longer intervals that FineTrack left undivided. Each of these points has
+/// the larger radii of both ends, to be on the safe side. No points are added next to a point whose
 /// wind and radii are unknown.
 /// @param from no points are added between two points at or before this time, UTC [s since 1970]
 /// @param winds_kt see ToRings

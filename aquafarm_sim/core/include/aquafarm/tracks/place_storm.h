@@ -33,12 +33,12 @@ class StormPlacer {
   ///      old wind.
   ///    - A ring whose wind the storm no longer reaches gets radius 0.
   ///    - A ring whose wind the storm newly reaches gets the radius of EstimateRadius times a
-  ///      ratio. The ratio is the recorded radius to the estimated radius of the next weaker ring
-  ///      that has both. If there is no such ring, it is StormPoint::size.
+  ///      ratio: the recorded radius divided by the estimated radius of the next weaker ring that
+  ///      has both. If there is no such ring, the ratio is StormPoint::size.
   ///    - A ring with StormPoint::keeps_radii and a radius above 0 does not change.
   /// The rings of a fix without a known wind do not change either. size_factor then multiplies all
-  /// radii, and no ring extends beyond one of a weaker wind. The order of the fixes in time does
-  /// not change: each fix stays later than the previous one.
+  /// radii, and each ring is cut where it extends beyond one of a weaker wind. Each fix stays later
+  /// than the previous one.
   /// @param errors no entry: no errors; one entry: for all fixes; else one entry per fix of the
   ///   path
   /// @param risks of the rings for grades 1 to 4, worst first. If a row has fewer risks than the

@@ -21,15 +21,16 @@ struct StormFile {
 
 /// Reads a file of tracks and detects its format.
 /// @throws InputError if the format is unknown or the content is invalid, for example
-///   "CH2021BST.txt:12: latitude: got 950, expected [-900, 900]"
+///   "CH2021BST.txt:12: latitude in tenths of a degree: got '950', expected a whole number in …"
 StormFile LoadStormFile(const std::string& path);
 
-/// As LoadStormFile, for a text; `origin_name` replaces the file name in messages.
+/// Does the same as LoadStormFile, for a text; `origin_name` replaces the file name in messages.
 StormFile ParseStormFile(const std::string& text, const std::string& origin_name);
 
-/// Returns the track with the given id or, if no id matches, with the given name. Case is ignored.
-/// @throws InputError if no track matches (the message lists the tracks of the file), or if several
-///   tracks match (the message lists the matching ones)
+/// Returns the track whose id or shared_id is `storm` or, without such a track, the track whose
+/// name or local_name is `storm`. Ignores case, except in local_name.
+/// @throws InputError if no track matches (the message lists tracks of the file), or if several
+///   tracks match (the message lists them)
 const StormTrack& FindTrack(const StormFile& file, const std::string& storm);
 
 }  // namespace aquafarm

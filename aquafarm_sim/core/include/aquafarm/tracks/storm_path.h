@@ -32,11 +32,11 @@ struct StormPoint {
   std::array<double, kMaxStormRings> radius{};     ///< [cells], the strongest wind first
   std::array<double, kMaxStormRings> median_km{};  ///< EstimateRadius for `wind_mps`
   std::array<std::array<double, kQuadrantCount>, kMaxStormRings> quadrants{};  ///< [cells]
-  /// By ring: true if StormErrors of the wind do not change its radii. This applies to reported
-  /// radii, and to the larger radii of both ends of an interval (ToFineRings).
+  /// By ring: true if errors of the wind (StormErrors) do not change its radii. True for reported
+  /// radii, and at points that ToFineRings adds with the larger radii of both ends.
   std::array<bool, kMaxStormRings> keeps_radii{};
-  /// Ratio of the storm's radii to EstimateRadius. It scales the rings of winds that the storm
-  /// reaches only after StormErrors changed its wind.
+  /// Ratio of the storm's radii to EstimateRadius. StormPlacer uses it for rings whose winds the
+  /// storm reaches only because of an error of the wind.
   double size{1.0};
 };
 

@@ -7,8 +7,8 @@
 ///
 ///      NW | NE        A wind ring has a radius for each quadrant: winds of at least `wind_kt` blow
 ///    -----+-----      up to this distance from the centre. If the source does not give the radii
-///      SW | SE        of a wind, the fix has no such ring. If the source states that this wind
-///                     does not blow, the ring has four zeros.
+///      SW | SE        of a wind, the fix has no ring of this wind. If the source states that this
+///                     wind does not blow, the ring has four zeros.
 
 #include <array>
 #include <cstdint>
@@ -69,7 +69,7 @@ struct StormFix {
   StormGrade grade{};
   bool extratropical{};                   ///< extratropical, or in transition
   std::optional<double> wind_mps;         ///< max mean wind near the centre
-  std::optional<double> wind_below_mps;   ///< upper limit of a wind that the source does not give
+  std::optional<double> wind_below_mps;   ///< upper limit, if the source does not give the wind
   std::optional<double> second_wind_mps;  ///< second wind (OWD) of the CMA's best tracks
   std::int32_t averaging_min{};           ///< averaging period of the winds [min]; 0 if unknown
   std::optional<double> pressure_hpa;
@@ -77,7 +77,7 @@ struct StormFix {
   std::optional<double> max_wind_radius_km;
   std::optional<double> heading_deg;  ///< compass bearing of the motion [0, 360)
   std::optional<double> speed_kmh;
-  bool motion_computed{};  ///< heading or speed is computed from the neighbouring fixes
+  bool motion_computed{};  ///< heading or speed is computed (ComputeMotion)
   bool interpolated{};     ///< the position is interpolated, by the source or by FineTrack
   bool landfall{};         ///< the source marks a landfall or passage at this hour
   bool forecast{};         ///< predicted, not observed
@@ -117,9 +117,9 @@ struct StormTrack {
 /// TS, 2 for STS, 3 for TY, 4 for STY and SuperTY. This table is our choice.
 std::int32_t DisasterGrade(StormGrade grade);
 
-/// Computes the headings and speeds that the source does not give. They follow from the geodesic
-/// (WGS 84) to the next fix, and for the last fix from that between the last two fixes. A single
-/// fix gets neither. A storm that does not move gets no heading.
+/// Computes the headings and speeds that the source does not give, from the geodesic (WGS 84) to
+/// the next fix. For the last fix, uses the geodesic between the last two fixes. A single fix gets
+/// neither heading nor speed. A storm that does not move gets no heading.
 /// @param fixes sorted by time
 void ComputeMotion(std::vector<StormFix>& fixes);
 

@@ -26,7 +26,8 @@ struct Waypoint {
   /// Radii by quadrant, one entry per ring; `radii` then holds the largest radius of each ring.
   /// Empty if all rings are circles.
   std::vector<QuadrantRadii> quadrants{};
-  /// Max mean wind near the centre [m/s]. Pictures show it; it has no effect on the farm.
+  /// Max mean wind near the centre [m/s]. Pictures and rviz show this wind. It does not affect the
+  /// farm.
   std::optional<float> wind_mps{};
 };
 

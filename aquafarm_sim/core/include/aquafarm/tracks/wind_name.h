@@ -12,7 +12,7 @@ namespace aquafarm {
 /// gale" from 28, else "wind".
 const char* WindName(std::int32_t wind_kt);
 
-/// Returns the name of a ring of winds of at least `wind_kt`, such as "gale (34 kt)".
+/// Returns the name of the ring in which the wind is at least `wind_kt`, such as "gale (34 kt)".
 std::string RingName(std::int32_t wind_kt);
 
 }  // namespace aquafarm

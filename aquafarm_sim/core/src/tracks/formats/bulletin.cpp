@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads typhoon bulletins (JSON): a list of storms, each with its points. Some points have
-// forecasts. There is no specification; the structure was derived from about two thousand files.
-// Alternative spellings of the keys are accepted (moveDir for move_dir, r7 for radius7). So is the
-// format of Zhejiang's water office (tfid, movedirection, radii as 250|220|200|180).
+// Reads typhoon bulletins (JSON): one storm or a list of storms, each with its points. Some points
+// have forecasts. There is no specification; the structure was derived from about two thousand
+// files. Alternative spellings of the keys are accepted (moveDir for move_dir, r7 for radius7). The
+// format of Zhejiang's water office is accepted, too (tfid, movedirection, radii as
+// 250|220|200|180).
 #include <algorithm>
 #include <array>
 
@@ -49,8 +50,8 @@ StormGrade GradeOfText(const std::string& text) {
       ->second;
 }
 
-// Parses "250|220|200|180", or one number for all quadrants; nullopt with a warning for anything
-// else.
+// Parses "250|220|200|180", or one number for all quadrants. Returns zeros if there is no value,
+// and nullopt with a warning for any other value.
 std::optional<std::array<double, kQuadrantCount>> ParseRadii(const JsonObject& point,
                                                              JsonObject::Keys keys,
                                                              ParseContext& place) {

@@ -15,8 +15,9 @@ namespace {
 
 using Fields = std::vector<std::string_view>;
 
-// Returns the averaging period [min] of WMO_WIND by the agency that gives it (WMO_AGENCY); 0 if
-// unknown. IBTrACS does not convert winds. Source: IBTrACS technical details, table of agencies.
+// Returns the averaging period [min] of the winds of WMO_AGENCY, which are in WMO_WIND; 0 if the
+// agency is unknown. IBTrACS does not convert winds. Source: IBTrACS technical details, table of
+// agencies.
 std::int32_t AveragingOf(std::string_view agency) {
   if (agency == "newdelhi") return 3;
   if (agency.substr(0, 7) == "hurdat_" || agency == "atcf" || agency == "cphc") return 1;

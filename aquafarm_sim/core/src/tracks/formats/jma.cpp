@@ -118,7 +118,7 @@ StormFix ReadPoint(std::string_view line, ParseContext& place) {
   }
   const std::string_view hour = Columns(line, 0, 8);
   StormFix fix;
-  // The years have two digits. The file starts in 1951.
+  // The years have two digits. The file starts in 1951, so smaller numbers mean years from 2000 on.
   fix.time = ReadHour((hour < "51" ? "20" : "19") + std::string(hour), place);
   std::int32_t code = TryWhole(Columns(line, 13, 14), "grade", 2, 9, place).value_or(kUnknownGrade);
   if (code == 8) {

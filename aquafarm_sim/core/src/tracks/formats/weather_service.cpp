@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the response of a weather service to a storm query (JSON): {code, now, track}. Every value
-// is a text. In QWeather's storm-track API, windRadius30, windRadius50 and windRadius64 are the
-// radii of the winds of force 7, 10 and 12. Its storm-forecast API has `forecast` instead of
-// `track`, and no radii.
+// Reads the response of a weather service to a storm query (JSON): {code, now, track}. Numbers are
+// written as strings. In QWeather's storm-track API, windRadius30, windRadius50 and windRadius64
+// are the radii of the winds of force 7, 10 and 12. Its storm-forecast API has `forecast` instead
+// of `track`, and no radii.
 #include <algorithm>
 #include <array>
 

@@ -28,7 +28,7 @@ class OptionReader {
   /// @throws InputError if the value is neither "true" nor "false"
   bool Flag(const std::string& key, bool fallback);
   /// Returns the schedule of `key`, or `fallback` if the text does not contain the key.
-  /// @throws InputError as ParseSchedule
+  /// @throws InputError in the same cases as ParseSchedule
   Schedule GetSchedule(const std::string& key, const Schedule& fallback, double min, double max);
   /// Returns the value of `key` as text, or `fallback` if the text does not contain the key.
   std::string Text(const std::string& key, const std::string& fallback);
@@ -50,8 +50,8 @@ class OptionReader {
 };
 
 /// Returns the options in `text` sorted by key, with old names replaced by the current ones.
-/// Checkpoints of earlier versions contain old names. If a key is given twice, the later value is
-/// kept.
+/// Checkpoints of earlier versions may contain old names. If a key is given twice, the later value
+/// is kept.
 /// @throws InputError if `text` does not consist of key=value pairs
 std::string CanonicalOptions(const std::string& text);
 

@@ -7,8 +7,9 @@
 ///   linear       start \                          over the first `fraction` of the run
 ///                       \_________ end
 ///   exponential  start · (end/start)^(progress/fraction), then end
-///   harmonic     start / (1 + (start/end - 1) · progress/fraction), then end. Decays like 1/t; a
-///                learning rate of this form averages out noise (Robbins and Monro 1951)
+///   harmonic     start / (1 + (start/end - 1) · progress/fraction), then end. If end < start, it
+///                decays like 1/t. A learning rate of this form averages out noise (Robbins and
+///                Monro 1951)
 
 #include <cstdint>
 #include <string>
@@ -41,7 +42,7 @@ struct Schedule {
 ///         not in (0, 1], or start or end of an exponential or harmonic schedule is not above 0
 Schedule ParseSchedule(const std::string& text, const std::string& what, double min, double max);
 
-/// Returns the text from which ParseSchedule reads the same schedule.
+/// Returns a text from which ParseSchedule reads the same schedule.
 std::string ToString(const Schedule& schedule);
 
 }  // namespace aquafarm::agents

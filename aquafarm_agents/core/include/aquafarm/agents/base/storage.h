@@ -17,12 +17,11 @@ class StorageError : public std::runtime_error {
 
 /// Writes a temporary file next to `path`, syncs it and renames it, so that `path` always contains
 /// either the complete old file or the complete new one.
-/// @throws StorageError. The temporary file is then removed. `path` has the new contents if only
-/// the
-///   sync of its folder failed, else the old contents
+/// @throws StorageError if the file cannot be written. The temporary file is then removed. `path`
+///   has the new contents if only the sync of its folder failed, else the old contents
 void WriteFileAtomically(const std::string& path, std::string_view bytes);
 
-/// As above, for a file that consists of `parts` in this order. The parts are not joined in memory.
+/// Writes the concatenation of `parts` in the same way. The parts are not joined in memory.
 void WriteFileAtomically(const std::string& path, const std::vector<std::string_view>& parts);
 
 /// Removes all files of `folder` that end in ".tmp". WriteFileAtomically leaves such a file if its
@@ -32,8 +31,8 @@ void RemoveTemporaryFiles(const std::string& folder);
 /// Returns the contents of a file. @throws InputError if it does not exist or cannot be read
 std::string ReadFile(const std::string& path);
 
-/// Returns an error message with the text of errno, for example "runs/x/policy.ckpt: cannot be
-/// written: No space left on device".
+/// Returns an error message from `path`, `what` and the text of errno, for example
+/// "runs/x/policy.ckpt: cannot be written: No space left on device".
 std::string ErrnoText(const std::string& path, const std::string& what);
 
 }  // namespace aquafarm::agents

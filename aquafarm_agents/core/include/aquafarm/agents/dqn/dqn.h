@@ -9,8 +9,9 @@
 ///
 /// and LSTM-DQN (Algorithm 2): DQN with a recurrent network, trained from sequences of steps of one
 /// episode. The network first reads the burn_in steps before a sequence. It starts with the
-/// recurrent state that was stored at the first of these steps. One forward pass computes the
-/// actions of all farms. DeepOptions lists the options.
+/// recurrent state that was stored at the first of these steps. Near the start of an episode, the
+/// sequence begins at the first step of the episode instead, without burn-in. One forward pass
+/// computes the actions of all farms. DeepOptions lists the options.
 
 #include <memory>
 #include <string>
@@ -39,12 +40,12 @@ std::unique_ptr<Learner> MakeVdn(const EnvironmentSpec& spec, std::uint64_t seed
 /// @throws InputError with the reason if the policy does not fit farms of `spec`
 std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 
-/// As DqnObservationTypes, for LSTM-DQN.
+/// Does the same as DqnObservationTypes, for LSTM-DQN.
 std::uint8_t RecurrentDqnObservationTypes(const std::string& options);
-/// As MakeDqn, for LSTM-DQN.
+/// Does the same as MakeDqn, for LSTM-DQN.
 std::unique_ptr<Learner> MakeRecurrentDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                           const std::string& options);
-/// As MakeDqnPolicy, for LSTM-DQN.
+/// Does the same as MakeDqnPolicy, for LSTM-DQN.
 std::unique_ptr<Policy> MakeRecurrentDqnPolicy(const Checkpoint& checkpoint,
                                                const EnvironmentSpec& spec);
 

@@ -49,12 +49,12 @@ struct EnvironmentSpec {
   std::int32_t farms{};
   std::int32_t agents{};        ///< ships and self-propelled devices of one farm
   bool team_reward{};           ///< every agent receives the sum of all agents' rewards
-  std::uint32_t state_count{};  ///< number of tabular states; 0 if too many for a table
+  std::uint32_t state_count{};  ///< number of tabular states; 0 if too many, or for a family
   std::int32_t feature_count{};
   std::vector<std::string> feature_names;  ///< [feature_count] as Encoder::feature_names
   std::int32_t plane_count{};
-  std::int32_t height{};      ///< of the map [cells]
-  std::int32_t width{};       ///< of the map [cells]
+  std::int32_t height{};      ///< of the map [cells]; for a family, the largest height
+  std::int32_t width{};       ///< of the map [cells]; for a family, the largest width
   std::int32_t step_limit{};  ///< max length of an episode [steps]
 };
 
@@ -73,7 +73,7 @@ struct StepResults {
   }
 
   std::vector<float> rewards;             ///< [N, S]
-  std::vector<float> terms;               ///< [N, S, kRewardTermCount]; see WantsOwnRewards
+  std::vector<float> terms;               ///< [N, S, kRewardTermCount]; empty unless requested
   std::vector<float> energy;              ///< [N, S] consumed in the step [kWh]
   std::vector<float> distance;            ///< [N, S] travelled in the step [km]
   std::vector<std::uint8_t> outcomes;     ///< [N, S] Outcome
@@ -104,13 +104,13 @@ class EnvironmentLost : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Returns whether `observation_types` contain kOwnRewardsBit and the scenario has a team reward.
-/// If so, sets spec.team_reward to false. The environment must then request kTermsField of the
+/// Returns whether `observation_types` contains kOwnRewardsBit and the scenario has a team reward.
+/// If so, sets spec.team_reward to false. The environment must then request kTermsField from the
 /// farms and call UseOwnRewards after each step.
 bool WantsOwnRewards(std::uint8_t observation_types, EnvironmentSpec& spec);
 
 /// Replaces each agent's reward with the sum of its reward terms.
-/// @param results whose `terms` are filled
+/// @param results must contain `terms`
 void UseOwnRewards(StepResults& results);
 
 /// A batch of farms, in this process or behind ROS services.
@@ -139,8 +139,8 @@ class Environment {
   ///   unchanged
   virtual const StepResults& Load(const std::string& bytes) = 0;
 
-  /// Returns true once after a Step that started new episodes in all farms because the sim node had
-  /// restarted or another client had changed its farms. The results of that Step are first
+  /// Returns true once after a Step that started new episodes in all farms. This happens if the sim
+  /// node has restarted or another client has changed its farms. The results of that Step are first
   /// observations.
   virtual bool ConsumeRestart() { return false; }
 };

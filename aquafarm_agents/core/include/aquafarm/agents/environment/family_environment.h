@@ -12,8 +12,8 @@
 
 namespace aquafarm::agents {
 
-/// Returns the ranch that FamilyEnvironment plays in an episode of a family (scenario/family.h), at
-/// the start of that episode.
+/// Draws the ranch of an episode of a family (scenario/family.h). Returns it at the start of the
+/// episode.
 /// @throws InputError if none of 100 drawn ranches has a valid layout
 Farm MakeRanch(const Scenario& family, std::uint64_t seed, std::uint64_t episode);
 
@@ -56,7 +56,7 @@ class FamilyEnvironment final : public Environment {
 };
 
 /// Makes an environment in this process: a FamilyEnvironment if the scenario describes a family,
-/// else a LocalEnvironment. @throws InputError as their constructors
+/// else a LocalEnvironment. @throws InputError if the constructor throws it
 std::unique_ptr<Environment> MakeLocalFarms(std::shared_ptr<const Scenario> scenario,
                                             const EnvironmentOptions& options,
                                             const FarmShare& share = {});

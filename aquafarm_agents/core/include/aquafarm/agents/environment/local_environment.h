@@ -11,7 +11,7 @@
 
 namespace aquafarm::agents {
 
-/// The farms of one environment, if several processes divide all farms among themselves.
+/// The part of all farms that one environment has. Several processes may each have a part.
 struct FarmShare {
   std::int32_t first{};  ///< index of the environment's first farm among all farms
   std::int32_t total{};  ///< number of all farms; 0 if the environment has all of them
@@ -21,8 +21,8 @@ struct FarmShare {
 class LocalEnvironment final : public Environment {
  public:
   /// @param scenario must have passed ValidateScenario
-  /// @param share which of all farms this environment has. They play the same episodes as in an
-  ///        environment with all farms. Load expects the saved bytes of all farms.
+  /// @param share the farms of this environment. They play the same episodes as in an environment
+  ///        with all farms. Load expects the saved bytes of all farms.
   /// @throws InputError if no layout can be generated for the scenario, if it describes a family,
   ///         or if the index is requested and the scenario has too many states for a table
   LocalEnvironment(std::shared_ptr<const Scenario> scenario, const EnvironmentOptions& options,

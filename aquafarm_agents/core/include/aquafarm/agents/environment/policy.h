@@ -13,10 +13,11 @@ class Policy {
  public:
   virtual ~Policy() = default;
 
-  /// Returns the observation types that it requires, a mask of ObservationTypeBits.
+  /// Returns the observation types that the policy requires, a mask of ObservationTypeBits.
   virtual std::uint8_t observation_types() const = 0;
 
-  /// Prepares for new episodes on `farms` farms: resets the recurrent state.
+  /// Prepares for new episodes on `farms` farms: resets state such as the recurrent state, the
+  /// plans and the random streams.
   /// @param seed seed of the policy's random numbers, if it draws any
   virtual void Begin(std::uint64_t seed, std::int32_t farms) = 0;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Outcomes of the devices in the episodes of an evaluation: by id if every episode has the same
-/// devices, and by kind.
+/// Outcomes of the devices in the episodes of an evaluation, by id and by kind. The outcomes by id
+/// are meaningful only if every episode has the same devices.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@ struct DeviceTally {
   std::int64_t aboard{};      ///< number of them on a ship at the end of their episode
   double delivered_health{};  ///< sum of the health of those in a port
 
-  /// Returns the number of devices at sea at the end of the episode.
+  /// Returns the number of devices at sea at the end of their episode.
   std::int64_t Left() const { return devices - delivered - aboard; }
   /// Counts a device at the end of an episode.
   void Add(const Device& device) {

@@ -56,14 +56,14 @@ struct Evaluation {
 using AccountsOf = std::function<std::optional<Accounts>(std::int32_t farm)>;
 
 /// Plays episodes 0 … episodes − 1 of EvaluationSeed(seed). For a deterministic policy, the result
-/// does not depend on the number of farms, except that a network may round differently in another
-/// batch size.
+/// does not depend on the number of farms, apart from `wall_s`. (A network may round differently in
+/// batches of another size.)
 /// @param stop may be set by a signal handler; null if the evaluation cannot be stopped
 /// @param episodes at least 1
-/// @param on_progress called about every 5 s with the number of finished episodes
+/// @param on_progress called about every 5 s with the number of finished episodes; may be empty
 /// @param policy_seed seed of the policy's random numbers; by default that of the episodes
-/// @param accounts_of called once for each episode. If it is empty, `losses` is unset. Farms behind
-///        ROS services do not provide accounts
+/// @param accounts_of called once for each finished episode. If it is empty, `losses` is unset.
+///        Farms behind ROS services do not provide accounts
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
                     std::int32_t episodes, const std::atomic<bool>* stop = nullptr,
                     const std::function<void(std::size_t done)>& on_progress = {},
@@ -89,8 +89,8 @@ void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
 /// Returns one line: "success 100.0 %, return 243.1 [95 %: 241.0, 245.2] per episode, 4.02 per
 /// step, 60.4 steps (1000 episodes, 998 distinct)"
 std::string Describe(const Evaluation& evaluation);
-/// Returns one line, empty without losses: "loss 1234.50 ± 8.10 CNY of 5000.00 insured, operating
-/// cost 310.00, VaR 5 % 2000.00 [95 %: 1900.00, 2100.00], CVaR 5 % …".
+/// Returns one line: "loss 1234.50 ± 8.10 CNY of 5000.00 insured, operating cost 310.00, VaR 5 %
+/// 2000.00 [95 %: 1900.00, 2100.00], CVaR 5 % …"; empty if the evaluation has no losses.
 std::string DescribeLosses(const Evaluation& evaluation);
 
 }  // namespace aquafarm::agents

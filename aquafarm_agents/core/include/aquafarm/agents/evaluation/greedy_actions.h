@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Greedy action and value estimate of a policy for each cell to which ship 0 can be moved. Fig. 11
-/// shows the actions as arrows. A map of V_π shows the values.
+/// Greedy action and value estimate of a policy for each cell in which ship 0 can be placed. Fig.
+/// 11 shows the actions as arrows. A map of V_π shows the values.
 
 #include <atomic>
 #include <cstdint>
@@ -25,15 +25,16 @@ struct GreedyAction {
 /// Max number of cells of a farm for which GreedyActions is supported.
 inline constexpr std::int32_t kMaxCells = 10000;
 
-/// Returns the reason why GreedyActions does not support farms of a scenario; empty if it does.
+/// Returns the reason why GreedyActions does not support the farms of a scenario; empty if it
+/// supports them.
 std::string WhyNoBestMoves(const Scenario& scenario);
 
 /// Returns the greedy action of ship 0 in every free cell of a farm in its present state, row by
-/// row from the south-west. Other ships keep their cells. Empty if WhyNoBestMoves gives a reason or
-/// ship 0 is not active.
+/// row from the south-west. Other ships keep their cells. Empty if WhyNoBestMoves returns a reason
+/// or if ship 0 is not active.
 /// @param policy is reset before it acts, so that a recurrent policy starts from an empty state
 /// @param stop ends the function early if set; it then returns the cells so far. May be null
-/// @throws InputError if the scenario does not have the observation types
+/// @throws InputError if the scenario does not support the observation types
 std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t observation_types,
                                         Policy& policy, const std::atomic<bool>* stop = nullptr);
 

@@ -11,7 +11,7 @@
 ///
 /// Episodes with equal starts are not independent. The standard error is therefore cluster-robust,
 /// and the intervals come from a cluster bootstrap. It draws distinct starts with replacement, each
-/// with all its episodes. The interval reaches from the 2.5 % to the 97.5 % percentile (Davison and
+/// with all its episodes. The interval reaches from the 2.5th to the 97.5th percentile (Davison and
 /// Hinkley, "Bootstrap Methods and their Application", 1997, sections 3.8 and 5.3). If all starts
 /// are distinct, these are the ordinary standard error and bootstrap. The intervals of CVaR are
 /// somewhat too short if few episodes are in the tail. Equal episodes with equal seeds give equal

@@ -9,8 +9,8 @@
 
 namespace aquafarm::agents {
 
-/// Returns the names of the CSV columns of an EpisodeSummary that files of every version contain,
-/// separated by commas.
+/// Returns names of CSV columns of an EpisodeSummary, separated by commas. They are the columns
+/// that files of every version contain.
 std::string EpisodeColumns();
 /// Returns the names of the columns that were added after version 0.1.0, each after a comma. They
 /// follow the older columns of a file.
@@ -38,7 +38,7 @@ class MetricsFile {
   MetricsFile(const MetricsFile&) = delete;
   MetricsFile& operator=(const MetricsFile&) = delete;
 
-  /// Appends an episode to the buffer, which is flushed from time to time.
+  /// Appends an episode to the buffer. Flushes the buffer if it contains at least 64 KiB.
   /// @param number number of the episode in the training, from 1
   /// @param total_steps farm steps of the training so far
   /// @throws StorageError

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// V_π measured by rollouts (Fig. 10, Eq. 10). For each cell, an episode is played that starts with
-/// ship 0 in that cell. The value of the cell is the return of all agents, discounted on request.
-/// It is measured, not estimated by a network, so planners have it, too.
+/// V_π measured by rollouts (Fig. 10, Eq. 10). Each rollout is an episode that starts with ship 0
+/// in a given cell. The value of this cell is the mean return of its rollouts, summed over all
+/// agents and discounted on request. These values need no value network, so planners have them,
+/// too.
 
 #include <atomic>
 #include <memory>
@@ -21,8 +22,8 @@ struct RolloutValues {
   std::uint64_t seed{};     ///< EvaluationSeed of the episodes
   std::uint64_t episode{};  ///< number of the first episode
   std::int32_t episodes{};  ///< number of episodes played from each cell
-  /// [H, W] row by row from the south-west, mean over the episodes; NaN in cells that ship 0 cannot
-  /// occupy
+  /// [H, W] row by row from the south-west, mean over the episodes. NaN if ship 0 cannot start in
+  /// the cell in at least one of the episodes.
   std::vector<double> value;
   double discount{1.0};       ///< γ of Eq. 10, per step; 1: undiscounted
   std::vector<Cell> ports;    ///< cells of the ports in the first episode
@@ -36,7 +37,8 @@ struct RolloutValues {
 ///        cannot be stopped
 /// @param discount in [0, 1]
 /// @throws InputError if the farm has too many cells, if several episodes are requested without a
-///   fixed layout, or if the policy does not fit the scenario
+///   fixed layout, if the scenario does not support the observation types, or if the policy does
+///   not fit the scenario
 RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario,
                          std::uint8_t observation_types, const MakePolicyFor& make_policy,
                          std::uint64_t seed, std::uint64_t episode, std::int32_t episodes,

@@ -46,7 +46,8 @@ struct Route {
 /// Plays one episode of EvaluationSeed(seed) with all agents and records the route of ship 0.
 /// @param stop may be set by a signal handler; the route then ends early. Null if the function
 ///        cannot be stopped
-/// @throws InputError if the scenario or the policy does not fit
+/// @throws InputError if the scenario does not support the observation types, or if the policy does
+///   not fit the scenario
 Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t observation_types,
                  const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
                  const std::atomic<bool>* stop = nullptr);

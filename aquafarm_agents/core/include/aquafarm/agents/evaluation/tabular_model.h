@@ -42,9 +42,9 @@ class TabularModel {
   ///   enough states for a table
   explicit TabularModel(const Scenario& scenario);
 
-  /// Returns the number of rows: that of the states, plus 1 for the end.
+  /// Returns the number of rows: one for each state, and one for the end of the episode.
   std::size_t rows() const { return states_.size() + 1; }
-  /// Returns the row of the end.
+  /// Returns the row of the end of the episode.
   std::size_t end() const { return states_.size(); }
   /// Returns the tabular index of each row except the last, [rows() - 1].
   const std::vector<std::uint32_t>& states() const { return states_; }

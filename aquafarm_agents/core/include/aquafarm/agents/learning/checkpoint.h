@@ -31,7 +31,7 @@ struct CheckpointInfo {
   std::string options;       ///< resolved options of the learner
   std::string version;       ///< version of the suite that wrote the file
   std::uint64_t seed{};      ///< seed of the training
-  EnvironmentSpec spec;      ///< spec of the training farms, without the YAML text
+  EnvironmentSpec spec;      ///< spec of the training farms; files lack its YAML text
   std::uint64_t steps{};     ///< farm steps of training so far
   std::uint64_t episodes{};  ///< episodes of training so far
 };
@@ -63,8 +63,8 @@ struct Checkpoint : CheckpointInfo {
   void SetArray(const std::string& name, const std::vector<T>& values) {
     sections[name] = BytesOf(values);
   }
-  /// As SetArray, but if `lends` is true the section refers to `values`, which must then neither
-  /// change nor be destroyed before the checkpoint is written.
+  /// Does the same as SetArray. If `lends` is true, however, the section refers to `values`, which
+  /// must then neither change nor be destroyed before the checkpoint is written.
   template <typename T>
   void LendArray(const std::string& name, const std::vector<T>& values) {
     if (!lends) return SetArray(name, values);
@@ -92,7 +92,7 @@ struct Checkpoint : CheckpointInfo {
   /// names.
   void AddPart(const std::string& prefix, Checkpoint&& part);
   /// Returns a checkpoint with the metadata of this one and with the sections that AddPart added
-  /// with `prefix`. Their names are those without the prefix.
+  /// with `prefix`. The returned sections have their names without the prefix.
   Checkpoint Part(const std::string& prefix) const;
 
  private:
@@ -103,7 +103,7 @@ struct Checkpoint : CheckpointInfo {
   static void CheckSize(const std::string& name, std::size_t got, std::size_t expected);
 };
 
-/// Writes a checkpoint file. @throws StorageError as WriteFileAtomically
+/// Writes a checkpoint file. @throws StorageError in the same cases as WriteFileAtomically
 void WriteCheckpoint(const std::string& path, const Checkpoint& checkpoint);
 
 /// Reads a checkpoint file.
@@ -117,7 +117,7 @@ void CheckContinues(const Checkpoint& checkpoint, const std::string& path,
                     const std::string& algorithm, const std::string& options, std::uint64_t seed,
                     const EnvironmentSpec& spec);
 
-/// Checks that the policy and the farms on which it plays have the same value of a property.
+/// Checks that a property has the same value for a policy and for the farms of `spec`.
 /// @param what name of the property, for the message
 /// @param got value of the policy
 /// @param expected value of the farms

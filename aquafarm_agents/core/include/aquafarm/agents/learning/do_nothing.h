@@ -8,8 +8,8 @@
 
 namespace aquafarm::agents {
 
-/// Policy with which every ship holds its cell in every step. What a rescue saves is measured
-/// against the value that this policy loses.
+/// Policy that chooses kHold for every agent in every step. It is the baseline for the value that a
+/// rescue saves.
 class DoNothingPolicy final : public Policy {
  public:
   explicit DoNothingPolicy(const EnvironmentSpec& spec)

@@ -11,7 +11,7 @@
 ///   curiosity          one of the above, with an intrinsic reward for prediction errors; see
 ///                      curiosity.h
 ///
-/// ε, T and c follow a Schedule. Every agent of every farm has its own random stream.
+/// ε, T, c and the weight of the intrinsic reward follow a Schedule.
 
 #include <array>
 #include <cstdint>
@@ -29,7 +29,7 @@ namespace aquafarm::agents {
 /// Mask of all actions of the action space.
 inline constexpr ActionMask kAllActions = (1U << kActionCount) - 1;
 
-/// The strategies that the head of this file describes, without curiosity.
+/// Exploration strategies, without curiosity. The head of this file describes them.
 enum class ExplorationKind : std::uint8_t { kEpsilonGreedy, kBoltzmann, kEntropy };
 inline constexpr int kExplorationKindCount = 3;
 std::string_view ToString(ExplorationKind value);
@@ -57,8 +57,8 @@ enum class ExplorationOf : std::uint8_t {
 /// Parses "epsilon_greedy", "boltzmann" or "entropy", alone or with a schedule:
 /// "epsilon_greedy:0.1", "boltzmann:exponential:10:0.5:0.5", "entropy:linear:0.02:0:1". The prefix
 /// "icm+" adds curiosity, optionally with a schedule of its weight: "icm+epsilon_greedy:0.1",
-/// "icm:linear:2:0:0.5+boltzmann". The text "icm" alone means "icm+entropy" for kPolicies, else
-/// "icm+epsilon_greedy".
+/// "icm:linear:2:0:0.5+boltzmann". If no strategy follows "icm", the strategy is entropy for
+/// kPolicies, else epsilon_greedy.
 /// @param learners kind of the learner that explores
 /// @throws InputError if `text` has another form, names a strategy that `learners` do not accept,
 ///   or has a value out of range
@@ -133,7 +133,7 @@ class Explorer {
   }
 
   void Save(Checkpoint& checkpoint) const { streams_.Save(checkpoint); }
-  /// @throws InputError as AgentRng::Load
+  /// @throws InputError in the same cases as AgentRng::Load
   void Load(const Checkpoint& checkpoint) { streams_.Load(checkpoint); }
 
  private:

@@ -18,7 +18,7 @@ using MakeAgentLearner =
 
 /// Makes a learner that consists of one learner per agent of a farm, each with its own random
 /// streams.
-/// @throws InputError as `make`
+/// @throws InputError if `make` throws it
 std::unique_ptr<Learner> MakeIndependent(const EnvironmentSpec& spec, std::uint64_t seed,
                                          const MakeAgentLearner& make);
 

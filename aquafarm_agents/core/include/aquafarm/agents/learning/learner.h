@@ -33,15 +33,15 @@ class Learner {
  public:
   virtual ~Learner() = default;
 
-  /// Returns the observation types that it requires, a mask of ObservationTypeBits.
+  /// Returns the observation types that the learner requires, a mask of ObservationTypeBits.
   virtual std::uint8_t observation_types() const = 0;
-  /// Returns all options with their effective values, as key=value pairs. Learners of the same
+  /// Returns the options with their effective values, as key=value pairs. Learners of the same
   /// algorithm with equal options and seeds learn identically on the same farms.
   virtual std::string options() const = 0;
 
-  /// Learns from the transitions that ended in `results`, then chooses the next exploratory
-  /// actions. Farms with is_first = 1 have no transition and are skipped. Targets bootstrap after
-  /// truncation, but not after termination.
+  /// Learns from the transitions that ended in `results`, and chooses the next exploratory actions.
+  /// A farm with is_first = 1 has no transition. Targets bootstrap after truncation, but not after
+  /// termination.
   /// @param progress fraction of the run that is done, [0, 1]; determines the schedules
   /// @param actions is resized to [N, S]
   /// @throws LearnerFailed if learning cannot continue
@@ -51,10 +51,11 @@ class Learner {
   /// Returns the current training statistics.
   virtual LearnerStatus status() const = 0;
 
-  /// Returns a copy of the current greedy policy. Later learning does not change the copy.
+  /// Returns a copy of the current policy. Later learning does not change the copy. The copy
+  /// acts greedily, unless the learner is RANDOM, or PPO or MAPPO with policy=sampled.
   virtual std::unique_ptr<Policy> GreedyPolicy() const = 0;
 
-  /// Adds the sections from which Algorithm::make_policy makes the greedy policy.
+  /// Adds the sections from which Algorithm::make_policy makes the policy.
   virtual void SavePolicy(Checkpoint& checkpoint) const = 0;
   /// Adds the complete state. A learner restored from it continues bit-identically.
   virtual void Save(Checkpoint& checkpoint) const = 0;

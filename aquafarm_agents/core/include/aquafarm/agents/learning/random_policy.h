@@ -11,9 +11,9 @@ namespace aquafarm::agents {
 
 /// The actions among which the policy RANDOM draws (paper §4.2, see docs/model.md).
 enum class RandomActions : std::uint8_t {
-  kAll,  ///< every action, legal or not
-  /// The legal actions. Moves onto a rock, onto an island or off the map are excluded, unless this
-  /// excludes every move.
+  kAll,  ///< all actions except kHold, legal or not
+  /// The legal actions, without moves onto a rock, onto an island or off the map. If every legal
+  /// move is such a move, no move is excluded.
   kReachable,
 };
 inline constexpr int kRandomActionsCount = 2;
@@ -23,10 +23,10 @@ std::string_view ToString(RandomActions value);
 /// @throws InputError on any other option or value
 RandomActions ParseRandomActions(const std::string& options);
 /// Returns the ObservationTypeBits that RANDOM requires with these options.
-/// @throws InputError as ParseRandomActions
+/// @throws InputError in the same cases as ParseRandomActions
 std::uint8_t RandomObservationTypes(const std::string& options);
 
-/// The policy RANDOM. It draws each action that RandomActions describes with the same probability.
+/// The policy RANDOM. It draws uniformly from the actions that its RandomActions selects.
 class RandomPolicy final : public Policy {
  public:
   explicit RandomPolicy(const EnvironmentSpec& spec, RandomActions actions = RandomActions::kAll)
@@ -51,7 +51,8 @@ class RandomLearner final : public Learner {
   /// @throws InputError on an unknown option or value
   RandomLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
   std::uint8_t observation_types() const override { return policy_.observation_types(); }
-  /// Returns an empty text for actions=all, because older checkpoints contain no options.
+  /// Returns an empty text for actions=all, because checkpoints of earlier versions contain no
+  /// options.
   std::string options() const override;
   void Step(const StepResults& results, double progress,
             std::vector<std::uint8_t>& actions) override;

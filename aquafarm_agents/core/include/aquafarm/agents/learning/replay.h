@@ -2,8 +2,8 @@
 #pragma once
 
 /// Replay buffer: a ring of time steps. A time step contains one observation for each slot, that
-/// is, for each agent of each farm. Every observation is stored once, although it belongs to two
-/// transitions: a transition consists of two consecutive time steps.
+/// is, for each agent of each farm. A transition consists of two consecutive time steps. Each
+/// observation is stored once, even if one transition ends and another one begins with it.
 ///
 ///   time step     t            t+1          t+2
 ///   observation   o_t          o_t+1        o_t+2
@@ -11,8 +11,10 @@
 ///   reward        r_t          r_t+1        …         r_t was received on the way to o_t
 ///
 /// The last time step of an episode has an end reason. Its action is unused, and the next time step
-/// is the first of another episode. If a time step has is_first = 1 and the one before it has no
-/// end reason, the farms were lost in mid-episode. The outcome of the last action is then unknown.
+/// is the first of another episode. The slot of an agent that is done before its farm has the end
+/// reason kAllRetrieved until the episode ends. If a time step has is_first = 1 and the one before
+/// it has no end reason, the farms were lost in mid-episode. The outcome of the last action is then
+/// unknown.
 
 #include <cstdint>
 #include <string>
@@ -44,7 +46,8 @@ class SumTree {
 
 /// Sizes of a replay buffer.
 struct ReplayOptions {
-  std::size_t capacity{100000};    ///< max number of stored observations of single agents
+  /// Max number of stored observations of single agents. At least two time steps can be stored.
+  std::size_t capacity{100000};
   std::size_t slots{1};            ///< farms × agents
   std::int32_t agents{1};          ///< agents per farm
   std::size_t observation_size{};  ///< values per observation
@@ -60,8 +63,8 @@ struct Transition {
   float discount{};  ///< factor of the value at `to`; 0 after termination
 };
 
-/// A transition of all agents of a farm over n steps, or fewer if all agents are done or the farms
-/// were lost.
+/// A transition of all agents of a farm over n steps, or fewer if the episode ended for all agents
+/// or the farms were lost.
 struct JointTransition {
   std::size_t to{};  ///< row of the farm's first agent at the time step of the bootstrap value
   float discount{};  ///< factor of the value at `to`, for agents that are not done there
@@ -88,8 +91,8 @@ class Replay {
   std::size_t slots() const { return options_.slots; }
 
   /// Returns whether a transition begins at this time step: at least `steps` later time steps are
-  /// stored, the agent is not done, and the next time step belongs to the same episode. (The next
-  /// time step belongs to another episode if the farms were lost.)
+  /// stored, the slot has no end reason, and the next time step belongs to the same episode. (The
+  /// next time step belongs to another episode if the farms were lost.)
   /// @param age number of time steps after the oldest stored one, [0, size())
   bool Begins(std::size_t age, std::size_t slot, std::size_t steps) const {
     return age + steps < size_ && end_reasons_[Row(age, slot)] == 0 &&

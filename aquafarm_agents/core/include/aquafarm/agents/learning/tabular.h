@@ -22,7 +22,7 @@
 
 namespace aquafarm::agents {
 
-/// Table of action values.
+/// Tables of action values Q(s, a), one for each agent of a farm.
 struct QTable {
   std::int32_t agents{};
   std::uint32_t states{};

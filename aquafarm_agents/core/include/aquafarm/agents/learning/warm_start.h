@@ -9,7 +9,8 @@ namespace aquafarm::agents {
 class WarmStart {
  public:
   virtual ~WarmStart() = default;
-  /// Replaces the initial weights by those of a policy or checkpoint of the same algorithm.
+  /// Replaces the initial weights by those of a policy or a training checkpoint. Its algorithm must
+  /// be that of the learner.
   /// @throws InputError if the features or the network of the checkpoint differ from those of the
   ///   learner; the weights are then unchanged
   virtual void LoadWeights(const Checkpoint& checkpoint) = 0;

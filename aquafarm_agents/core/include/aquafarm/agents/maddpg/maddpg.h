@@ -15,8 +15,8 @@
 ///            actions of the other agents are the replayed ones
 ///
 /// The critic returns the values of all actions of its agent at once, as in COMA (Foerster et al.
-/// 2018). It is therefore linear in a_i, and its gradient at a relaxed action is exact. The critics
-/// of all agents are the same network. Gumbel-softmax (Jang et al. 2017, Maddison et al. 2017) is
+/// 2018). It is therefore linear in a_i, and its gradient at a relaxed action is exact. One network
+/// is the critic of all agents. Gumbel-softmax (Jang et al. 2017, Maddison et al. 2017) is
 /// straight-through: one-hot in the forward pass, softmax at `temperature` in the backward pass.
 /// MADDPG is an actor-critic method, although the paper lists it among the value-based ones.
 
@@ -33,7 +33,7 @@ std::uint8_t MaddpgObservationTypes(const std::string& options);
 /// Makes a MADDPG learner. @throws InputError on a wrong option
 std::unique_ptr<Learner> MakeMaddpg(const EnvironmentSpec& spec, std::uint64_t seed,
                                     const std::string& options);
-/// Makes a policy that takes the most likely action of every actor.
+/// Makes a policy that takes the most likely allowed action of every actor.
 /// @throws InputError with the reason if the policy does not fit farms of `spec`
 std::unique_ptr<Policy> MakeMaddpgPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 

@@ -23,7 +23,7 @@ inline constexpr int kLossKindCount = 2;
 std::string_view ToString(LossKind value);
 
 /// Hyperparameters of DQN, VDN and LSTM-DQN. The preset sets the defaults. *tuned* has values tuned
-/// on the shipped farms. *paper* has the values printed in Eq. 15 and Algorithm 2, disables the
+/// on the shipped scenarios. *paper* has the values printed in Eq. 15 and Algorithm 2, disables the
 /// extensions, and keeps the tuned values of all other options. The members are initialized with
 /// the tuned defaults of DQN.
 struct DeepOptions {
@@ -42,7 +42,7 @@ struct DeepOptions {
   LossKind loss{LossKind::kHuber};
   double max_grad_norm{10.0};  ///< max norm of the gradient; 0: no limit
 
-  // Extensions of the paper's §3.4.3 (docs/model.md), with their sources.
+  // Extensions of the algorithm in §3.4.3 of the paper (docs/model.md), with their sources.
   bool double_dqn{true};            ///< van Hasselt et al. 2016
   bool dueling{false};              ///< Wang et al. 2016
   std::int32_t n_step{1};           ///< Sutton 1988; 1 disables it
@@ -56,8 +56,8 @@ struct DeepOptions {
   /// α · (max_a Q − Q(s, a)) from the target, so that approximation errors change the greedy action
   /// less often. 0 disables it.
   double action_gap{0.0};
-  /// Penalty on the value of an action during training [reward]. It is subtracted for each time
-  /// that the agent took the action in the same situation of this episode; see RepetitionPenalty. 0
+  /// Penalty on the value of an action when acting in training [reward]. It is subtracted once for
+  /// each earlier use of the action in the same situation of the episode; see RepetitionPenalty. 0
   /// disables it.
   double repetition_penalty{0.0};
   bool mask_illegal{true};   ///< exclude illegal actions when acting and bootstrapping
@@ -76,7 +76,7 @@ struct DeepOptions {
   bool joint{};
 
   std::string device{"auto"};  ///< auto, cpu or cuda
-  std::int32_t threads{1};     ///< CPU threads of the network library
+  std::int32_t threads{1};     ///< CPU threads of libtorch and BLAS
 
   /// Parses "key=value …".
   /// @param recurrent true for LSTM-DQN

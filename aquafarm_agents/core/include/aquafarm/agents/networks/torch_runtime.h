@@ -9,7 +9,7 @@
 namespace aquafarm::agents {
 
 /// Sets the number of threads of libtorch and of OpenBLAS. Must be called before a network is made.
-/// If the BLAS is the reference BLAS, which is slow, TakeTorchWarning then returns a warning.
+/// The first call stores a warning for TakeTorchWarning if the BLAS is the slow reference BLAS.
 void PrepareTorch(std::int32_t threads);
 
 /// Returns the warning of PrepareTorch as one readable line, and clears it. Returns an empty text
@@ -17,8 +17,8 @@ void PrepareTorch(std::int32_t threads);
 std::string TakeTorchWarning();
 
 /// Returns the libraries used by the networks, such as "libtorch 1.13.1, OpenBLAS 0.3.21 …
-/// SkylakeX, products by avx512". Other versions or kernels change the last bits of a training.
-/// Empty before PrepareTorch is called.
+/// SkylakeX, products by avx512". With other versions or kernels, the results of a training may
+/// differ in the last bits. Empty before PrepareTorch is called.
 std::string NetworkLibraries();
 
 }  // namespace aquafarm::agents

@@ -36,7 +36,7 @@ class FetchByValue {
   struct Errand {
     std::int32_t device{kNone};       ///< device that the ship fetches; kNone: no device
     std::vector<std::int32_t> moves;  ///< [H, W] moves by water from each cell to that device
-    std::int32_t waited{};            ///< consecutive steps in which every cell ahead was occupied
+    std::int32_t waited{};            ///< consecutive steps in which other ships blocked the way
   };
   void Begin(const Farm& farm);
   bool CanBringHome(const Farm& farm, std::int32_t device, std::int32_t moves) const;
@@ -53,7 +53,8 @@ class FetchByValue {
   std::vector<Cell> cells_;            ///< cells of the ships after the actions chosen so far
 };
 
-/// FetchByValue as a Policy. It sees the complete farm, even with a partial view.
+/// FetchByValue as a Policy. It reads the complete state of the farm, even if the scenario limits
+/// what ships observe.
 class FetchByValuePolicy final : public Policy {
  public:
   explicit FetchByValuePolicy(const EnvironmentSpec& spec);

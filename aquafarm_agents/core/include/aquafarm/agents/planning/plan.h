@@ -22,11 +22,11 @@ enum class Foresight : std::uint8_t {
   kPersistence,  ///< the forecast in force; without one, straight motion with the present heading
 };
 
-/// Cells and steps reserved for ships that already have a plan. The plan of another ship avoids
-/// them. In each step, a ship reserves its cell of this step against all ships. Since ships move in
-/// id order, it also reserves its cell of the next step against ships with a higher id, and its
-/// cell of the previous step against ships with a lower id. A planner does not query cells of
-/// ports, since any number of ships may share a port.
+/// Cells and steps that are reserved for ships. The plan of another ship avoids them. In each step,
+/// a ship reserves its cell of this step against all ships. Since ships move in id order, it also
+/// reserves its cell of the next step against ships with a higher id, and its cell of the previous
+/// step against ships with a lower id. A planner does not query cells of ports, since any number of
+/// ships may share a port.
 class Reservations {
  public:
   void Clear() { taken_.clear(); }
@@ -52,10 +52,10 @@ class Reservations {
 struct Task {
   std::int32_t ship{0};  ///< id of the ship
   /// Ids of the devices that the ship fetches or carries; for a self-propelled device, its own id.
-  /// The max number is the `max_devices` of the Planner.
+  /// At most `max_devices` of the constructor of Planner.
   std::vector<std::int32_t> devices;
-  /// Last step of the plan of a ship without devices, which only avoids risks. 0: the plan ends
-  /// with the last delivery or with the episode.
+  /// Last step of the plan. Set if `devices` is empty; such a plan only avoids risks. 0: the plan
+  /// ends with the last delivery or with the episode.
   std::int32_t until{0};
   const Reservations* others{};  ///< cells that the plan avoids; nullptr: it avoids none
 };

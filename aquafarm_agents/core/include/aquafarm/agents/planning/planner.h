@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Plans for one ship by dynamic programming over time and states. A state is the cell of the ship
-/// and a status of each device. With the true future of the disasters the plan has the exact max
-/// return of a seeded episode: the clairvoyant optimum, the reference of paper §4.2 (see
-/// docs/model.md). A policy may also plan again at each step (receding horizon) from the issued
-/// forecast or, without a forecast, from each disaster's current heading. The plan then uses only
-/// what an operator knows at that time, with one exception: it knows which crashes cause damage.
+/// Computes the actions of one ship by dynamic programming over time and states. A state is the
+/// cell of the ship and a status of each device. With the true future of the disasters, the plan
+/// has the exact max return of a seeded episode. This is the clairvoyant optimum, the reference of
+/// paper §4.2 (see docs/model.md). A policy may also plan again at each step (receding horizon). It
+/// then plans from the issued forecast or, without a forecast, from the current heading of each
+/// disaster. Such a plan uses information that an operator has at that time. In addition, it uses
+/// the step in which each disaster ends, and which crashes will cause damage.
 ///
 /// Health is computed exactly. The health of a deployed device depends only on time. The health of
 /// a device aboard depends on the route. Each pickup is therefore planned in two ways, paid and
@@ -50,9 +51,9 @@ class Planner {
   /// or if reserved cells (Task::others) exclude every plan.
   /// @param risks risks of the steps after the farm's present one
   Plan Solve(const Farm& farm, RiskSource& risks, const Task& task);
-  /// As above, with the risks of the farm's own disasters.
+  /// Does the same with the risks of the farm's own disasters.
   Plan Solve(const Farm& farm, Foresight foresight, const Task& task);
-  /// As above, for a farm with one agent, which does all the work.
+  /// Does the same for a farm with one agent, which does all the work.
   Plan Solve(const Farm& farm, Foresight foresight);
 
  private:

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The planner as a Policy for farms with one agent. It sees the complete farm, even with a partial
-/// view. It is therefore a reference, not a fair competitor of learners that see less.
+/// The planner as a Policy for farms with one agent. It reads the complete state of the farm, even
+/// if the scenario limits what ships observe. It is therefore a reference, not a fair competitor of
+/// learners with a limited view.
 
 #include <memory>
 #include <string>
@@ -15,11 +16,11 @@ namespace aquafarm::agents {
 
 /// The *receding-horizon* policy (kPersistence) plans again at each step, from the newest forecast.
 /// It assumes that a disaster without a forecast keeps its heading. The *clairvoyant* policy
-/// (kOracle) knows the future: it plans once per episode, and again if the farm deviates from the
-/// plan.
+/// (kOracle) uses the true future. It plans once per episode, and again if the ship deviates from
+/// the plan or has completed it.
 class PlannerPolicy final : public Policy {
  public:
-  /// @throws InputError as the constructor of Planner
+  /// @throws InputError in the same cases as the constructor of Planner
   PlannerPolicy(const EnvironmentSpec& spec, Foresight foresight);
   std::uint8_t observation_types() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;

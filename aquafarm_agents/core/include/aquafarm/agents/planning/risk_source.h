@@ -51,7 +51,7 @@ class RiskSource {
   /// next call.
   /// @param step after the farm's present step, at most last_step()
   virtual const RiskLayers& At(std::int32_t step) = 0;
-  /// Returns the last step of every plan. The episode ends at this step, or earlier.
+  /// Returns the latest step at which the episode can end. No plan extends beyond this step.
   virtual std::int32_t last_step() const = 0;
   /// Returns an upper bound of RiskLayers::quiet over all cells and steps.
   virtual float best_quiet() const = 0;

@@ -27,7 +27,8 @@ namespace aquafarm::agents {
 class TeamPlanner {
  public:
   /// @param scenario must outlive the planner
-  /// @throws InputError as the constructor of Planner, for the max number of devices of one ship
+  /// @throws InputError in the same cases as the constructor of Planner, for the max number of
+  ///   devices of one ship
   TeamPlanner(const Scenario& scenario, Foresight foresight);
   ~TeamPlanner();
   TeamPlanner(TeamPlanner&&) noexcept;
@@ -50,9 +51,9 @@ class TeamPlanner {
   /// @param actions [agents]
   void Act(const Farm& farm, PlanState& course, std::uint8_t* actions);
 
-  /// Assigns the undelivered devices to agents. A ship gets the devices that it carries and those
-  /// that it fetches next. Their max number is the average per ship, rounded up, plus two. A
-  /// self-propelled device gets itself.
+  /// Assigns the undelivered devices to agents. The devices of a ship are those that it carries and
+  /// those that it fetches next. Their max number is the average per ship, rounded up, plus two. A
+  /// self-propelled device is assigned to itself.
   /// @returns ids of devices, by agent. Devices are missing if each ship has its max number
   std::vector<std::vector<std::int32_t>> Assign(const Farm& farm) const;
 
@@ -61,10 +62,11 @@ class TeamPlanner {
   std::unique_ptr<Impl> impl_;
 };
 
-/// TeamPlanner as a Policy. It sees the complete farm, even with a partial view.
+/// TeamPlanner as a Policy. It reads the complete state of the farm, even if the scenario limits
+/// what ships observe.
 class TeamPlannerPolicy final : public Policy {
  public:
-  /// @throws InputError as the constructor of TeamPlanner
+  /// @throws InputError in the same cases as the constructor of TeamPlanner
   TeamPlannerPolicy(const EnvironmentSpec& spec, Foresight foresight);
   std::uint8_t observation_types() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;

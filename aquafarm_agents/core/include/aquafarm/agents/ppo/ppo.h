@@ -47,8 +47,8 @@ std::unique_ptr<Learner> MakeMappo(const EnvironmentSpec& spec, std::uint64_t se
 /// Makes the learner of one rank of a process group.
 /// @param spec spec of the farms of this rank
 /// @param group must outlive the learner
-/// @throws InputError as above, if the number of shards is not a multiple of the ranks, or if the
-///   exploration contains icm
+/// @throws InputError in the cases listed for MakePpo. Also if the number of shards is not a
+///   multiple of the ranks, or if the exploration contains icm
 std::unique_ptr<ShardedLearner> MakePpoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
                                                const std::string& options, ProcessGroup& group,
                                                PlannerMaker make_planner = nullptr);

@@ -21,7 +21,7 @@ std::string_view ToString(PolicyMode value);
 /// Teacher that the policy may imitate during training.
 enum class TeacherPolicy : std::uint8_t {
   kRule,     ///< a simple rule on entity tokens (src/ppo/route_rule.h)
-  kPlanner,  ///< the algorithm `planner`, which sees the complete farm
+  kPlanner,  ///< the algorithm `planner`, which reads the complete state of the farm
 };
 inline constexpr int kTeacherPolicyCount = 2;
 std::string_view ToString(TeacherPolicy value);
@@ -60,19 +60,21 @@ struct PpoOptions {
   Schedule teacher{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
   TeacherPolicy teacher_policy{TeacherPolicy::kRule};  ///< which teacher the policy imitates
   std::int32_t teacher_interval{1};  ///< the teacher labels steps 0, n, 2n, … of each rollout
-  /// Data augmentation: at the start of each episode, one of the eight symmetries of the grid is
-  /// drawn. The observations of the agent are rotated or reflected by it. Needs entity tokens.
+  /// Data augmentation: at the start of each episode, the learner draws one of the eight symmetries
+  /// of the grid for each agent. In training, it transforms the observations and actions of the
+  /// agent with this symmetry. Needs entity tokens.
   bool augment{false};
   PolicyMode policy{PolicyMode::kGreedy};  ///< how the trained policy acts
   /// The trained policy averages the outputs of its network over the eight symmetries. This makes
   /// it equivariant to rotations and reflections of the ranch. Needs entity tokens.
   bool symmetric{false};
-  /// The trained greedy policy subtracts this from the logit of an action for each earlier use of
-  /// the action in the same situation (cell, load, remaining devices) of the episode.
+  /// Penalty on the logit of an action in the trained greedy policy. It is subtracted once for each
+  /// earlier use of the action in the same situation (cell, load, remaining devices). Only the last
+  /// 1024 steps of the episode are counted.
   double repetition_penalty{0.0};
-  /// The trained greedy policy counts how often each situation occurs. When one occurs for the
-  /// max_visits-th time, the policy starts to follow the route of src/ppo/route_rule.h, while this
-  /// route is safe (src/ppo/loop_guard.h). Needs entity tokens. 0: never.
+  /// The trained greedy policy counts how often each situation occurs. When a situation occurs for
+  /// the max_visits-th time, the policy starts to follow the route of src/ppo/route_rule.h, in each
+  /// step in which this route is safe (src/ppo/loop_guard.h). Needs entity tokens. 0: never.
   std::int32_t max_visits{0};
   std::int32_t threads{1};  ///< CPU threads of libtorch and BLAS
   /// Number of groups of farms, a power of two up to 4096. Each group contributes its own part to
@@ -94,13 +96,14 @@ struct PpoOptions {
   bool HasTeacher() const { return teacher.IsEverPositive(); }
   /// Returns the steps per agent in one rollout: rollout_size / slots, but at least 8, and rounded
   /// up to a multiple of sequence_length if recurrent.
-  /// @param slots farms × agents
+  /// @param slots farms × agents, of all ranks
   std::int32_t Horizon(std::size_t slots) const;
 
   /// Parses "key=value …".
   /// @param resolved receives all options with their values
   /// @param central true for the options of MAPPO
-  /// @throws InputError if a key is unknown or a value is out of range
+  /// @throws InputError if a key is unknown, if a value is out of range, or if the number of shards
+  ///   is not a power of two
   static PpoOptions Parse(const std::string& text, std::string& resolved, bool central = false);
 };
 

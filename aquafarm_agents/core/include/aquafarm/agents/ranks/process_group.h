@@ -3,7 +3,7 @@
 
 /// The processes of one training, possibly on several hosts. Each process is a *rank*. The ranks
 /// find each other with the store of c10d, the communication library of PyTorch. They exchange sums
-/// and bytes with its transport, Gloo (docs/decisions/ranks.md). The virtual functions of
+/// and bytes with Gloo, a transport of c10d (docs/decisions/ranks.md). The virtual functions of
 /// ProcessGroup are collective: all ranks must call the same functions in the same order.
 
 #include <functional>
@@ -49,8 +49,8 @@ class ProcessGroup {
   virtual std::string Broadcast(const std::string& bytes) = 0;
 
   /// Calls `work` on rank 0. The other ranks wait until it has returned, for at most
-  /// GroupTimes::work_s. This limit is longer than that of an exchange, since access to a disk may
-  /// take longer.
+  /// GroupTimes::work_s. The default of this limit is longer than that of an exchange, since access
+  /// to a disk may take longer.
   /// @param work ignored on the other ranks
   /// @throws RankLost; on rank 0 also every exception of `work`, after which the group must not be
   ///   used

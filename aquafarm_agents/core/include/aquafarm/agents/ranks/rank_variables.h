@@ -19,10 +19,10 @@ struct RankVariables {
 using GetVariable = std::function<const char*(const char*)>;
 
 /// Reads the variables of the first of these launchers that has set them: torchrun (RANK,
-/// WORLD_SIZE), Open MPI's mpirun, MPICH's mpiexec, Slurm's srun. With several processes it also
-/// reads the address of rank 0:
+/// WORLD_SIZE), Open MPI's mpirun, MPICH's mpiexec, Slurm's srun. Returns the defaults if no
+/// launcher has set them. With several processes, also reads the address of rank 0:
 ///
-///   MASTER_ADDR   host of rank 0. If not set: the first host of the Slurm step with srun, else
+///   MASTER_ADDR   host of rank 0. If not set: with srun the first host of the Slurm step, else
 ///                 127.0.0.1
 ///   MASTER_PORT   port that rank 0 opens. If not set: a hash of the job's name selects a port in
 ///                 [20000, 29999], so that two jobs on one host rarely use the same one. The name

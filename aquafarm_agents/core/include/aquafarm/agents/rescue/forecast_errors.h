@@ -22,7 +22,7 @@
 /// **Radii.** All radii of a storm are multiplied by one log-normal factor. Without reported radii,
 /// the spread of the factor is that of recorded radii about EstimateRadius (tracks/wind_radii.h).
 /// It depends on the storm's strength at each time: 0.45 below 48 kt, 0.41 below 64 kt, 0.35 above.
-/// After a report with radii, the spread grows from the error of the report to this value: the
+/// After a report with radii, the spread grows from the error of the report to this value. The
 /// logarithm of radius / EstimateRadius, in units of this spread, decays with exp(-time / 165 h).
 /// The 165 h are fitted to the JMA's best tracks of 2015 to 2021. The correlation of the 30 kt
 /// radii of one storm is 0.87 after 24 h (2,864 pairs), 0.76 after 48 h, 0.64 after 72 h, 0.55
@@ -43,7 +43,7 @@ struct ForecastErrors {
   /// Difference of lead times over which the correlation falls by a factor of e (assumed).
   double correlation_h{48.0};
   double size_factor{1.0};              ///< factor of the spread of radii (assumed)
-  double size_memory_h{kSizeMemory_h};  ///< time in which a storm's size decays by a factor of e
+  double size_memory_h{kSizeMemory_h};  ///< see kSizeMemory_h (tracks/fine_rings.h)
   double size_report_error{0.1};        ///< log-standard deviation of a reported radius (assumed)
   double scale{1.0};                    ///< factor of all errors: 0.5 halves them, 0 removes them
 };

@@ -18,12 +18,12 @@ enum class PlanResult : std::uint8_t {
   kNothingSaved = 10,    ///< winds come, and no trip saves more than it costs
   kStormStaysAway = 11,  ///< no winds reach a device or a route in the known time in any member
   kStormUnknown = 12,    ///< wind and radii are unknown while the storm is near; or no winds are
-                         ///< expected, but the forecast of an old bulletin has ended
+                         ///< expected, but the bulletin is old and its forecast has ended
   kBulletinOld = 13,     ///< exit code only: the bulletin is at least 12 hours old. Replaces every
                          ///< result except kStormUnknown
 };
 
-/// How and from which files a plan was made.
+/// How a plan was made, and from which files.
 struct PlanProvenance {
   std::string command;                                      ///< command line
   std::int64_t computed_at{};                               ///< UTC [s since 1970]
@@ -59,8 +59,8 @@ struct LastDeparture {
   std::optional<double> not_known_beyond_s;  ///< ships may leave until this time; later trips would
                                              ///< end after the known time
 };
-/// Returns the latest of the devices' deadlines with a chance of 50 %. It is set as
-/// not_known_beyond_s if one of these deadlines is open (Deadline::is_open), else as none_after_s.
+/// Returns the latest of the devices' deadlines with a chance of 50 %. This time is stored in
+/// not_known_beyond_s if one of these deadlines is open (Deadline::is_open), else in none_after_s.
 /// Devices aboard do not count, because their ships do not leave to fetch them. Neither member is
 /// set if there is no such deadline, if no winds come, or if the winds are unknown.
 LastDeparture LastDepartureOf(const RescueProblem& problem, const PlanReport& report);

@@ -17,22 +17,27 @@
 
 namespace aquafarm::agents {
 
-/// Inputs of the operator. The assumptions of the case list the values used for most unset fields.
+/// Inputs of the operator. RescueCase::assumptions lists the values that replace most unset fields.
 struct RescueRequest {
-  std::string bulletin;  ///< file of bulletins; exactly one of `bulletin` and `storm` must be set
-  std::string storm;     ///< file of a recorded track, whose later part is the forecast (hindcast)
-  std::string storm_name;           ///< storm in this file; may be empty if the file has one storm
-  std::optional<std::int64_t> at;   ///< start of the plan, UTC [s since 1970]; required for `storm`
-  std::optional<std::int64_t> now;  ///< present time, UTC [s since 1970]; unset for a past storm
-  std::string devices;              ///< CSV file; empty: the devices of the scenario
-  std::string ships_file;           ///< CSV file; empty: ships in the ports of the scenario
-  std::optional<std::int32_t> ships;     ///< number of ships; unset: as in ships_file or scenario
-  std::optional<double> speed_kn;        ///< speed of ships without a speed in ships_file
+  std::string bulletin;    ///< file of bulletins; exactly one of `bulletin` and `storm` must be set
+  std::string storm;       ///< file of a recorded track. Its part after `at` serves as the forecast
+  std::string storm_name;  ///< storm in this file; may be empty if the file has one storm
+  /// Start of the plan, UTC [s since 1970]; required for `storm`. If it is unset, the plan starts
+  /// at `now`. It starts at the last report of the bulletin if `now` is unset, is before this
+  /// report, or is at least 12 h after it.
+  std::optional<std::int64_t> at;
+  std::optional<std::int64_t> now;    ///< present time, UTC [s since 1970]; unset for a past storm
+  std::string devices;                ///< CSV file; empty: the devices of the scenario
+  std::string ships_file;             ///< CSV file; empty: ships in the ports of the scenario
+  std::optional<std::int32_t> ships;  ///< number of ships; unset: as in ships_file or scenario
+  std::optional<double> speed_kn;     ///< speed of ships without a speed in ships_file
   std::optional<std::int32_t> capacity;  ///< capacity of ships without a capacity in ships_file
   double depart_s{};                     ///< earliest departure [s after the start of the plan]
-  double abort_wind_kt{34.0};  ///< wind that stops a ship; the strongest ring up to it is used
-  double risk_averse{};        ///< see RescueProblem
-  std::string currency;        ///< currency of the devices' values; may be empty
+  /// Wind that stops a ship. The strongest ring of at most this wind is used. If there is no such
+  /// ring, the weakest ring is used.
+  double abort_wind_kt{34.0};
+  double risk_averse{};                ///< see RescueProblem
+  std::string currency;                ///< currency of the devices' values; may be empty
   std::optional<double> utc_offset_h;  ///< local time minus UTC; unset: from the longitude
   std::int32_t members{1000};          ///< members of the ensemble
   std::uint64_t seed{1};               ///< seed of the ensemble
@@ -96,11 +101,11 @@ struct RescueCase {
 /// Makes a case.
 /// @param scenario scenario of the ranch, with grid.origin
 /// @throws InputError "devices.csv:3: F3: got …" if a file is wrong, if a device or ship is on land
-///   or off the chart, if no water leads from a device to a port, or if the storm is not known at
-///   the start of the plan
+///   or off the chart, if no water leads from a listed device to the first port, or if the storm
+///   is not known at and after the start of the plan
 RescueCase MakeRescueCase(std::shared_ptr<const Scenario> scenario, const RescueRequest& request);
 
-/// Formats a time as YYYY-MM-DDTHH:MM:SSZ.
+/// Formats a time as YYYY-MM-DDTHH:MM:SSZ. @param time UTC [s since 1970]
 std::string FormatUtc(std::int64_t time);
 
 }  // namespace aquafarm::agents

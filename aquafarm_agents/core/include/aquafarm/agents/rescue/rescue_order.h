@@ -12,6 +12,7 @@
 
 namespace aquafarm::agents {
 
+/// What a ship does: leave its cell, fetch one device, or deliver all devices aboard at a port.
 enum class OrderKind : std::uint8_t { kLeave, kFetch, kDeliver };
 inline constexpr int kOrderKindCount = 3;
 /// Returns "leave", "fetch" or "deliver".
@@ -25,8 +26,8 @@ struct RescueOrder {
   std::int32_t device{kNone};  ///< fetch: index of the device
   std::int32_t port{kNone};    ///< deliver, or leave from a port: index of the port; else kNone
   std::vector<std::int32_t> devices;  ///< deliver: indices of all unloaded devices
-  double km{};                        ///< distance since the previous order
-  double kwh{};          ///< energy since the previous order; 0 without RescueProblem::energy
+  double km{};                        ///< distance since the previous order [km]
+  double kwh{};          ///< energy since the previous order [kWh]; 0 without RescueProblem::energy
   double probability{};  ///< share of the members in which the order is carried out
 };
 

@@ -8,7 +8,8 @@
 /// shortest routes and fetches up to its capacity. It delivers at the nearest open port, or at the
 /// open port on the shortest way to another device. A later departure is never better: in each
 /// member, winds stop a ship in a cell from a fixed time on, and a ship that departs earlier also
-/// leaves each cell earlier.
+/// leaves each cell earlier. A ship that starts with devices aboard may deliver them at any open
+/// port.
 ///
 ///   for each ship: sequences of trips, extended device by device, each with the members in which
 ///   the ship still works ──> best value per set of devices ──> best disjoint sets of all ships
@@ -20,10 +21,11 @@
 ///
 /// The value of a plan is the sum of the values of its devices, so combining the ships adds no
 /// error. The search keeps only the best partial sequences and combinations, up to a max number. If
-/// this number is not exceeded, the search is exhaustive (`is_exhaustive`), and the plan is the
-/// best plan of this kind. `bound` is an upper bound of the value of every plan. For each device it
-/// assumes the earliest pickup and the earliest delivery by any ship. It assumes failure only in
-/// members whose winds reach the device's site before the end of this pickup.
+/// this number is not exceeded, the search is exhaustive (`is_exhaustive`). Without risk_averse,
+/// the plan is then the best one of this kind. `bound` is an upper bound of the value of every
+/// plan. For each device it assumes the earliest pickup and the earliest delivery by any ship. It
+/// assumes failure only in members whose winds reach the device's site before the end of this
+/// pickup.
 
 #include <cstdint>
 #include <optional>
@@ -63,15 +65,16 @@ inline constexpr int kAverseRoundsToCompare = 3;
 RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble,
                       int averse_rounds = kAverseRounds);
 
-/// Plays the orders of a plan in the members of another ensemble of the same ranch. The result has
-/// no `bound` and no `is_exhaustive`.
+/// Plays the orders of a plan in the members of an ensemble, for example of another storm. Does not
+/// set `bound`, `averse_gap` or `is_exhaustive` of the result.
+/// @param problem must contain the ships, devices and ports of the plan
 /// @param ensemble made for the sites of `problem`
 RescuePlan PlayRescue(const RescueProblem& problem, const Ensemble& ensemble,
                       const RescuePlan& plan);
 
-/// Returns a plan for comparison that follows a rule and ignores storms. The ship that is free
-/// first fetches the next device. A ship delivers at the nearest open port when it is full or when
-/// no device is left.
+/// Returns a plan for comparison that follows a rule and ignores storms. Devices are assigned one
+/// after the other, each to the ship that is free earliest. A ship delivers at the nearest open
+/// port when it is full or when no device is left.
 RescuePlan FetchInOrder(const RescueProblem& problem, const Ensemble& ensemble, FetchRule rule);
 
 /// Latest departure to fetch a device.
@@ -86,8 +89,8 @@ struct Deadline {
 };
 /// Returns, by device and probability, the latest departure of any ship that fetches this device
 /// first and brings it to the nearest open port. A ship that leaves at this time succeeds in at
-/// least this share of the members; a ship that leaves a second later does not. A ship with devices
-/// aboard delivers these first.
+/// least this share of the members. A ship that leaves a second later succeeds in less than this
+/// share. A ship with devices aboard delivers these first.
 std::vector<std::vector<Deadline>> Deadlines(const RescueProblem& problem, const Ensemble& ensemble,
                                              const std::vector<double>& probabilities);
 

@@ -8,14 +8,13 @@
 /// times as long as a straight move. (In the farm, both take one step.) A pickup and a drop-off
 /// take `handling_s` each.
 ///
-/// **When a ship fails.** A ship stops all work of its plan as soon as it is in a cell, at sea or
-/// in port, that winds of `abort_ring` have reached at any time since the start of the plan. From
-/// then on it fetches and delivers nothing. Delivered devices are safe. A device that is not
-/// delivered, even if it is aboard, takes the damage of the whole storm at its own site. A ship
-/// does not resume work after the storm, and no trip may end after the time until which the storm
-/// is known.
+/// **When a ship fails.** A ship stops all work of its plan as soon as it is in a cell that winds
+/// of `abort_ring` have reached since the start of the plan. This is also true in port. From then
+/// on it fetches and delivers nothing, and it does not resume work after the storm. Delivered
+/// devices are safe. A device that is not delivered, even if it is aboard, takes the damage of the
+/// whole storm at its own site. No trip may end after the time until which the storm is known.
 ///
-/// **Devices aboard at the start.** A ship that starts with devices aboard always gets the order to
+/// **Devices aboard at the start.** A ship that starts with devices aboard gets the order to
 /// deliver them, even if no winds are expected or if winds stop it in all members. There are two
 /// exceptions: a ship in a port stays there if winds stop it in all members, and a ship that
 /// reaches no open port gets no order. The site of these devices is the cell of the ship at the
@@ -90,8 +89,8 @@ struct RescueProblem {
   double depart_s{};          ///< earliest departure of a ship that CompareChanges adds [s]
   std::int32_t abort_ring{};  ///< ring of the ensemble whose winds stop a ship
   double exposure_damage{};   ///< share of the value per step of the ensemble and unit of |risk|
-  /// Share of the members, the worst ones, whose mean loss the plan minimizes, in (0, 1]. 0: the
-  /// plan maximizes the mean value saved over all members.
+  /// Share of the worst members, in (0, 1]. The plan minimizes their mean loss plus the cost. With
+  /// 0, the plan maximizes the mean value saved over all members minus the cost.
   double risk_averse{};
   std::optional<RescueEnergy> energy{};  ///< nullopt: energy and costs are unknown
 

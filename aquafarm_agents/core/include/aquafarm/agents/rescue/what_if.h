@@ -13,7 +13,8 @@ namespace aquafarm::agents {
 
 /// The plan for one changed input, compared with the original plan.
 struct WhatIf {
-  /// Identifier for programs: none, ships+1, ships-1, depart+3h, port_closed:2, capacity+1.
+  /// Identifier for programs, such as none, ships+1, ships-1, depart+3h, port_closed:2 or
+  /// capacity+1.
   std::string change;
   std::string text;         ///< the change in words
   bool is_possible{true};   ///< false: there is no such plan, and the numbers are not set

@@ -18,7 +18,7 @@ struct Algorithm {
   const char* summary;          ///< one line for users
   bool learns;                  ///< false: the name also selects a policy, which needs no training
   std::uint64_t default_steps;  ///< default limit of a training [farm steps]; see DefaultSteps
-  /// Returns the ObservationTypeBits that it requires with these options.
+  /// Returns the ObservationTypeBits that the algorithm requires with these options.
   /// @throws InputError if an option is wrong
   std::uint8_t (*observation_types)(const std::string& options);
   /// Creates the learner; nullptr if the algorithm cannot be trained.
@@ -34,7 +34,7 @@ struct Algorithm {
   std::unique_ptr<ShardedLearner> (*make_rank)(const EnvironmentSpec& spec, std::uint64_t seed,
                                                const std::string& options,
                                                ProcessGroup& group){nullptr};
-  /// ObservationTypeBits that the learner may read, but not the trained policy.
+  /// ObservationTypeBits that only the learner may read. The trained policy does not read them.
   std::uint8_t only_for_training{0};
 };
 

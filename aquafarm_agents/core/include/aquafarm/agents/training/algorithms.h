@@ -18,18 +18,18 @@ const std::vector<Algorithm>& Algorithms();
 /// @throws InputError "algorithm: got 'dqm', expected one of: random, …"
 const Algorithm& FindAlgorithm(const std::string& name);
 
-/// Returns the default limit of a training [farm steps]: Algorithm::default_steps. An algorithm
-/// with a table gets at least eight steps per state, rounded up to whole millions. (Measured for
-/// Q-learning, see docs/real_ranches.md; also used for SARSA.)
+/// Returns the default limit of a training [farm steps]: Algorithm::default_steps. For an algorithm
+/// with a table, the limit is at least eight steps per state, rounded up to whole millions. (This
+/// was measured for Q-learning, see docs/real_ranches.md, and is also used for SARSA.)
 std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options);
 
-/// Returns a line for users if the algorithm needs a table of at least 256 MB. It contains the size
-/// and an alternative. Returns an empty text for smaller tables and for networks.
+/// Returns a line for users if the algorithm needs a table of at least 256 MB. The line states the
+/// size and an alternative. Returns an empty text for smaller tables and for networks.
 std::string LargeTableNote(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options);
 
-/// Name that users give to let ChooseAlgorithm select the algorithm.
+/// Name with which ChooseAlgorithm selects the algorithm.
 inline constexpr const char* kAutoAlgorithm = "auto";
 
 /// Result of ChooseAlgorithm.

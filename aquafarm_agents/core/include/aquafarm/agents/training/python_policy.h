@@ -3,7 +3,8 @@
 
 /// Policies in Python: a function such as act(observations, masks) in a file, or a model of
 /// Stable-Baselines3. Each policy runs in a separate process, so that it may use any Python and any
-/// package. The process runs aquafarm_agents/scripts/serve_policy.py, which describes the messages.
+/// package. The process runs aquafarm_agents/scripts/serve_policy.py. That script describes the
+/// messages.
 
 #include <chrono>
 #include <memory>
@@ -27,8 +28,8 @@ class PolicyProcess {
 
   /// Starts the process and waits for up to 180 s until the policy is loaded.
   /// @param where FILE.py, FILE.py:FUNCTION or FILE.zip
-  /// @param answer_limit_s max time in which Act sends one array to the process, and in which it
-  ///   receives one [s]
+  /// @param answer_limit_s max time for sending one array to the process in Act, and for receiving
+  ///   one array from it [s]
   /// @throws InputError if the process cannot start or load the policy
   explicit PolicyProcess(const std::string& where, int answer_limit_s = kAnswerLimit_s);
   ~PolicyProcess();
@@ -40,9 +41,9 @@ class PolicyProcess {
 
   /// Chooses the actions of all agents.
   /// @param actions is resized to [N, S]
-  /// @throws InputError if the policy fails or returns invalid actions. If the process does not
-  ///   report the error itself, for example because it does not answer in time, the connection is
-  ///   closed, and each later call throws the same error
+  /// @throws InputError if the policy fails or returns invalid actions. If the process reports
+  ///   the error itself, Act may be called again. After any other error, such as a timeout, Act
+  ///   closes the connection, and each later call throws the same error
   void Act(const EnvironmentSpec& spec, const StepResults& results,
            std::vector<std::uint8_t>& actions);
 

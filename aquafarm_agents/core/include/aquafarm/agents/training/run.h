@@ -36,7 +36,7 @@ struct RunOptions {
   double checkpoint_period_s{30.0};
   double progress_period_s{1.0};
   std::int32_t evaluation_episodes{1000};  ///< of the greedy policy at the end; 0: no evaluation
-  std::int32_t random_episodes{100};       ///< of the policy RANDOM at the end; 0: none
+  std::int32_t random_episodes{100};       ///< of RANDOM, for comparison; 0: no comparison
   std::vector<std::string> arguments;      ///< command line, for run.json
 };
 
@@ -83,7 +83,7 @@ struct RankedRun {
 inline constexpr int kDefaultShards = 8;
 
 /// Trains, saves the policy, and evaluates it and the policy RANDOM. Errors are returned in the
-/// report.
+/// report. Without an evaluation of the policy, RANDOM is not evaluated either.
 /// @param make_environment makes the environment with all farms
 /// @param on_status called with each new status; may be empty
 /// @param stop ends the run early if set, for example by a signal handler; may be null

@@ -23,7 +23,8 @@ namespace aquafarm::agents {
 
 class RunFolder {
  public:
-  /// Opens or creates the folder, locks it and checks that it is writable.
+  /// Opens or creates the folder, locks it and checks that it is writable. Removes temporary files
+  /// that a killed process has left in it.
   /// @param resume true to resume the run in the folder, false to start a new run
   /// @throws StorageError if the folder is not writable or another process trains in it
   /// @throws InputError if `path` is empty, if the folder contains a run and `resume` is false, or

@@ -10,8 +10,8 @@
 
 namespace aquafarm::agents {
 
-/// Name of the shipped policy. It was trained on a family of ranches and plays every ranch with one
-/// ship. docs/generalist.md has its results.
+/// Name of the shipped policy. It was trained on a family of ranches, for ranches with one ship.
+/// docs/generalist.md has its results.
 inline constexpr const char* kGeneralist = "generalist";
 
 /// A policy loaded from disk, or a built-in one.
@@ -25,7 +25,8 @@ struct SavedPolicy {
 /// Finds a policy by path or name.
 /// @param where a run folder, a policy or checkpoint file, a policy in Python (FILE.py,
 ///   FILE.py:FUNCTION or FILE.zip, see python_policy.h), `generalist`, or the name of an algorithm
-///   that does not learn, such as random, planner, clairvoyant, do_nothing or fetch_by_value
+///   that does not learn, such as random, planner, clairvoyant, do_nothing or fetch_by_value. In a
+///   run folder without policy.ckpt, the newest checkpoint is used
 /// @throws InputError if there is no such policy, if its file is damaged, or if its Python process
 ///   cannot start
 SavedPolicy FindPolicy(const std::string& where);

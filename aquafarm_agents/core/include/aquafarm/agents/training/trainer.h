@@ -24,8 +24,8 @@ struct TrainerOptions {
   std::uint64_t seed{1};             ///< seed of the episodes; below kEvaluationSeedBit
   std::uint64_t episodes{};          ///< limit; 0: no limit. At least one limit is required
   std::uint64_t steps{};             ///< limit in farm steps; 0: no limit
-  double checkpoint_period_s{30.0};  ///< time between two checkpoints; does not affect results
-  double progress_period_s{1.0};     ///< time between two reports of progress
+  double checkpoint_period_s{30.0};  ///< min time between two checkpoints; no effect on results
+  double progress_period_s{1.0};     ///< min time between two reports of progress
   ProcessGroup* group{};  ///< ranks that train together; null if this process trains alone
 };
 
@@ -58,11 +58,13 @@ struct TrainingProgress {
 enum class TrainingEnd : std::uint8_t {
   kDone,         ///< a limit is reached
   kInterrupted,  ///< `stop` was set
-  kLost,         ///< the farms were lost, or came back with another scenario
-  kStorage,      ///< the run folder cannot be written
-  kDiverged,     ///< learning failed (LearnerFailed)
-  kRankLost,     ///< another rank was lost
-  kBadInput      ///< with several ranks: an InputError, for example no valid ranch of a family
+  /// The farms were lost. If this process trains alone: also after any InputError, for example if
+  /// the farms came back with another scenario.
+  kLost,
+  kStorage,   ///< the run folder cannot be written
+  kDiverged,  ///< learning failed (LearnerFailed)
+  kRankLost,  ///< another rank was lost
+  kBadInput   ///< with several ranks: an InputError, for example no valid ranch of a family
 };
 
 /// Trains a learner on an environment. Checks the limits, reports progress, and writes metrics and
@@ -80,6 +82,8 @@ class Trainer {
   /// Resumes from a checkpoint of the same run. Must be called before Run.
   /// @param path file name of the checkpoint, for error messages
   /// @throws InputError if the checkpoint is damaged or belongs to another run
+  /// @throws StorageError if the metrics file cannot be opened
+  /// @throws EnvironmentLost if the farms cannot be reached
   void Resume(const Checkpoint& checkpoint, const std::string& path);
 
   using OnProgress = std::function<void(const TrainingProgress&)>;
@@ -143,7 +147,7 @@ class Trainer {
   Clock::time_point start_;
   Clock::time_point reported_;
   Clock::time_point saved_;
-  bool is_saved_{};  ///< true if the newest checkpoint holds the present state
+  bool is_saved_{};  ///< true if the newest checkpoint contains the current state
   std::uint64_t reported_steps_{};
   double done_at_start_{};
 };

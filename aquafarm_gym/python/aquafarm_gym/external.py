@@ -147,7 +147,8 @@ def with_limit(scenario: core.Scenario, max_steps: int) -> core.Scenario:
         return scenario
     old, new = f"step_limit: {scenario.step_limit}", f"step_limit: {max_steps}"
     if scenario.yaml.count(old) != 1:
-        raise ValueError(f"scenario {scenario.name}: got no single '{old}' in its text, expected one")
+        raise ValueError(f"scenario {scenario.name}: got {scenario.yaml.count(old)} times '{old}' in "
+                         "its text, expected it once; set the step limit in the scenario file")
     return core.Scenario.parse(scenario.yaml.replace(old, new), scenario.name)
 
 

@@ -26,7 +26,8 @@ void FreeSpace::Block(cv::Rect part) {
 
 void FreeSpace::BlockLine(cv::Point2d from, cv::Point2d to, int width) {
   constexpr int kMaxSquares = 500;
-  const int count = std::clamp(static_cast<int>(cv::norm(to - from) / width), 1, kMaxSquares);
+  const int count =
+      std::clamp(static_cast<int>(std::ceil(cv::norm(to - from) / width)), 1, kMaxSquares);
   for (int i = 0; i <= count; ++i) {
     const cv::Point2d at = from + (to - from) * (double(i) / count);
     if (std::abs(at.x) > 1e5 || std::abs(at.y) > 1e5) continue;

@@ -39,7 +39,8 @@ class FreeSpace {
   /// Marks a rectangle as used. Its part outside the map is ignored.
   void Block(cv::Rect part);
 
-  /// Marks a line as used. @param width  width of the line [pixels]
+  /// Marks a line as used. A line that is longer than 500 widths has gaps.
+  /// @param width  width of the line [pixels]
   void BlockLine(cv::Point2d from, cv::Point2d to, int width);
 
   /// Returns whether a whole rectangle is on the map and free.

@@ -50,7 +50,7 @@ class GreedyDqnPolicy final : public Policy {
       if (flags[i] == 0) continue;
       const Best best = BestOf(row, LegalMask(results.legal[i], seen, options_));
       actions[i] = best.action;
-      values_[i] = best.value;
+      values_[i] = best.value / static_cast<float>(options_.reward_scale);
     }
   }
 

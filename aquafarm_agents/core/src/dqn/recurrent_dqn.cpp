@@ -72,7 +72,7 @@ class RecurrentPolicy final : public Policy {
     for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += features_) {
       const Best best = BestOf(row, LegalMask(results.legal[i], seen, options_));
       actions[i] = best.action;
-      values_[i] = best.value;
+      values_[i] = best.value / static_cast<float>(options_.reward_scale);
     }
   }
 

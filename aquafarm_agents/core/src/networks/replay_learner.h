@@ -21,7 +21,7 @@ struct ReplayLearnerOptions {
   ExplorationOptions exploration;
   double value_scale{1.0};  ///< see the constructor of Explorer
   ReplayOptions replay;
-  DeepOptions sampling;  ///< only batch_size, priority_exponent and importance_exponent
+  DeepOptions sampling;  ///< uses only batch_size, priority_exponent and importance_exponent
   std::size_t steps{1};  ///< number of later time steps that a sample needs
   std::size_t group{1};  ///< number of agents of a sample; see ReplaySampler
 };
@@ -82,7 +82,7 @@ class ReplayLearner : public Learner {
   virtual void Update() = 0;
   /// Chooses the exploratory actions. @param actions receives them, [slots]
   virtual void Choose(const StepResults& results, std::vector<std::uint8_t>& actions) = 0;
-  /// Saves the state of the derived class.
+  /// Saves the state of the derived class, and the position of `rng_`.
   virtual void SaveOwn(Checkpoint& checkpoint) const = 0;
   /// Restores the state saved by SaveOwn. @throws InputError if sections are missing or do not fit
   virtual void LoadOwn(const Checkpoint& checkpoint) = 0;

@@ -59,6 +59,37 @@ void ExpectSolves(const std::string& algorithm, const std::string& options, std:
   EXPECT_GE(progress.after, 0.98) << options;
 }
 
+/// Trains a learner, and expects that the value of its policy at the start of an episode is about
+/// the discounted return of the episode.
+void ExpectValuesInTheUnitOfRewards(const std::string& algorithm, const std::string& options,
+                                    std::uint64_t steps) {
+  const Algorithm& entry = FindAlgorithm(algorithm);
+  LocalEnvironment environment(TinyFarm(), {1, entry.observation_types(options), false, 1});
+  const auto learner = entry.make(environment.spec(), 1, options);
+  TrainerOptions trainer;
+  trainer.algorithm = algorithm;
+  trainer.steps = steps;
+  EXPECT_EQ(Trainer(environment, *learner, trainer).Run(), TrainingEnd::kDone);
+  std::string resolved;
+  const double gamma = DeepOptions::Parse(options, algorithm == "lstm_dqn", resolved).gamma;
+  const auto policy = learner->GreedyPolicy();
+  policy->Begin(1, 1);
+  std::vector<std::uint8_t> actions;
+  const StepResults* results = &environment.Reset(1);
+  policy->Act(*results, actions);
+  const double value = policy->values()[0];
+  double expected = 0.0;
+  double weight = 1.0;
+  for (int step = 0; step < 100; ++step, weight *= gamma) {
+    results = &environment.Step(actions);
+    expected += weight * double{results->rewards[0]};
+    if (results->end_reasons[0] != 0) break;
+    policy->Act(*results, actions);
+  }
+  EXPECT_GT(expected, 50.0) << "a rescue";
+  EXPECT_NEAR(value, expected, 0.2 * expected) << options;
+}
+
 std::string Resolved(const std::string& options, bool recurrent) {
   std::string resolved;
   DeepOptions::Parse(options, recurrent, resolved);
@@ -66,6 +97,12 @@ std::string Resolved(const std::string& options, bool recurrent) {
 }
 
 TEST(Dqn, SolvesATinyFarm) { ExpectSolves("dqn", kSmall, 12000); }
+
+TEST(DeepPolicies, HaveValuesInTheUnitOfTheRewards) {
+  ExpectValuesInTheUnitOfRewards("dqn", kSmall, 20000);
+  ExpectValuesInTheUnitOfRewards("dqn", kSmall + std::string("reward_scale=0.2"), 20000);
+  ExpectValuesInTheUnitOfRewards("lstm_dqn", kSmallRecurrent, 20000);
+}
 
 TEST(Dqn, SolvesItWithEachSwitchTurnedRound) {
   for (const std::string change :

@@ -20,7 +20,7 @@ nav_msgs::OccupancyGrid ValuesToGrid(const std::vector<aquafarm::agents::GreedyA
                                      const std_msgs::Header& header);
 
 /// Returns one point per entry of `moves`: float32 x, y, z [m] of the cell's centre (z is 0),
-/// float32 value (not scaled; NaN: no value), uint8 action as in ShipState.
+/// float32 value in the unit of the rewards (NaN: no value), uint8 action as in ShipState.
 sensor_msgs::PointCloud2 ValuesToPoints(const std::vector<aquafarm::agents::GreedyAction>& moves,
                                         const aquafarm::Scenario& scenario,
                                         const std_msgs::Header& header);

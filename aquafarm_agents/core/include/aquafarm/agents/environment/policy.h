@@ -25,8 +25,8 @@ class Policy {
   /// @param actions is resized to [N, S]
   virtual void Act(const StepResults& results, std::vector<std::uint8_t>& actions) = 0;
 
-  /// Returns the learned values of the states at the last Act, [N, S]: V(s) of a critic, or Q(s, a)
-  /// of the greedy action. Empty if the policy has no value estimates.
+  /// Returns the learned values of the states at the last Act, [N, S], in the unit of the rewards:
+  /// V(s) of a critic, or Q(s, a) of the greedy action. Empty if the policy has no value estimates.
   const std::vector<float>& values() const { return values_; }
 
  protected:

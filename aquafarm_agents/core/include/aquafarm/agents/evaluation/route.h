@@ -2,7 +2,7 @@
 #pragma once
 
 /// The route of ship 0 in one episode of a policy, and the policy's greedy action in each cell.
-/// Fig. 11 draws them as a coloured line and one arrow per cell.
+/// The package aquafarm_benchmark draws them like Fig. 11 of the paper.
 
 #include <atomic>
 #include <functional>
@@ -37,13 +37,12 @@ struct Route {
   /// [number of steps, agents] actions of all agents, from which the episode can be replayed
   std::vector<std::uint8_t> actions;
   EpisodeSummary result;
-  /// GreedyActions at the start of the episode, and right after the first pickup of ship 0 (empty
-  /// if there is none).
-  std::vector<GreedyAction> at_start;
-  std::vector<GreedyAction> after_pickup;
+  std::vector<GreedyAction> at_start;      ///< GreedyActions at the start of the episode
+  std::vector<GreedyAction> after_pickup;  ///< those after ship 0's first pickup; empty without one
 };
 
-/// Plays one episode of EvaluationSeed(seed) with all agents and records the route of ship 0.
+/// Plays the episode with number `episode` of EvaluationSeed(seed), in which the policy controls
+/// all agents, and records the route of ship 0.
 /// @param stop may be set by a signal handler; the route then ends early. Null if the function
 ///        cannot be stopped
 /// @throws InputError if the scenario does not support the observation types, or if the policy does
@@ -52,7 +51,8 @@ Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t o
                  const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
                  const std::atomic<bool>* stop = nullptr);
 
-/// Writes a JSON file with the chart, one entry per step, and the greedy actions.
+/// Writes a JSON file: the scenario, the result, the layout of the farm (key `chart`), an entry for
+/// each element of route.steps, the actions of all agents, and the greedy actions.
 /// @throws StorageError
 void WriteRoute(const std::string& path, const Route& route, const EnvironmentSpec& spec);
 

@@ -286,7 +286,7 @@ class FiguresTest(unittest.TestCase):
                  {"cell": [0, 0], "aboard": 0}]
         self.assertEqual([(False, [[0, 0], [1, 0]]), (True, [[1, 0], [1, 0], [0, 0]]),
                           (False, [[0, 0], [0, 0]])], route_figure.legs(steps))
-        self.assertEqual([(1, "pickup", 1), (2, "drop-off", 3)],
+        self.assertEqual([(1, "pickup", 2), (2, "drop-off", 4)],
                          route_figure.plot_route(self.axes, steps))
         for line, cells in zip(self.axes.lines, ([(0, 0), (1, 0)], [(1, 0), (0, 0)])):
             np.testing.assert_array_equal(cells, line.get_xydata()[[0, -1]])

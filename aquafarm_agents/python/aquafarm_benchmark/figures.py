@@ -429,7 +429,7 @@ def plot_loss_by_kind(axes, contestants, rows):
 def draw_repeated(path, contestants, runs, references):
     """Draws Fig. 14: the 50-episode mean return over all runs."""
     _draw_returns(
-        path, lambda ends: f"Return after the training: {_listed(contestants, ends)}",
+        path, lambda ends: f"Return at the end of the training: {_listed(contestants, ends)}",
         f"Fig. 14: repeated trainings, means of {measures.WINDOW} episodes. "
         f"{_shading(contestants, runs)}", f"{measures.WINDOW}-episode mean return",
         [(lambda axes: plot_repeated(axes, contestants, runs, references), "episode")])

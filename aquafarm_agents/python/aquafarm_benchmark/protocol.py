@@ -53,7 +53,7 @@ class Contestant:
     repeats: bool = True  # False: one run, since the result does not depend on the seed
     scenario: str = ""  # empty: that of the benchmark
     paper_row: str = ""  # key of PAPER_TABLE; empty if Table 1 has no such row
-    named_only: bool = False  # True: excluded from --algorithms all; include it by name
+    named_only: bool = False  # True: not part of --algorithms all
     command: typing.Tuple[str, ...] = ()  # program of a learner of another package; see --learner
     library: str = ""  # shared library that registers the learner; see --learner
 
@@ -70,7 +70,7 @@ class Contestant:
             options=tuple(option.format(**numbers) for option in self.options))
 
 
-# The episodes of a training run one after the other, as in §4.2. If many farms ran at the same
+# A training plays its episodes one after the other, as in §4.2 of the paper. If many farms ran at the same
 # time, all of the first recorded episodes would be exploration, and short episodes would be
 # recorded first.
 FARMS = 1
@@ -88,8 +88,8 @@ _NETWORK = ("device=cpu", "mask_blocked=true", "target_update_interval=25", "ema
             f"learning_rate=harmonic:{_FIRST_RATE}:{{last_rate}}:1")
 _TABLE_EXPLORATION = "epsilon_greedy:linear:1:0.01:0.5"
 
-# The colours of the learners and of planner are those of Okabe and Ito (2008), Color universal
-# design.
+# Q-learning, SARSA, DQN, LSTM-DQN, PPO and planner have colours of Okabe and Ito (2008), Color
+# universal design.
 _RANDOM = Contestant("random", "RANDOM", "#7f7f7f", cost=0.05, options=("actions=reachable",),
                      paper_row="random")
 _Q_LEARNING = Contestant("q_learning", "Q-learning", "#0072b2", cost=0.02,
@@ -120,7 +120,7 @@ CONTESTANTS = (
     Contestant("planner", "planner", "#009e73", learns=False, cost=0.5, episodes=100,
                repeats=False),
 )
-# Policies with which losses are compared. They take part if the scenario has money.
+# Reference policies for the money losses of the other rows; they take part if there is money.
 REFERENCES = (
     Contestant("do_nothing", "do nothing", "#aa3377", learns=False, cost=0.05, repeats=False,
                named_only=True),

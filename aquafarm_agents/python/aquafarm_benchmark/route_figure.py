@@ -232,14 +232,15 @@ def _point_along(axes, x, y, colour):
 
 
 def plot_route(axes, steps):
-    """Draws the legs of a route and numbers its stops. Returns [(number, action, step)]."""
+    """Draws the legs of a route and numbers its stops. Returns [(number, action, step)].
+    An action of step t is complete in step t + 1."""
     _plot_legs(axes, steps)
     axes.scatter(*steps[0]["cell"], s=170, facecolor="none", edgecolor="black", linewidth=1.8,
                  zorder=6, label="start")
     stops, here = [], {}
     for at, step in enumerate(steps):
         if step.get("action") in _STOPS:
-            stops.append((len(stops) + 1, _STOPS[step["action"]][1], at))
+            stops.append((len(stops) + 1, _STOPS[step["action"]][1], at + 1))
             here.setdefault(tuple(step["cell"]), []).append(len(stops))
     for cell, numbers in here.items():  # a cell may have several stops
         axes.annotate(", ".join(map(str, numbers)), cell, xytext=(-10, 0), zorder=8,

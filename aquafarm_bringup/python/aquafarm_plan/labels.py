@@ -56,7 +56,7 @@ def place(labels, points, width, height):
     """Sets the position of each label to the candidate with the lowest cost. A candidate costs more
     if the label covers symbols, routes or earlier labels, leaves the map, or is far from its point.
 
-    @param points (x, y, weight) of symbols and of samples of routes, which should stay visible
+    @param points (x, y, weight) of what should stay visible: symbols, land, and samples of lines
     @param width, height size of the map [px]
     @returns the labels
     """
@@ -85,9 +85,9 @@ def _leader(box, label):
 
 
 def _candidates(label):
-    """Yields (x, y, cost) of possible upper left corners around the anchor. Near corners are
-    cheaper. At equal distance, those to the right are the cheapest and those to the left the most
-    expensive."""
+    """Yields (x, y, cost) of the upper left corner for each possible position of the label around
+    the anchor. Near positions are cheaper. At equal distance, positions to the right are the
+    cheapest and those to the left the most expensive."""
     for ring, distance in enumerate((0, 14, 30, 50, 74)):
         for turn, angle in enumerate((0, -45, 45, 90, -90, 180, -135, 135)):
             dx, dy = math.cos(math.radians(angle)), math.sin(math.radians(angle))

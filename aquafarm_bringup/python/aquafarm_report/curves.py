@@ -47,18 +47,18 @@ def rows_of(columns, name):
 
 
 def gap_note(label, columns, player):
-    """Returns a sentence on a run whose greedy play is worse than the end of its training; empty if
-    it is not worse."""
+    """Returns a sentence if the last mean of the training is above the 95 % interval of greedy play.
+    Empty if it is not, or if one of them is unknown."""
     mean, low, high = references.mean_interval(references.column(player, "return"), player.distinct)
     means = smooth(columns["return"])[1]
     if not len(means) or math.isnan(high) or means[-1] <= high:
         return ""
     failed = sum(not float(row["success"]) for row in player.rows)
     what = (f"{failed} of {len(player.rows)} episodes end with devices at sea" if failed else
-            "it does worse")
+            "its return is lower")
     return (f"{label}: {means[-1]:.1f} at the end of the training, "
-            f"{references.text((mean, low, high))} in greedy play: without the random moves of "
-            f"training {what}; train longer.")
+            f"{references.text((mean, low, high))} in greedy play, which has no random moves: "
+            f"{what}; train longer.")
 
 
 def _library(name):
@@ -85,7 +85,7 @@ def show(labels, columns, notes=(), players=()):
 
     labels, columns: labels and metrics of the runs
     notes: sentences below the introduction
-    players: first the runs in the same order, then references. Marks show the mean returns of the
+    players: the runs in the same order, and references in between or after them. Marks show the mean returns of the
         runs in greedy play with 95 % intervals; lines show the mean returns of the references
     """
     lines = [{"label": one.label, "value": round(float(np.mean(references.column(one, "return"))), 1)}
@@ -102,7 +102,7 @@ def show(labels, columns, notes=(), players=()):
         if name == "return":
             chart.update(lines=lines, marks=marks, bend=bend(rows, lines, marks))
             if marks:
-                chart["title"] += "; at the right edge greedy play after the training, 95 % interval"
+                chart["title"] += "; at the right edge: mean of greedy play after the training, 95 % interval"
             if chart["bend"]:
                 chart["title"] += " (logarithmic below 0)"
         charts.append(chart)

@@ -52,7 +52,7 @@ struct ObservableDisaster {
   DisasterKind kind{};
   Border border{};
   std::int32_t grade{};
-  std::int32_t rings{};                           ///< number of rings, innermost first
+  std::int32_t rings{};                           ///< number; the arrays start with the innermost
   std::array<float, kMaxRings> radius{};          ///< [cells]; 0: the ring is absent
   std::array<float, kMaxRings> radius_squared{};  ///< -1 for an absent ring
   std::array<float, kMaxRings> risk{};            ///< risk inside each ring, negative
@@ -78,7 +78,7 @@ struct ObservableDisaster {
   float reach() const { return rings == 0 ? 0.0F : radius[static_cast<std::size_t>(rings - 1)]; }
 };
 
-/// Complete state of a disaster except its last bulletin.
+/// State of a disaster. The farm stores its track, issued forecasts and last bulletin separately.
 struct Disaster : ObservableDisaster {
   std::array<std::uint32_t, 4> draws{};  ///< random draws of the current block of four steps
 };
@@ -168,8 +168,9 @@ inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
   return worst;
 }
 
-/// Returns the risk that damages a device at a cell. The risk of each disaster is multiplied by the
-/// factor of its kind, and the worst product applies. It may be worse than kWorstRisk.
+/// Returns the risk of disasters that damages a device at a cell, without the risk of the sea. The
+/// risk of each disaster is multiplied by the factor of its kind, and the worst product applies. It
+/// may be worse than kWorstRisk.
 /// @param factors factors of the device's kind, indexed by DisasterKind (DamageSpec::FactorsOf)
 inline float DamagingRiskAt(const std::vector<Disaster>& disasters, Cell cell,
                             const std::array<float, kDisasterKindCount>& factors) {

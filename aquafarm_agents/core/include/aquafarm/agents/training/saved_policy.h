@@ -11,13 +11,13 @@
 namespace aquafarm::agents {
 
 /// Name of the shipped policy. It was trained on a family of ranches, for ranches with one ship.
-/// docs/generalist.md has its results.
+/// Results: docs/results/generalist.md.
 inline constexpr const char* kGeneralist = "generalist";
 
 /// A policy loaded from disk, or a built-in one.
 struct SavedPolicy {
   std::string path;       ///< source file, or the name of a built-in policy
-  Checkpoint checkpoint;  ///< contents of the file; a built-in policy has only the algorithm
+  Checkpoint checkpoint;  ///< of a policy that learns; others have only the algorithm
   std::uint8_t observation_types{};
   std::shared_ptr<PolicyProcess> process;  ///< process of a policy in Python; null for others
 };

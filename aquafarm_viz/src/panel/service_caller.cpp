@@ -10,8 +10,8 @@ constexpr std::size_t kMaxWaiting = 8;  // max number of waiting calls
 
 }  // namespace
 
-ServiceCaller::ServiceCaller(ros::NodeHandle node, double limit_s, OnAnswer on_answer)
-    : node_(std::move(node)),
+ServiceCaller::ServiceCaller(const ros::NodeHandle& node, double limit_s, OnAnswer on_answer)
+    : node_(node),
       limit_(limit_s),
       on_answer_(std::move(on_answer)),
       worker_([this] { Work(); }),

@@ -27,7 +27,7 @@ class ServiceCaller {
   /// @param limit_s time limit of each call [s]
   /// @param on_answer is called with a readable line after each call. It is called from the thread
   ///        of this object or, for a refused call, from the thread that called Call.
-  ServiceCaller(ros::NodeHandle node, double limit_s, OnAnswer on_answer);
+  ServiceCaller(const ros::NodeHandle& node, double limit_s, OnAnswer on_answer);
   ~ServiceCaller();
   ServiceCaller(const ServiceCaller&) = delete;
   ServiceCaller& operator=(const ServiceCaller&) = delete;

@@ -85,8 +85,9 @@ def show(labels, columns, notes=(), players=()):
 
     labels, columns: labels and metrics of the runs
     notes: sentences below the introduction
-    players: the runs in the same order, and references in between or after them. Marks show the mean returns of the
-        runs in greedy play with 95 % intervals; lines show the mean returns of the references
+    players: the runs in the same order, and references in between or after them. Marks show the
+        mean returns of the runs in greedy play with 95 % intervals; lines show the mean returns of
+        the references
     """
     lines = [{"label": one.label, "value": round(float(np.mean(references.column(one, "return"))), 1)}
              for one in players if one.rows and not one.is_run]

@@ -2,10 +2,18 @@
 """Shows the returns of a benchmark's contestants: interquartile means with 95 % intervals."""
 import math
 
+from aquafarm_benchmark.measures import wilson_interval
+
 from aquafarm_report import blocks
 
 _ROW = 26  # height of a row [px]
 _LEFT, _WIDTH = 170, 640  # left margin and width of the plot [px]
+
+
+def share_text(rate, sample):
+    """Returns a rate and its 95 % interval (Wilson) as "98 % [94 %, 99 %]". sample: its size"""
+    low, high = wilson_interval(round(rate * sample), sample)
+    return f"{blocks.percent(rate)} [{blocks.percent(low)}, {blocks.percent(high)}]"
 
 
 def by_return(rows):

@@ -3,10 +3,9 @@
 import dataclasses
 
 import rosbag
-from aquafarm_benchmark.measures import wilson_interval
 from aquafarm_msgs.msg import DeviceState
 
-from aquafarm_report import blocks
+from aquafarm_report import blocks, intervals
 
 KINDS = {DeviceState.TEMPORARY_BREEDING: "temporary", DeviceState.MONITORING: "monitoring",
          DeviceState.BREEDING_RELEASE: "release", DeviceState.DEEP_WATER_BREEDING: "deep water"}
@@ -77,8 +76,7 @@ def _share(count, episodes, distinct):
     the interval is the number of distinct initial states, because equal episodes are not independent."""
     rate = count / episodes
     evidence = max(1, min(distinct or episodes, episodes))
-    low, high = wilson_interval(round(rate * evidence), evidence)
-    return f"{blocks.percent(rate)} [{blocks.percent(low)}, {blocks.percent(high)}]"
+    return intervals.share_text(rate, evidence)
 
 
 def summary_table(summary):

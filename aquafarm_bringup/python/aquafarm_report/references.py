@@ -6,9 +6,8 @@ import json
 import math
 
 import numpy as np
-from aquafarm_benchmark.measures import wilson_interval
 
-from aquafarm_report import blocks, videos
+from aquafarm_report import blocks, intervals, videos
 
 REFERENCES = (("random", "RANDOM (all actions)"), ("planner", "planner"), ("clairvoyant", "clairvoyant"))
 EPISODES = 100  # a reference plays at most this many, the first ones of the runs' evaluations
@@ -85,8 +84,7 @@ def success_text(player):
     once."""
     rate = float(np.mean(column(player, "success")))
     count = max(1, min(player.distinct or 1, len(player.rows)))
-    low, high = wilson_interval(round(rate * count), count)
-    return f"{blocks.percent(rate)} [{blocks.percent(low)}, {blocks.percent(high)}]"
+    return intervals.share_text(rate, count)
 
 
 _NO_SHARE = "a return below 0 has no share"

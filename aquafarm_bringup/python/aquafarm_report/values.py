@@ -222,8 +222,8 @@ def draw(text, values, layers, results, path):
     width_in = _GAP * (columns + 0.6) + _COLUMN * columns
     near = device_relation(values, text)
     found = textwrap.wrap(headline([*zip(layers, results), *([near] if near else [])]),
-                          int(width_in / _LETTER))
-    top = _TOP + _LINE * (max(1, len(found)) - 1)
+                          int(width_in / _LETTER)) or [""]
+    top = _TOP + _LINE * (len(found) - 1)
     height_in = sum(heights) + top + _GAP * (len(heights) - 0.6)
     figure, axes = pyplot.subplots(len(heights), columns, squeeze=False,
                                    figsize=(width_in, height_in), height_ratios=heights)
@@ -251,7 +251,7 @@ def draw(text, values, layers, results, path):
                 else f"mean of {text['episodes']} episodes")
     figure.suptitle("\n".join(found), fontsize=13, weight="bold", x=0.02, y=0.99, ha="left")
     said = verdict(values, text)
-    figure.text(0.02, 1.0 - (0.1 + _LINE * max(1, len(found))) / height_in, "\n".join([
+    figure.text(0.02, 1.0 - (0.1 + _LINE * len(found)) / height_in, "\n".join([
         *([said] if said else []), f"{text['policy']} on {text['scenario']}, {episodes}"]),
         fontsize=10.5, color="0.25", va="top")
     with open_atomically(path, "wb") as file:

@@ -23,6 +23,8 @@ set(AQUAFARM_DRAWING_SOURCES
   src/draw/region.cpp
   src/draw/sea_layer.cpp
   src/draw/style.cpp
+  src/draw/words.cpp
+  src/scene/coast.cpp
   src/scene/directions.cpp
   src/scene/graticule.cpp
   src/scene/labels.cpp

@@ -112,7 +112,7 @@ class CompareBrowserTest(unittest.TestCase):
             self.assertEqual([], self.browser.execute_script(TOO_WIDE), page.name)
 
     def test_the_return_and_its_interval_are_seen_without_scrolling(self):
-        for page, words in zip(self.pages[1:], ("of the optimum", "share of the optimum")):
+        for page, words in zip(self.pages[1:], ("of clairvoyant", "share of the optimum")):
             self.show(page=page)
             seen = self.browser.execute_script("""
               return [...document.querySelectorAll("b, span, td, th")].filter(one =>
@@ -132,7 +132,7 @@ class CompareBrowserTest(unittest.TestCase):
             self.assertRegex(tile[2], r"^95 %: \[−?[\d.]+, −?[\d.]+\]$")
             self.assertRegex(tile[3], r"^success \d+ % \[\d+ %, \d+ %\]$")
             self.assertRegex(tile[5], rf"^{EPISODES} episodes, \d+ distinct$")
-        self.assertEqual("100.0 % of the optimum", tiles[-1][4])
+        self.assertEqual("100.0 % of clairvoyant", tiles[-1][4])
 
     def test_the_pointer_shows_the_value_of_every_run(self):
         self.show()

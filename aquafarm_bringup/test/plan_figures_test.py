@@ -5,11 +5,13 @@ import pathlib
 import sys
 import unittest
 
+import numpy as np
 import rostest
+from matplotlib.path import Path
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import plan_sample  # noqa: E402
-from aquafarm_plan import chart, document, figures, words  # noqa: E402
+from aquafarm_plan import chart, coast, document, figures, words  # noqa: E402
 
 
 class PlanFiguresTest(unittest.TestCase):
@@ -79,6 +81,31 @@ class PlanFiguresTest(unittest.TestCase):
         later = figures.region(plan)
         self.assertFalse([label for label in later["labels"] if "now" in label.lines[0]],
                          "no other point is called so")
+
+    def test_the_coast_is_where_it_is_and_ends_at_the_box(self):
+        box = (-800.0, -900.0, 600.0, 300.0)
+        rings = coast.rings({"latitude": 30.15, "longitude": 122.65}, 1000.0, box)
+
+        def is_land(x, y):
+            return sum(Path(ring).contains_point((x, y)) for ring in rings) % 2 == 1
+
+        self.assertTrue(is_land(-240, 15), "Hangzhou, 240 km west")
+        self.assertTrue(is_land(-180, -710), "Taiwan, 710 km south")
+        self.assertFalse(is_land(300, 0), "East China Sea")
+        self.assertFalse(is_land(0, -300), "East China Sea")
+        corners = np.concatenate(rings)
+        self.assertTrue((corners >= np.array(box[:2]) - 1e-6).all())
+        self.assertTrue((corners <= np.array(box[2:]) + 1e-6).all())
+        self.assertEqual([], coast.rings({"latitude": 40.0, "longitude": -40.0}, 1000.0, box),
+                         "open sea")
+
+    def test_the_region_has_a_coast_if_it_is_large_enough(self):
+        plan = plan_sample.sample(members=100)
+        self.assertIn("M", figures.region(plan)["coast"])
+        for point in plan["storm"]["points"]:
+            point["at"] = [0.01 * axis for axis in point["at"]]
+        plan["ensemble"]["errors"] = []
+        self.assertEqual("", figures.region(plan)["coast"], "not exact enough for a small drawing")
 
     def test_the_region_ends_soon_after_the_last_event(self):
         plan = plan_sample.sample(members=100)

@@ -326,7 +326,7 @@ void RenderVideo(Request request) {
 
 int main(int argc, char** argv) {
   Request request;
-  std::string layers{"trail,risk"};
+  std::string layers{"trail,risk,labels"};
   CLI::App app(
       "Draws steps of a recorded ranch as a picture (png, jpg), side by side if there are "
       "several,\n"

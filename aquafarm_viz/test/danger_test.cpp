@@ -45,9 +45,9 @@ disasters:
 )";
   }
 
-  std::map<Key, Marker> Draw() {
+  std::map<Key, Marker> Draw(const Trail* trail = nullptr) {
     std::map<Key, Marker> result;
-    for (const auto& marker : danger.Of(spec, state).markers) {
+    for (const auto& marker : danger.Of(spec, state, trail).markers) {
       EXPECT_TRUE(result.emplace(Key(marker.ns, marker.id), marker).second) << marker.ns;
     }
     return result;
@@ -70,9 +70,41 @@ TEST(DangerMarkers, NameTheDeviceTheRiskAndTheCentreOutsideTheFarm) {
   EXPECT_EQ(markers.at({"pointer", 0}).pose.position.y, 12000.0);
 }
 
+TEST(DangerMarkers, ExplainTheSignsThatAreOnTheMap) {
+  Scene scene;
+  Trail trail;
+  auto& ship = scene.state.ships.front();
+  ship.aboard.clear();
+  for (int i = 0; i < 3; ++i, ++ship.x) trail.Update(scene.state);
+  const auto words = [&scene](const Trail* paths) {
+    std::string result;
+    for (const auto& [key, marker] : scene.Draw(paths)) {
+      const bool is_text = key.first == "sign_legend_text" && marker.action == Marker::ADD;
+      if (is_text) result += marker.text + "|";
+    }
+    return result;
+  };
+  EXPECT_EQ(words(&trail),
+            "danger: worst to come|to the centre|pattern: at risk|dashed: empty ship|");
+  EXPECT_EQ(words(nullptr), "danger: worst to come|to the centre|pattern: at risk|");
+  scene.state.disasters[0].x = 24.0F;
+  scene.state.disasters[0].radii = {1.0F, 2.0F};
+  EXPECT_EQ(words(nullptr), "pattern: at risk|");
+  scene.state.disasters[0].steps_left = 0;
+  EXPECT_EQ(words(nullptr), "");
+}
+
+TEST(DangerMarkers, ReplaceTheLabelOfTheDevice) {
+  Scene scene;
+  const auto markers = scene.Draw();
+  EXPECT_EQ(markers.at({"device_label", 0}).action, Marker::DELETE) << "F0 is in danger";
+  EXPECT_EQ(markers.count({"device_label", 1}), 0U);
+}
+
 TEST(DangerMarkers, AreDeletedWhenTheDangerIsOver) {
   Scene scene;
-  const auto before = scene.Draw();
+  auto before = scene.Draw();
+  EXPECT_EQ(before.erase({"device_label", 0}), 1U);  // StateMarkers has the label again
   scene.state.disasters[0].steps_left = 0;
   const auto after = scene.Draw();
   ASSERT_EQ(before.size(), after.size());

@@ -102,7 +102,7 @@ TEST(DeviceLabels, AreMarkersOfDeployedDevicesOnlyIfTheLayerIsOn) {
   const auto spec = test::MakeSpec();
   auto state = test::MakeState();  // device 1 is delivered
   state.devices[2].status = aquafarm_msgs::DeviceState::ABOARD;
-  EXPECT_TRUE(In(StateMarkers(spec, state), "device_label").empty());
+  EXPECT_TRUE(In(StateMarkers(spec, state, nullptr, ParseLayers("risk")), "device_label").empty());
   const auto markers =
       In(StateMarkers(spec, state, nullptr, ParseLayers("labels")), "device_label");
   ASSERT_EQ(markers.size(), 4U);

@@ -408,18 +408,6 @@ TEST(StateMarkers, SayTheLocalTimeOfAFarmWithAPlace) {
             "2021-07-25 00:16 UTC+8 (24 Jul 16:16 UTC)  episode 12  step 17  return -42.5");
 }
 
-TEST(SpecMarkers, HaveOneLineOfTheKeyForEachSymbolOfDanger) {
-  const auto spec = test::MakeSpec();
-  std::string words;
-  for (const auto& marker : SpecMarkers(spec, false).markers) {
-    if (marker.ns == "sign_legend_text") words += marker.text + "|";
-  }
-  EXPECT_EQ(words, "device in danger|to the centre|pattern: at risk|dashed: empty ship|");
-  for (const auto& marker : SpecMarkers(spec, false, ParseLayers("none")).markers) {
-    EXPECT_NE(marker.ns, "sign_legend_text") << "without risks there are no such symbols";
-  }
-}
-
 TEST(SpecMarkers, NameTheRisksByTheirWindsIfAllAreGiven) {
   auto spec = test::MakeSpec();
   spec.disasters = {test::MakeDisaster(0, 12.0F, 12.0F)};

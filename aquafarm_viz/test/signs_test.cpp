@@ -49,12 +49,13 @@ TEST(Signs, HaveOneLineOfTheKeyEach) {
   const Fonts fonts(layout.unit);
   for (const Sign sign : signs) {
     EXPECT_TRUE(words.insert(SignWords(sign)).second) << SignWords(sign);
-    EXPECT_LE(fonts.small.Width(SignWords(sign)), (layout.panel.width - 16) / 2 - 20)
+    EXPECT_LE(fonts.small.Width(SignWords(sign)),
+              SignSpan(sign) * (layout.panel.width - 16) / 2 - 20)
         << SignWords(sign) << " fits";
   }
-  EXPECT_EQ(words, (std::set<std::string>{"at risk", "first hit", "in danger", "in port", "loaded",
-                                          "empty", "to centre", "heading", "legal move", "sensors",
-                                          "fetched"}));
+  EXPECT_EQ(words, (std::set<std::string>{"at risk", "first hit", "danger: worst to come",
+                                          "in port", "loaded", "empty", "to centre", "heading",
+                                          "legal move", "sensors", "fetched"}));
   const RiskKey key{{34, -5.0, aquafarm_msgs::DisasterState::TYPHOON}};
   EXPECT_EQ(SignsOf(spec, state, overlays, outlook, key, layout).size() + 1, signs.size())
       << "the key of risks shows the pattern";

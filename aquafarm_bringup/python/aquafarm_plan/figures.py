@@ -4,6 +4,7 @@ timeline and the curve of losses."""
 import datetime
 import math
 
+from . import coast
 from .chart import nice, samples, svg_path
 from .document import Clock, amount, parse_time
 from .labels import Label, place, shorten
@@ -12,15 +13,15 @@ from .words import compass, is_unknown, letter, numbered_name, order_text
 REGION = 330.0  # side of the drawing of the region [px]
 REGION_LABELS = 4  # max number of positions of the storm with a label
 LINE = (1100.0, 104.0)  # width and left margin of the timeline [px]
-HAZARD_HEIGHT, ROW, AXIS = 62.0, 27.0, 48.0  # heights in the timeline [px]
+TOP, HAZARD_HEIGHT, ROW, AXIS = 22.0, 62.0, 27.0, 48.0  # heights in the timeline [px]
 NEAREST_H = 72  # the timeline includes a closest approach within this time [h]
 CURVE = (520.0, 270.0, 58.0, 44.0)  # width, height, left and lower margin of the loss curve [px]
 
 
 def region(plan):
     """Returns the data of the drawing of the region, in pixels: the storm's track, the forecast
-    error, and the rings at the future position nearest to the ranch. None if no position of the
-    storm is known."""
+    error, the rings at the future position nearest to the ranch, and the coast. None if no position
+    of the storm is known."""
     clock, ranch = Clock(plan["clock"]), plan["ranch"]
     cell_km = ranch["cell_size_m"] / 1000
     middle = [(ranch["width"] - 1) / 2, (ranch["height"] - 1) / 2]
@@ -39,10 +40,11 @@ def region(plan):
     side = 1.06 * max(1.5 * (east - west), north - south)
     scale = REGION / side
 
+    # There is more space to the right of the track, where most labels are.
+    left, top = west - 0.25 * (side - east + west), (south + north + side) / 2
+
     def px(x, y):
-        # There is more space to the right of the track, where most labels are.
-        left = 0.25 * (side - east + west)
-        return (x - west + left) * scale, ((south + north + side) / 2 - y) * scale
+        return (x - left) * scale, (top - y) * scale
 
     drawn = [{
         "xy": px(*p["at"]), "source": p["source"], "time": clock.day_time(p["time"]),
@@ -55,6 +57,11 @@ def region(plan):
         source: svg_path([px(*p["at"]) for p in part]) for source, part in _parts(points)
         if len(part) > 1
     }
+    rim = 0.02 * side  # the clipped outline is outside the drawing
+    land = coast.rings(
+        ranch["origin"], ranch["cell_size_m"],
+        (left - rim, top - side - rim, left + side + rim, top + rim)) \
+        if side * cell_km >= coast.LEAST_KM else []
     corner = px(-0.5, ranch["height"] - 0.5)
     box = {
         "x": corner[0], "y": corner[1], "w": max(ranch["width"] * scale, 5),
@@ -63,7 +70,8 @@ def region(plan):
     return {
         "side": REGION, "points": _apart(drawn, 10.0), "lines": lines, "rings": rings, "scale_bar": bar,
         "cone": _cone(errors, px, scale / cell_km), "ranch": box, "caption": caption,
-        "labels": _region_labels(plan, drawn, rings, box)
+        "labels": _region_labels(plan, drawn, rings, box),
+        "coast": "".join(svg_path([px(*corner) for corner in ring], True) for ring in land)
     }
 
 
@@ -183,24 +191,24 @@ def timeline(plan):
     curves = []
     for i, ring in enumerate(plan["rings"]):
         points = [(x_of(clock.seconds(one["time"])),
-                   HAZARD_HEIGHT * (1 - one["probability"][i]) + 8)
+                   HAZARD_HEIGHT * (1 - one["probability"][i]) + TOP)
                   for one in shown_hazard(plan) if 0 <= clock.seconds(one["time"]) <= end]
         if points:
-            base = HAZARD_HEIGHT + 8
+            base = HAZARD_HEIGHT + TOP
             curves.append({
                 "name": ring["name"], "line": svg_path(points), "ring": i,
                 "area": svg_path([(points[0][0], base), *points, (points[-1][0], base)], True)
             })
     rows = [
-        _row(plan, route, clock, x_of, HAZARD_HEIGHT + 22 + i * ROW)
+        _row(plan, route, clock, x_of, TOP + HAZARD_HEIGHT + 14 + i * ROW)
         for i, route in enumerate(plan["plan"]["routes"])
     ]
-    height = HAZARD_HEIGHT + 22 + max(len(rows), 1) * ROW + AXIS
+    height = TOP + HAZARD_HEIGHT + 14 + max(len(rows), 1) * ROW + AXIS
     last = plan["deadlines"]["no_departure_after"]
     _name_ends(plan, rows, clock, x_of(clock.seconds(last)) if last else width - 26)
     return {
-        "width": width, "height": height, "left": left, "right": width - 26, "top": 8,
-        "base": HAZARD_HEIGHT + 8, "axis": height - AXIS, "curves": curves, "rows": rows,
+        "width": width, "height": height, "left": left, "right": width - 26, "top": TOP,
+        "base": HAZARD_HEIGHT + TOP, "axis": height - AXIS, "curves": curves, "rows": rows,
         "ticks": _time_ticks(clock, end, x_of), "dates": _dates(clock, end, x_of), "end_s": end,
         "last": {"x": x_of(clock.seconds(last)), "text": clock.time(last)} if last else None,
         "nearest": _nearest(plan, clock, end, x_of)

@@ -102,7 +102,7 @@ def share_text(player, optimum):
     if not pairs or total <= 0.0:
         return "–"
     share = sum(one for one, _ in pairs) / total
-    return _NO_SHARE if share < 0.0 else f"{blocks.percent(share, 1)} of the optimum"
+    return _NO_SHARE if share < 0.0 else f"{blocks.percent(share, 1)} of clairvoyant"
 
 
 def difference(one, other):
@@ -122,7 +122,7 @@ def _points(interval):
 
 
 def verdict(players):
-    """Returns one or two sentences on the run with the highest return: its share of the optimum,
+    """Returns one or two sentences on the run with the highest return: its share of clairvoyant's,
     and its differences from the second run and from the planner. Empty if nothing is known."""
     runs = sorted((one for one in players if one.is_run and one.rows),
                   key=lambda one: -np.mean(column(one, "return")))
@@ -157,7 +157,8 @@ def optimum_of(players):
 
 
 def show_tiles(players):
-    """Returns a tile for each player: return, success, share of the optimum, number of episodes."""
+    """Returns a tile for each player: return, its share of clairvoyant's, success, number of
+    episodes."""
     optimum = optimum_of(players)
     shown = []
     for one in players:

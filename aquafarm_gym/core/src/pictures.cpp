@@ -90,7 +90,7 @@ width, height: pixels in [160, 4096]. layers: names in LAYERS, separated by comm
 values and moves are not drawn. style: dark for screens, light for print. Use one Painter per
 farm: a picture of another episode starts the trails of the ships again.)")
       .def(py::init<py::handle, py::handle, const std::string&, const std::string&>(),
-           py::arg("width") = 800, py::arg("height") = 640, py::arg("layers") = "trail,risk",
+           py::arg("width") = 800, py::arg("height") = 640, py::arg("layers") = "trail,risk,labels",
            py::arg("style") = "dark")
       .def("draw", &Painter::Draw, py::arg("batch"), py::arg("farm") = 0,
            "Returns a picture of the present state of one farm, uint8 [height, width, 3], RGB.");

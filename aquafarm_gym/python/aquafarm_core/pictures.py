@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures of farms, drawn as ./aquafarm render and the image topic draw them.
 
-    painter = Painter(800, 640, "trail,risk")
+    painter = Painter(800, 640, "trail,risk,labels")
     painter.draw(batch, farm=0)                     # uint8 [640, 800, 3], RGB
 """
 from aquafarm_core import _native  # noqa: F401  (defines FarmBatch)

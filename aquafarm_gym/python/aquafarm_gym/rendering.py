@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 SIZE: tuple[int, int] = (800, 640)
-LAYERS: str = "trail,risk"
+LAYERS: str = "trail,risk,labels"
 STYLE: str = "dark"
 MODES: tuple[str, ...] = ("ansi", "human", "rgb_array")
 # The modes of this installation: a wheel without OpenCV cannot draw pictures.

@@ -138,10 +138,23 @@ Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style
 }
 
 // Draws one move of a path: a line, or a shorter line that is a dash of the path.
+// @param casing  added to the width on each side [design units]
 void DrawMoved(cv::Mat& map, cv::Point2d from, cv::Point2d to, bool is_dashed,
-               const cv::Scalar& color, const Layout& layout) {
+               const cv::Scalar& color, const Layout& layout, double casing = 0.0) {
   const cv::Point2d gap = (is_dashed ? 0.22 : 0.0) * (to - from);
-  DrawLine(map, from + gap, to - gap, color, layout.Px(is_dashed ? 1.8 : 3.2));
+  DrawLine(map, from + gap, to - gap, color, layout.Px((is_dashed ? 1.8 : 3.2) + 2.0 * casing));
+}
+
+// Draws a casing under the path of a ship, so that it is visible on the colours of values and where
+// it crosses other paths.
+void DrawCasing(cv::Mat& map, const ShipTrail& way, const Layout& layout) {
+  const cv::Scalar color = Bgr(Mix(layout.style->halo, layout.style->sea_south, 0.35));
+  for (std::size_t i = 1; i < way.places.size(); ++i) {
+    if (Trail::IsGap(way.places[i - 1], way.places[i])) continue;
+    const cv::Point2d from = layout.view.ToPixel(way.places[i - 1].x, way.places[i - 1].y);
+    const cv::Point2d to = layout.view.ToPixel(way.places[i].x, way.places[i].y);
+    DrawMoved(map, from, to, !way.loaded[i], color, layout, /*casing=*/1.2);
+  }
 }
 
 // Draws an arrowhead between two points of a path, in the direction of the motion.
@@ -169,6 +182,7 @@ void DrawPaths(cv::Mat& map, const FarmState& state, const Trail& paths, const L
   for (const auto& ship : state.ships) {
     const ShipTrail* way = ship.visible ? paths.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
+    DrawCasing(map, *way, layout);
     double since_head_px = 0.0;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
       const auto& from = way->places[i - 1];

@@ -60,6 +60,7 @@ struct FarmPainter::Parts {
   std::optional<std::vector<PortDirections>> directions;  // of the spec; nullopt before use
   CourseReader courses;
   cv::Mat1b land;                  // IslandCoverage of the background
+  std::vector<CoastRing> coast;    // CoastAround of the spec
   std::optional<MoveSigns> moves;  // for the layout; nullopt before the first use
   Values values;                   // values drawn in `valued`
   cv::Mat valued;                  // map of the background with V_π; empty if not drawn yet
@@ -86,6 +87,7 @@ struct FarmPainter::Parts {
     if (!wanted_sea.empty()) DrawSea(below, spec, wanted_sea, layout, fonts);
     background = fresh;
     land = IslandCoverage(spec, layout);
+    coast = CoastAround(spec);
     drawn = spec;
     sea = wanted_sea;
     return true;
@@ -178,10 +180,13 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   forecasts.courses = p.courses.Read(spec, state);
   forecasts.outlook = ComputeOutlook(spec, state, forecasts.courses);
   FreeSpace space = BlockSymbols(spec, state, forecasts.outlook, p.layout);
-  if (layers.trail && overlays.trail != nullptr) DrawPaths(map, state, *overlays.trail, p.layout);
+  const bool has_route = layers.route && overlays.route != nullptr;  // it contains the trail
+  if (layers.trail && overlays.trail != nullptr && !has_route) {
+    DrawPaths(map, state, *overlays.trail, p.layout);
+  }
   const auto marks =
       p.DrawDisasters(map, spec, state, forecasts, layers.risk, layers.values && values != nullptr);
-  if (layers.route && overlays.route != nullptr) DrawPaths(map, state, *overlays.route, p.layout);
+  if (has_route) DrawPaths(map, state, *overlays.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
   if (layers.directions) {
     if (!p.directions) p.directions = LegalDirections(spec);
@@ -192,7 +197,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   DrawDevices(map, spec, state, p.layout);
   DrawShips(map, spec, state, overlays.trail, p.layout);
   if (overlays.choice != nullptr) DrawChoice(map, spec, state, *overlays.choice, p.layout);
-  if (!DrawPanel(p.image, spec, state, overlays, values, forecasts, p.layout, p.fonts)) {
+  if (!DrawPanel(p.image, spec, state, overlays, values, forecasts, p.coast, p.layout, p.fonts)) {
     p.DrawPolicyKey(map, state, overlays, values, space);
   }
   LabelSpace labels(space, spec, p.layout);

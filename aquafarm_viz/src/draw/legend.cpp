@@ -38,10 +38,23 @@ int KeyPx(const RiskKey& key, const Layout& layout) {
 
 int SignColumns(const Layout& layout) { return layout.panel.width >= layout.Px(245.0) ? 3 : 2; }
 
+// Returns the column and row of each sign in the key. A sign that does not fit into the rest of a
+// row begins the next one.
+std::vector<cv::Point> SignCells(const std::vector<Sign>& signs, const Layout& layout) {
+  std::vector<cv::Point> cells;
+  cv::Point next;
+  for (const Sign sign : signs) {
+    if (next.x + SignSpan(sign) > SignColumns(layout)) next = {0, next.y + 1};
+    cells.push_back(next);
+    next.x += SignSpan(sign);
+  }
+  return cells;
+}
+
 int SignsPx(const std::vector<Sign>& signs, const Layout& layout) {
-  const int columns = SignColumns(layout);
-  const int rows = (static_cast<int>(signs.size()) + columns - 1) / columns;
-  return rows * layout.Px(kKeyRow) + (rows > 0 ? layout.Px(3) : 0);
+  if (signs.empty()) return 0;
+  const int rows = SignCells(signs, layout).back().y + 1;
+  return rows * layout.Px(kKeyRow) + layout.Px(3);
 }
 
 // Draws a scale bar with a round length of at most `room_px` pixels.
@@ -188,8 +201,8 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
           std::any_of(state.disasters.begin(), state.disasters.end(), IsDrawn),
       Sign::kAtRisk);
   const auto in_danger = layers.risk ? CountInDanger(outlook) : 0;
-  add(in_danger > 0, Sign::kFirstReached);
   add(in_danger > 1, Sign::kInDanger);
+  add(in_danger > 0, Sign::kFirstReached);
   add(std::any_of(state.devices.begin(), state.devices.end(),
                   [](const auto& device) {
                     return device.status == aquafarm_msgs::DeviceState::DELIVERED;
@@ -220,6 +233,8 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
   return signs;
 }
 
+int SignSpan(Sign sign) { return sign == Sign::kInDanger ? 2 : 1; }
+
 const char* SignWords(Sign sign) {
   switch (sign) {
     case Sign::kAtRisk:
@@ -227,7 +242,7 @@ const char* SignWords(Sign sign) {
     case Sign::kFirstReached:
       return "first hit";
     case Sign::kInDanger:
-      return "in danger";
+      return "danger: worst to come";
     case Sign::kDelivered:
       return "in port";
     case Sign::kFetched:
@@ -325,14 +340,15 @@ void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs, const FarmState& 
   const int left = layout.panel.x + layout.Px(10);
   const int top = layout.panel.y + layout.panel.height - FootPx(layout) - SignsPx(signs, layout);
   const int width = (layout.panel.width - layout.Px(16)) / columns;
-  for (int i = 0; i < static_cast<int>(signs.size()); ++i) {
-    const int x = left + i % columns * width;
-    const int y = top + i / columns * layout.Px(kKeyRow) + layout.Px(kKeyRow / 2);
-    const Sign sign = signs[static_cast<std::size_t>(i)];
+  const std::vector<cv::Point> cells = SignCells(signs, layout);
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    const int x = left + cells[i].x * width;
+    const int y = top + cells[i].y * layout.Px(kKeyRow) + layout.Px(kKeyRow / 2);
+    const Sign sign = signs[i];
     DrawSign(image, sign, cv::Point2d(x + layout.Px(7), y), state, layout);
-    fonts.small.Draw(image, fonts.small.Fit(SignWords(sign), width - layout.Px(22)),
-                     {x + layout.Px(20), y + fonts.small.cap_height() / 2},
-                     Bgr(layout.style->words));
+    fonts.small.Draw(
+        image, fonts.small.Fit(SignWords(sign), SignSpan(sign) * width - layout.Px(22)),
+        {x + layout.Px(20), y + fonts.small.cap_height() / 2}, Bgr(layout.style->words));
   }
 }
 

@@ -46,7 +46,7 @@ std::string FittingRingName(std::int32_t wind_kt, int width_px, const Font& font
 /// A symbol of the map that the key of signs explains.
 enum class Sign {
   kAtRisk,        ///< pattern of the rings, unless the key of risks shows it
-  kInDanger,      ///< circle around a device in danger
+  kInDanger,      ///< circle around a device in danger, in the colour of its worst ring
   kFirstReached,  ///< two circles around a device that is the first in danger
   kDelivered,     ///< small device at a port
   kFetched,       ///< outline in the former cell of a fetched device
@@ -67,6 +67,9 @@ std::vector<Sign> SignsOf(const aquafarm_msgs::FarmSpec& spec,
 
 /// Returns the text of a sign in the key.
 const char* SignWords(Sign sign);
+
+/// Returns the number of columns that a sign takes in the key.
+int SignSpan(Sign sign);
 
 /// Returns the height of the whole legend [pixels].
 int LegendPx(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout);

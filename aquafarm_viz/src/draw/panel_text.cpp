@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <opencv2/imgproc.hpp>
 #include <tuple>
 
@@ -20,112 +19,6 @@ using aquafarm_msgs::DeviceState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 using aquafarm_msgs::ShipState;
-using aquafarm_msgs::TrainingStatus;
-
-// Draws texts next to each other until the width of the line is used up.
-class Line {
- public:
-  Line(cv::Mat& image, cv::Point start, int right) : image_(image), at_(start), right_(right) {}
-
-  void Put(const Font& font, const std::string& text, Rgb color, int gap_px) {
-    if (at_.x >= right_) return;
-    at_.x += font.Draw(image_, font.Fit(text, right_ - at_.x), at_, Bgr(color)) + gap_px;
-  }
-
-  int x() const { return at_.x; }
-
- private:
-  cv::Mat& image_;
-  cv::Point at_;
-  int right_;
-};
-
-// Draws the scenario, the time, the episode and the next danger. The seed is left out if the danger
-// fits only without it. A danger that does not fit is shortened, and the other texts are cut to
-// leave space for the short form.
-void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
-             const Layout& layout, const Fonts& fonts) {
-  const int left = layout.Px(10);
-  const int right = layout.top.width - layout.Px(10);
-  const int first = layout.Px(18);
-  const std::string time = WorldTimeText(spec, state);
-  const int time_left = right - fonts.small.Width(time);
-  fonts.small.Draw(image, time, {time_left, first}, Bgr(layout.style->words));
-  const std::string name = spec.scenario_name.empty() ? "aquafarm" : spec.scenario_name;
-  fonts.title.Draw(image, fonts.title.Fit(name, time_left - left - layout.Px(10)), {left, first},
-                   Bgr(layout.style->words));
-
-  const int gap = layout.Px(14);
-  const bool is_over = state.terminated || state.truncated;
-  const std::string brief = is_over ? "" : ShortOutlookText(spec, outlook);
-  const int kept = brief.empty() ? 0 : fonts.bold.Width(brief) + gap;
-  Line line(image, {left, layout.Px(36)}, right - kept);
-  const auto pair = [&](const std::string& name_of, const std::string& value, Rgb color) {
-    line.Put(fonts.small, name_of, layout.style->faint, layout.Px(5));
-    line.Put(fonts.bold, value, color, gap);
-  };
-  pair("episode", Count(state.episode), layout.style->words);
-  pair("step", Count(state.step) + " / " + Count(std::uint64_t(std::max(0, spec.step_limit))),
-       layout.style->words);
-  pair("return", Number(state.joint_return, 1),
-       state.joint_return < 0.0F ? layout.style->bad : layout.style->good);
-  const std::string full = is_over ? "" : OutlookText(spec, state, outlook);
-  const int full_left = right - fonts.bold.Width(full);
-  const std::string seed = SeedText(state.seed);
-  const int seed_end = line.x() + fonts.small.Width("seed") + fonts.bold.Width(seed) + 2 * gap;
-  const bool gives_way = !full.empty() && line.x() <= full_left && full_left < seed_end;
-  if (!gives_way) pair("seed", seed, layout.style->faint);
-  if (state.observer >= 0)
-    pair("as seen by ship", std::to_string(state.observer), layout.style->words);
-  if (state.paused) line.Put(fonts.bold, "paused", layout.style->GradeText(2), gap);
-  if (brief.empty()) return;
-  const std::string& danger = full_left >= line.x() ? full : brief;
-  const int danger_left = std::max(left, right - fonts.bold.Width(danger));
-  fonts.bold.Draw(image, danger, {danger_left, layout.Px(36)},
-                  Bgr(IsInDanger(outlook) ? layout.style->alarm : layout.style->words));
-}
-
-void DrawRewardLine(cv::Mat& image, const FarmState& state, const Layout& layout,
-                    const Fonts& fonts) {
-  Line line(image, {layout.Px(10), layout.bottom.y + layout.Px(17)},
-            layout.bottom.width - layout.Px(10));
-  const auto color = [&layout](float value) {
-    return value == 0.0F ? layout.style->faint : value < 0 ? layout.style->bad : layout.style->good;
-  };
-  line.Put(fonts.bold, "reward", layout.style->words, layout.Px(5));
-  line.Put(fonts.bold, Signed(state.joint_reward), color(state.joint_reward), layout.Px(16));
-  for (const auto& [name, value] : RewardTermsOf(state)) {
-    if (value == 0.0F && name == "energy") continue;  // most scenarios do not model energy
-    line.Put(fonts.small, name, value == 0.0F ? layout.style->faint : layout.style->words,
-             layout.Px(4));
-    if (value == 0.0F) {
-      line.Put(fonts.small, "0", layout.style->faint, layout.Px(11));
-    } else {
-      line.Put(fonts.bold, Signed(value), color(value), layout.Px(11));
-    }
-  }
-}
-
-void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layout& layout,
-                      const Fonts& fonts) {
-  Line line(image, {layout.Px(10), layout.bottom.y + layout.Px(35)},
-            layout.bottom.width - layout.Px(10));
-  const int gap = layout.Px(11);
-  const auto pair = [&](const std::string& name, const std::string& value) {
-    line.Put(fonts.small, name, layout.style->faint, layout.Px(4));
-    line.Put(fonts.small, value, layout.style->words, gap);
-  };
-  line.Put(fonts.bold, training.algorithm, layout.style->words, layout.Px(5));
-  line.Put(fonts.small, PhaseName(training.phase), layout.style->faint, gap);
-  pair("episodes",
-       Count(training.episode) + (training.episodes > 0 ? " / " + Count(training.episodes) : ""));
-  pair("mean return", Number(training.mean_return, 1));
-  pair("success", std::isfinite(training.success_rate)
-                      ? Number(100.0 * double(training.success_rate), 0) + " %"
-                      : "-");
-  if (training.steps_per_second > 0.0F) pair("steps/s", Rate(training.steps_per_second));
-  if (const auto left = Duration(training.time_left_s); !left.empty()) pair("left", left);
-}
 
 // Draws the lists of the panel from its top down to the legend.
 class Panel {
@@ -443,41 +336,11 @@ bool ListPolicy(Panel& panel, const FarmSpec& spec, const FarmState& state,
   return true;
 }
 
-void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const Fonts& fonts) {
-  if (!state.terminated && !state.truncated) return;
-  static constexpr std::array<const char*, 4> kReasons{"episode over", "all devices retrieved",
-                                                       "the disaster has ended", "step limit"};
-  const std::string text = kReasons[state.reason < kReasons.size() ? state.reason : 0U];
-  const int width = fonts.title.Width(text) + layout.Px(28);
-  const bool has_top = !layout.top.empty();  // false: the text covers a part of the map
-  const cv::Rect plate = has_top ? cv::Rect(layout.top.width - width - layout.Px(10), layout.Px(23),
-                                            width, layout.top.height - layout.Px(25))
-                                 : cv::Rect(layout.map.x + (layout.map.width - width) / 2,
-                                            layout.map.y + layout.Px(12), width, layout.Px(28));
-  const bool success = state.reason == FarmState::ALL_RETRIEVED;
-  Tint(image, plate, Bgr(success ? Rgb{0x12, 0x6b, 0x3a} : kInk), 0.92);
-  cv::rectangle(image, plate, Bgr(success ? layout.style->good : layout.style->faint), 1);
-  fonts.title.Draw(
-      image, text,
-      {plate.x + layout.Px(14), plate.y + (plate.height + fonts.title.cap_height()) / 2},
-      Bgr(kPaper));
-}
-
 }  // namespace
-
-void DrawWords(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
-               const Overlays& overlays, const Outlook& outlook, const Layout& layout,
-               const Fonts& fonts) {
-  if (layout.panel.empty()) return DrawEnd(image, state, layout, fonts);
-  DrawTop(image, spec, state, outlook, layout, fonts);
-  DrawEnd(image, state, layout, fonts);
-  DrawRewardLine(image, state, layout, fonts);
-  if (overlays.training != nullptr) DrawTrainingLine(image, *overlays.training, layout, fonts);
-}
 
 bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                const Overlays& overlays, const Values* values, const Forecasts& forecasts,
-               const Layout& layout, const Fonts& fonts) {
+               const std::vector<CoastRing>& coast, const Layout& layout, const Fonts& fonts) {
   if (layout.panel.empty()) return false;
   const RiskKey key = MakeRiskKey(state, forecasts.courses);
   const std::vector<Sign> signs = SignsOf(spec, state, overlays, forecasts.outlook, key, layout);
@@ -489,7 +352,7 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   ListDisasters(panel, spec, state, forecasts.courses, layout, std::max(3, panel.RowsLeft() - 7));
   ListShips(panel, state, layout);
   const bool has_policy = ListPolicy(panel, spec, state, overlays, values, layout);
-  DrawRegion(image, panel.Room(), spec, state, forecasts.courses, layout, fonts);
+  DrawRegion(image, panel.Room(), spec, state, forecasts.courses, coast, layout, fonts);
   return has_policy;
 }
 

@@ -47,6 +47,30 @@ struct Inset {
 
 using Outline = std::vector<cv::Point2d>;  // [pixels]
 
+// Fills the land of the region and draws its coasts.
+void DrawLand(Inset& inset, const FarmSpec& spec, const std::vector<CoastRing>& coast,
+              const Style& style) {
+  constexpr double kSmallest_m = 150e3;  // min width of the inset, because coasts are not exact
+  const cv::Point2d size(inset.image.cols / inset.px_per_cell,
+                         inset.image.rows / inset.px_per_cell);
+  if (size.x * spec.cell_size_m < kSmallest_m) return;
+  const cv::Rect2d shown(inset.middle - 0.5 * size, inset.middle + 0.5 * size);
+  std::vector<std::vector<cv::Point>> rings;
+  for (const CoastRing& ring : coast) {
+    if ((ring.box & shown).empty()) continue;
+    auto& fixed = rings.emplace_back();
+    for (const cv::Point2d& corner : ring.corners) {
+      const cv::Point at = Fixed(inset.At(corner.x, corner.y));
+      if (fixed.empty() || at != fixed.back()) fixed.push_back(at);
+    }
+  }
+  if (rings.empty()) return;
+  cv::fillPoly(inset.image, rings, Bgr(Mix(style.land, style.panel, 0.55)), cv::LINE_8,
+               kSubPixelBits);
+  cv::polylines(inset.image, rings, /*isClosed=*/true, Bgr(Mix(style.sand, style.panel, 0.35)), 1,
+                cv::LINE_AA, kSubPixelBits);
+}
+
 // Draws the rings of a disaster and adds their outlines to a list.
 void DrawRings(Inset& inset, const DisasterState& disaster, const Style& style,
                std::vector<Outline>& outlines) {
@@ -286,9 +310,11 @@ void DrawMotion(cv::Mat& image, cv::Point2d centre, int bearing_deg, FreeSpace& 
 }
 
 void DrawInset(Inset inset, const FarmSpec& spec, const FarmState& state,
-               const std::vector<Course>& courses, const Layout& layout, const Fonts& fonts) {
+               const std::vector<Course>& courses, const std::vector<CoastRing>& coast,
+               const Layout& layout, const Fonts& fonts) {
   const Style& style = *layout.style;
   inset.image.setTo(Bgr(Mix(style.sea_south, style.panel, 0.4)));
+  DrawLand(inset, spec, coast, style);
   FreeSpace space(inset.image.size());
   std::vector<Outline> rings;
   std::vector<CourseMark> marks;
@@ -327,7 +353,8 @@ void DrawInset(Inset inset, const FarmSpec& spec, const FarmState& state,
 }  // namespace
 
 void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmState& state,
-                const std::vector<Course>& courses, const Layout& layout, const Fonts& fonts) {
+                const std::vector<Course>& courses, const std::vector<CoastRing>& coast,
+                const Layout& layout, const Fonts& fonts) {
   const int row_px = layout.Px(15);
   if (room.height < 3 * row_px) return;
   double farthest_m = 0.0;
@@ -356,7 +383,7 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
     // The inset is as wide as `room`, so that labels have space next to the course.
     const cv::Rect place = cv::Rect(room.x, y, room.width, side) & cv::Rect({0, 0}, image.size());
     const cv::Rect2d part = ShownPart(spec, state, courses, farthest_m);
-    DrawInset(MakeInset(image(place), part), spec, state, courses, layout, fonts);
+    DrawInset(MakeInset(image(place), part), spec, state, courses, coast, layout, fonts);
     cv::rectangle(image, place, Bgr(layout.style->rule), 1);
     y += place.height;
   }

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/coast.h"
 #include "scene/storm_track.h"
 
 namespace aquafarm_viz {
@@ -34,16 +35,18 @@ struct RegionWords {
 RegionWords RegionText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                        const std::vector<Course>& courses);
 
-/// Draws a map of the region around the farm with the centre, the rings and the course of each
-/// disaster (IsDrawn), and writes the lines of RegionText below it. Leaves the map out if no centre
-/// is outside the farm or if `room` is too small for it. Leaves the lines out if they do not fit in
-/// addition to the map, unless they are about a known course or an arrival. Draws nothing if `room`
-/// has less than three rows. Also draws nothing if the map is left out and there is no disaster, or
-/// the course of the most urgent one is extrapolated.
+/// Draws a map of the region around the farm with its coasts, and with the centre, the rings and
+/// the course of each disaster (IsDrawn). Writes the lines of RegionText below it. Leaves the
+/// coasts out of a map less than 150 km wide, because they are not exact enough for it. Leaves the
+/// map out if no centre is outside the farm or if `room` is too small for it. Leaves the lines out
+/// if they do not fit in addition to the map, unless they are about a known course or an arrival.
+/// Draws nothing if `room` has less than three rows. Also draws nothing if the map is left out and
+/// there is no disaster, or the course of the most urgent one is extrapolated.
 /// @param room  the part of the image that may be used [pixels]
 /// @param courses  one per disaster of the state, see CourseOf
+/// @param coast  CoastAround of the farm
 void DrawRegion(cv::Mat& image, cv::Rect room, const aquafarm_msgs::FarmSpec& spec,
                 const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
-                const Layout& layout, const Fonts& fonts);
+                const std::vector<CoastRing>& coast, const Layout& layout, const Fonts& fonts);
 
 }  // namespace aquafarm_viz

@@ -16,6 +16,7 @@
 #include "aquafarm_viz/draw/map_view.h"
 #include "aquafarm_viz/draw/style.h"
 #include "aquafarm_viz/scene/directions.h"
+#include "scene/coast.h"
 #include "scene/outlook.h"
 #include "scene/storm_track.h"
 
@@ -252,10 +253,11 @@ void DrawWords(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
 /// Draws the panel: the lists, the key of a policy (its values, best moves and choice), the region,
 /// and the variable part of the legend.
 /// @param values  values for this farm; nullptr: none
+/// @param coast  CoastAround of the farm
 /// @return whether there is a policy and its key was drawn
 bool DrawPanel(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Overlays& overlays,
-               const Values* values, const Forecasts& forecasts, const Layout& layout,
-               const Fonts& fonts);
+               const Values* values, const Forecasts& forecasts,
+               const std::vector<CoastRing>& coast, const Layout& layout, const Fonts& fonts);
 
 }  // namespace aquafarm_viz

@@ -13,6 +13,7 @@
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/scene/labels.h"
+#include "markers/legend.h"
 #include "markers/maker.h"
 #include "scene/nautical.h"
 #include "scene/outlook.h"
@@ -54,8 +55,11 @@ class Labels {
  public:
   Labels(const Maker& maker, const FarmSpec& spec, const FarmState& state)
       : spec_(spec), word_(maker.word_m() / maker.cell_m()) {
-    const double half = 0.75 * maker.thing_m() / maker.cell_m();  // with circle and health bar
-    for (const auto& device : state.devices) Block(device.x, device.y, half);
+    const double half = 0.75 * maker.thing_m() / maker.cell_m();  // with the health bar
+    for (const auto& device : state.devices) {
+      const bool has_circle = device.status == DeviceState::DEPLOYED;  // perhaps, see AddCircle
+      Block(device.x, device.y, has_circle ? 1.2 * half : half);
+    }
     for (const auto& ship : state.ships) {
       const cv::Point2d at =
           ShipPlace(spec, state, ship.x, ship.y, kShipAside * maker.thing_m() / maker.cell_m());
@@ -245,6 +249,7 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     AddLeader(array, maker, "danger_label", one.id,
               labels.Leader(cv::Point2d(device.x, device.y), radius, *plate));
     labelled.insert(one.id);
+    array.markers.push_back(maker.Delete("device_label", one.id));  // the new label names it too
   }
   for (const auto& device : state.devices) {
     if (circled.count(device.id) == 0) array.markers.push_back(maker.Delete("danger", device.id));
@@ -278,7 +283,7 @@ std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, con
       const double cells = aside * maker.thing_m() / maker.cell_m();
       places.push_back(edge + (is_beside ? cv::Point2d(0.0, cells) : cv::Point2d(cells, 0.0)));
     }
-    const cv::Point2d at = labels.FirstFree(places, 0.55 * maker.thing_m() / maker.cell_m());
+    const cv::Point2d at = labels.FirstFree(places, 0.75 * maker.thing_m() / maker.cell_m());
     const double bearing = std::atan2(east, north) * 180.0 / CV_PI;
     Marker pointer = maker.Shape("pointer", disaster.id, kSignLayer, at.x, at.y, PointerOutline(),
                                  0.75 * maker.thing_m(), GradeColor(disaster.grade));
@@ -319,6 +324,15 @@ std::string OutsideText(const FarmSpec& spec, const FarmState& state,
   return others == 0 ? text : text + ", and " + std::to_string(others) + " more";
 }
 
+// Returns whether the trail of a ship has a move with nothing aboard, which is drawn dashed.
+bool HasDashes(const FarmState& state, const Trail& trail) {
+  return std::any_of(state.ships.begin(), state.ships.end(), [&trail](const auto& ship) {
+    const ShipTrail* way = ship.visible && ship.active ? trail.Find(ship.id) : nullptr;
+    return way != nullptr && way->loaded.size() > 1 &&
+           std::find(way->loaded.begin() + 1, way->loaded.end(), false) != way->loaded.end();
+  });
+}
+
 }  // namespace
 
 struct DangerMarkers::Parts {
@@ -328,7 +342,7 @@ struct DangerMarkers::Parts {
 DangerMarkers::DangerMarkers() : parts_(std::make_unique<Parts>()) {}
 DangerMarkers::~DangerMarkers() = default;
 
-MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state) {
+MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state, const Trail* trail) {
   const std::vector<Course> courses = parts_->courses.Read(spec, state);
   const Outlook outlook = ComputeOutlook(spec, state, courses);
   const Maker maker(spec, state.header);
@@ -340,6 +354,12 @@ MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state) {
   AddLines(array, maker, spec, "alarm", -1.0, is_over ? "" : OutlookText(spec, state, outlook),
            IsInDanger(outlook) ? kAlarm : kPaper);
   AddLines(array, maker, spec, "outside", 1.0, OutsideText(spec, state, courses, outside), kPaper);
+  const bool has_rings =
+      std::any_of(state.disasters.begin(), state.disasters.end(),
+                  [](const auto& disaster) { return disaster.known && disaster.steps_left > 0; });
+  AddSignLegend(array, spec,
+                {IsInDanger(outlook), !outside.empty(), has_rings,
+                 trail != nullptr && HasDashes(state, *trail)});
   return array;
 }
 

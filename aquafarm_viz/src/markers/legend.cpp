@@ -178,14 +178,17 @@ void AddLegend(MarkerArray& array, const FarmSpec& spec) {
   }
 }
 
-void AddSignLegend(MarkerArray& array, const FarmSpec& spec) {
+void AddSignLegend(MarkerArray& array, const FarmSpec& spec, const MapSigns& signs) {
   Row row(array, spec, 1, "sign_legend");
-  row.Ring();
-  row.Text("device in danger");
-  row.Pointer();
-  row.Text("to the centre");
-  row.Text("pattern: at risk");
-  row.Text("dashed: empty ship");
+  const auto text = [&row](bool is_shown, const char* words) {
+    is_shown ? row.Text(words) : row.Remove("sign_legend_text");
+  };
+  signs.circle ? row.Ring() : row.Remove("sign_legend");
+  text(signs.circle, "danger: worst to come");
+  signs.pointer ? row.Pointer() : row.Remove("sign_legend");
+  text(signs.pointer, "to the centre");
+  text(signs.pattern, "pattern: at risk");
+  text(signs.dashes, "dashed: empty ship");
 }
 
 void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& values) {

@@ -13,9 +13,18 @@ namespace aquafarm_viz {
 /// Adds a scale bar and the colours of risks, in the namespaces `legend` and `legend_text`.
 void AddLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec);
 
-/// Adds a second line, in the namespaces `sign_legend` and `sign_legend_text`: the circle around a
-/// device in danger, the pointer to a centre, and the meanings of ring patterns and dashed paths.
-void AddSignLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec);
+/// The signs that are on the map.
+struct MapSigns {
+  bool circle{};   ///< around a device in danger
+  bool pointer{};  ///< to a centre outside the farm
+  bool pattern{};  ///< of rings
+  bool dashes{};   ///< path of a ship with nothing aboard
+};
+
+/// Adds a second line with the meanings of these signs, in the namespaces `sign_legend` and
+/// `sign_legend_text`. Deletes the markers of the other signs.
+void AddSignLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec,
+                   const MapSigns& signs);
 
 /// Adds a third line, in the namespaces `value_legend` and `value_legend_text`: the range and the
 /// colours of values, and the symbols of best moves.

@@ -338,11 +338,13 @@ void AddDisasterSigns(MarkerArray& array, const Maker& maker, const FarmSpec& sp
   eye.scale.z = 0.5 * maker.layer_m();
   eye.color = Color(GradeColor(disaster.grade));
   array.markers.push_back(eye);
-  // The name is north or south of the centre, on the side without the arrow of the motion. It is
-  // outside the rings if that position is on the map.
-  const double side =
+  // The name is north or south of the centre, on the side without the arrow of the motion, unless
+  // it would be off the map there. It is outside the rings if that position is on the map.
+  double side =
       disaster.speed > 0.0F && std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1 ? 1.0 : -1.0;
   const double near = 0.9 * maker.thing_m() / maker.cell_m();
+  const double next_to = disaster.y + side * near;
+  if (next_to < 0.0 || next_to > spec.height - 1.0) side = -side;
   const double far = near + RadiusTowards(disaster, side);
   const double outside = disaster.y + side * far;
   const double aside = side * (outside > 0.0 && outside < spec.height - 1.0 ? far : near);
@@ -405,7 +407,6 @@ MarkerArray SpecMarkers(const FarmSpec& spec, bool clear, const Layers& layers) 
   if (layers.directions) AddDirections(array, maker, spec);
   AddAxes(array, maker, spec);
   AddLegend(array, spec);
-  if (layers.risk) AddSignLegend(array, spec);
   return array;
 }
 

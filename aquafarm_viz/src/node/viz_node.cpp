@@ -120,7 +120,8 @@ void VizNode::OnMarkerSubscriber(const ros::SingleSubscriberPublisher& subscribe
 
 visualization_msgs::MarkerArray VizNode::MarkersOf(const Shown& shown) {
   const auto array = StateMarkers(*shown.spec, *shown.state, &trail_, layers_);
-  return layers_.risk ? Joined(array, danger_.Of(*shown.spec, *shown.state)) : array;
+  if (!layers_.risk) return array;
+  return Joined(array, danger_.Of(*shown.spec, *shown.state, layers_.trail ? &trail_ : nullptr));
 }
 
 void VizNode::FollowValues() {

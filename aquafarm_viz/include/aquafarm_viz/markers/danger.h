@@ -10,6 +10,8 @@
 ///     | danger           | device   | circle around a device that a ring covers or reaches   |
 ///     | danger_label (1) | device   | the ring over the device now, and the worst one ahead  |
 ///     | pointer          | disaster | triangle at the edge, towards a centre outside         |
+///     | sign_legend,     | 0, 1, …  | meanings of the signs on the map, one sequence         |
+///     | sign_legend_text |          |                                                        |
 ///
 /// A label lies on a dark plate, which has the namespace `danger_label_plate`. If a label is not
 /// next to its device, a line of the namespace `danger_label_leader` connects them, unless the line
@@ -24,6 +26,8 @@
 
 #include <memory>
 
+#include "aquafarm_viz/scene/trail.h"
+
 namespace aquafarm_viz {
 
 /// Makes the markers of one farm. Caches the storm tracks of the last scenario.
@@ -33,9 +37,12 @@ class DangerMarkers {
   ~DangerMarkers();
 
   /// Returns a marker for each id of the table. A marker without content has the action DELETE.
+  /// Deletes the labels of StateMarkers (`device_label`) that danger labels replace.
   /// The spec must pass CheckSpec and the state CheckState.
+  /// @param trail  trails that StateMarkers draws; nullptr: none
   visualization_msgs::MarkerArray Of(const aquafarm_msgs::FarmSpec& spec,
-                                     const aquafarm_msgs::FarmState& state);
+                                     const aquafarm_msgs::FarmState& state,
+                                     const Trail* trail = nullptr);
 
  private:
   struct Parts;

@@ -11,12 +11,11 @@
 ///     | sea, island, shore, rocks       | 0                          |
 ///     | axis                            | 0, 1, …: ticks and names   |
 ///     | legend, legend_text             | 0, 1, …: one sequence      |
-///     | sign_legend, sign_legend_text (4) | 0, 1, …: one sequence    |
 ///     | port, port_letter               | port                       |
 ///     | device, health, health_frame    | device                     |
 ///     | fetched (outline in former cell) | device                    |
 ///     | ship, ship_deck, ship_name      | ship                       |
-///     | path (5)                        | ship                       |
+///     | path (4)                        | ship                       |
 ///     | ring, ring_edge                 | disaster * kMaxRings + ring |
 ///     | ring_pattern                    | disaster                   |
 ///     | heading, disaster (3)           | disaster                   |
@@ -27,7 +26,7 @@
 ///
 /// (1) Only with the layer `directions`. (2) Only with the layer `labels`. (3) With the layer
 /// `risk`, only if the centre lies on the farm; DangerMarkers then have pointers to the other
-/// centres. (4) Only with the layer `risk`. (5) Only with the layer `trail`. Other layers have no
+/// centres. (4) Only with the layer `trail`. Other layers have no
 /// effect.
 
 #include <aquafarm_msgs/FarmSpec.h>

@@ -16,7 +16,7 @@ struct Layers {
   bool values{};      ///< V_π of each cell, if a policy publishes it
   bool moves{};       ///< greedy actions of the policy, see ShownActions
   bool directions{};  ///< arrows of the legal moves at each port (Fig. 5)
-  bool labels{};      ///< F and the id of deployed devices (Fig. 5); pictures: also of fetched ones
+  bool labels{true};  ///< F and the id of deployed devices (Fig. 5); pictures: also of fetched ones
   std::string sea{};  ///< sea layer of the scenario, drawn below all others; empty: none
 };
 

@@ -179,7 +179,13 @@ class FiguresTest(unittest.TestCase):
         axes, = self.drawn(figures.draw_repeated, self.contestants, self.runs, {}).axes
         self.assertEqual("linear", axes.get_yscale())
         self.assertLess(axes.get_ylim()[1], 0.0)
-        self.assertEqual({"SARSA", "LSTM-DQN"}, self.names_of(axes))
+        ends = {one.label: np.median([run["curve"]["return"][-WINDOW:].mean()
+                                      for run in self.runs[one.name]]) for one in self.contestants}
+        self.assertEqual({f"{name} −{-value:.0f}" for name, value in ends.items()},
+                         {name.replace(figures._NBSP, " ") for name in self.names_of(axes)})
+        self.assertEqual(f"LSTM-DQN has the highest return at the end of the training: "
+                         f"−{-ends['LSTM-DQN']:.0f}",
+                         " ".join(axes.figure._suptitle.get_text().split()))
 
     def test_almost_equal_references_share_one_line(self):
         ends = figures._plot_references(self.axes, {"planner": 276.0, "clairvoyant": 277.6, "x": 5.0}, 9)
@@ -212,11 +218,31 @@ class FiguresTest(unittest.TestCase):
         figure = self.drawn(figures.draw_mean_score, self.contestants, self.runs,
                             {"clairvoyant": 5.1})
         self.assertEqual(1, len({axes.get_ylim() for axes in figure.axes}), "one scale")
-        self.assertEqual([{"clairvoyant"}, {"clairvoyant"},
-                          {"SARSA", "LSTM-DQN", "clairvoyant 5.10"}],
-                         [self.names_of(axes) for axes in figure.axes])
+        first, second, both = [self.names_of(axes) for axes in figure.axes]
+        self.assertEqual([{"clairvoyant"}, {"clairvoyant"}], [first, second])
+        self.assertEqual({"SARSA", "LSTM-DQN", "clairvoyant"},
+                         {name.replace(figures._NBSP, " ").split()[0] for name in both})
         panels = [set(self.lines(axes)) for axes in figure.axes]
         self.assertEqual([{"LSTM-DQN"}, {"SARSA"}, {"SARSA", "LSTM-DQN"}], panels)
+
+    def test_fig_12a_marks_where_a_learner_reaches_90_percent_and_ends_with_the_last_learner(self):
+        rising = np.array([-100.0] * 50 + [100.0] * 100)
+        self.runs["sarsa"] = [{"curve": {"return": rising, "steps": np.full(150, 10)}}]
+        self.runs["lstm_dqn"] = [{"curve": {"return": np.zeros(150), "steps": np.full(150, 8)}}]
+        random = next(one for one in CONTESTANTS if one.name == "random")
+        for steps, has_random in ((20, True), (2000, False)):
+            self.runs["random"] = [{"curve": {"return": np.full(150, -900.0),
+                                              "steps": np.full(150, steps)}}]
+            _, axes = style.plt.subplots()
+            ends = figures.plot_rewards_by_steps(axes, [*self.contestants, random], self.runs,
+                                                 {"clairvoyant": 100.0})
+            self.assertEqual({"SARSA 980", "90 %"}, {text.get_text() for text in axes.texts})
+            lines = self.lines(axes)
+            self.assertEqual(has_random, "RANDOM" in lines)
+            self.assertEqual({"LSTM-DQN", "clairvoyant 100"} | ({"RANDOM"} if has_random else set()),
+                             {name for _, _, _, name in ends})
+            if has_random:
+                self.assertLessEqual(lines["RANDOM"][0].max(), 1500, "SARSA ends there")
 
     def test_the_headline_of_fig_12a_has_the_steps_until_90_percent_of_the_reference(self):
         learnt = {"return": np.array([-100.0] * 50 + [100.0] * 100), "steps": np.full(150, 10)}
@@ -286,8 +312,9 @@ class FiguresTest(unittest.TestCase):
                  {"cell": [0, 0], "aboard": 0}]
         self.assertEqual([(False, [[0, 0], [1, 0]]), (True, [[1, 0], [1, 0], [0, 0]]),
                           (False, [[0, 0], [0, 0]])], route_figure.legs(steps))
-        self.assertEqual([(1, "pickup", 2), (2, "drop-off", 4)],
-                         route_figure.plot_route(self.axes, steps))
+        names = route_figure.place_names({"devices": [{"cell": [1, 0]}], "ports": [[5, 5], [0, 0]]})
+        self.assertEqual([(1, "pickup", "F0", 2), (2, "drop-off", "B", 4)],
+                         route_figure.plot_route(self.axes, steps, names))
         for line, cells in zip(self.axes.lines, ([(0, 0), (1, 0)], [(1, 0), (0, 0)])):
             np.testing.assert_array_equal(cells, line.get_xydata()[[0, -1]])
         self.assertEqual({"1": (1, 0), "2": (0, 0)},
@@ -324,12 +351,13 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual([[0, 0]], marks["ship at the end"])
         lines = self.lines()
         self.assertIn("ring of a disaster in the last step", lines)
+        self.assertNotIn("rings 60 and 120 steps before", lines, "the episode has 3 steps")
         last, = (one for one in self.axes.collections if isinstance(one, LineCollection))
         self.assertIn("last leg, a device aboard", last.get_label())
         np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
         np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
         self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
-                         "time limit at step 3, last stop at 1",
+                         "time limit at step 3, last pickup at 1",
                          self.axes.get_title("left"))
         low, high = self.axes.get_ylim()
         self.assertEqual(8.7, self.axes.get_xlim()[1], "the scale of the largest ranch")

@@ -11,7 +11,7 @@ import unittest
 import numpy as np
 import rosunit
 
-from aquafarm_benchmark import figures, losses, results
+from aquafarm_benchmark import loss_figures, losses, results
 from aquafarm_benchmark.protocol import CONTESTANTS, REFERENCES
 
 
@@ -31,8 +31,8 @@ class LossesTest(unittest.TestCase):
 
     def setUp(self):
         self.rng = np.random.Generator(np.random.PCG64(3))
-        _, self.axes = figures.plt.subplots()
-        self.addCleanup(figures.plt.close, "all")
+        _, self.axes = loss_figures.plt.subplots()
+        self.addCleanup(loss_figures.plt.close, "all")
 
     def test_the_tail_follows_its_definition(self):
         for _ in range(100):
@@ -80,7 +80,7 @@ class LossesTest(unittest.TestCase):
 
     def test_curves_show_the_probability_of_a_larger_loss(self):
         samples, rows = self.rows()
-        figures.plot_exceedance(self.axes, REFERENCES, rows)
+        loss_figures.plot_exceedance(self.axes, REFERENCES, rows)
         lines = {line.get_label(): line for line in self.axes.lines}
         for one, sample in zip(REFERENCES, samples):
             x, y = (np.asarray(values) for values in lines[one.label].get_data())
@@ -93,7 +93,7 @@ class LossesTest(unittest.TestCase):
 
     def test_bars_show_the_loss_by_kind(self):
         samples, rows = self.rows()
-        figures.plot_loss_by_kind(self.axes, REFERENCES, rows)
+        loss_figures.plot_loss_by_kind(self.axes, REFERENCES, rows)
         heights = [bar.get_height() for bar in self.axes.patches]
         expected = [value for sample in samples for value in (0.0, sample.mean())]
         np.testing.assert_allclose(expected, heights)

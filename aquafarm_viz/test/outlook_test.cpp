@@ -74,7 +74,7 @@ TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
   scene.spec.has_start_time = true;
   scene.spec.step_duration_s = 1800.0;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, risk -5, reaches F3 in 5.0 h, Thu 05:51 UTC")
+            "typhoon, risk -5, reaches F3 in 5.0 h (Thu 05:51)")
       << "5 h after the state's time, 0 h 51 min";
   scene.spec.has_start_time = false;
   scene.spec.step_duration_s = 0.0;
@@ -316,7 +316,7 @@ TEST(Outlook, SaysUntilWhenItIsKnown) {
   scene.state.disasters[0].x = 212.0F;  // it arrives after the 60 steps of an extrapolated course
   EXPECT_FALSE(IsInDanger(scene.outlook()));
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "no danger to devices known until +3.0 h");
+            "no known danger to devices until +3.0 h");
   scene.state.disasters[0].steps_left = 60;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "");
 }

@@ -6,9 +6,9 @@ Each function draw_… creates a figure and saves it. The functions plot_… dra
 import numpy as np
 from matplotlib import ticker
 
-from aquafarm_benchmark import losses, measures
-from aquafarm_benchmark.style import (explain, label_axes, legible, name_ends, number, plt, save,
-                                      shade, write_note)
+from aquafarm_benchmark import measures
+from aquafarm_benchmark.style import (explain, label_axes, legible, line_style, name_ends, number,
+                                      plt, save, shade, write_note)
 
 _NBSP = "\N{NO-BREAK SPACE}"
 _REACHED = 0.9  # a learner has learnt once it reaches this fraction of the best reference
@@ -19,12 +19,23 @@ def _learners(contestants):
     return [one for one in contestants if one.name != "random"]
 
 
-def _listed(contestants, ends, digits=0):
-    """Returns the learners except RANDOM with the last values of their lines, the highest first:
-    "DQN 271, PPO 259"."""
+def _highest(contestants, ends, what, digits=0):
+    """Returns the headline of a chart: "DQN has the highest return: 271". The last values of the
+    lines of the learners are compared; RANDOM is left out."""
     learners = {one.label for one in _learners(contestants)}
     last = sorted(((y, name) for _, y, _, name in ends if name in learners), reverse=True)
-    return ", ".join(f"{name}{_NBSP}{number(y, digits)}" for y, name in last)
+    if not last:
+        return what.capitalize()
+    value, name = last[0]
+    return (f"{name} has the highest {what}: {number(value, digits)}" if len(last) > 1 else
+            f"{name}: {what} {number(value, digits)}")
+
+
+def _with_values(contestants, ends, digits=0):
+    """Returns the ends of lines with the last values of the contestants in their names: "DQN 271"."""
+    labels = {one.label for one in contestants}
+    return [(x, y, colour, f"{name}{_NBSP}{number(y, digits)}" if name in labels else name)
+            for x, y, colour, name in ends]
 
 
 def _shading(contestants, runs):
@@ -69,7 +80,7 @@ def _scale_returns(axes):
     return "\n(logarithmic below 0)"
 
 
-def _draw_returns(path, find, note, ylabel, plots):
+def _draw_returns(path, contestants, find, note, ylabel, plots):
     """Draws charts of returns, one below the other, on the scale of _scale_returns. Lines are named
     at their right end.
 
@@ -85,7 +96,7 @@ def _draw_returns(path, find, note, ylabel, plots):
     for axes, ends, xlabel in charts:
         label_axes(axes, "", ylabel + _scale_returns(axes), xlabel)
         axes.yaxis.set_major_formatter(lambda value, _: number(value))
-        name_ends(axes, ends)
+        name_ends(axes, _with_values(contestants, ends))
     save(figure, path)
 
 
@@ -107,11 +118,6 @@ def _plot_references(axes, references, end, digits=0):
     return ends
 
 
-def _line_style(one):
-    """Returns matplotlib's options for the line of a contestant."""
-    return {"color": one.colour, "linestyle": one.linestyle}
-
-
 def _count(contestants, runs):
     """Returns the number of runs that most contestants have."""
     counts = [len(runs[one.name]) for one in contestants]
@@ -124,22 +130,47 @@ def _plot_one_run(axes, one, curve, x):
     x: position of each episode on the x axis
     """
     episodes, means = _smooth(curve["return"])
-    axes.plot(x[episodes - 1], means, linewidth=1.2, **_line_style(one), label=one.label)
+    axes.plot(x[episodes - 1], means, linewidth=1.2, **line_style(one), label=one.label)
     return x[episodes[-1] - 1], means[-1], one.colour, one.label
 
 
 def _mark_reached(axes, references):
-    """Draws a dotted line at the return to which the headline of Fig. 12a refers."""
+    """Draws a dotted line at the return to which the headline of Fig. 12a refers. Returns this
+    return; infinite without a positive reference."""
     target = _REACHED * max(references.values(), default=0.0)
-    if target > 0.0:
-        axes.axhline(target, color="black", linestyle=":", linewidth=1.2, label="_reached")
-        axes.text(0.99, target, f"{100 * _REACHED:.0f} %", fontsize=9.5,
-                  transform=axes.get_yaxis_transform(), va="top", ha="right")
+    if target <= 0.0:
+        return np.inf
+    axes.axhline(target, color="black", linestyle=":", linewidth=1.2, label="_reached")
+    axes.text(0.99, target, f"{100 * _REACHED:.0f} %", fontsize=9.5,
+              transform=axes.get_yaxis_transform(), va="top", ha="right")
+    return target
+
+
+def _name_rises(axes, ends, target):
+    """Marks where lines reach a return, and writes each name along its rise, with the number of
+    steps. Returns the ends of the other lines, which have no name yet."""
+    others = []
+    for end in ends:
+        line, = (one for one in axes.lines if one.get_label() == end[3])
+        x, y = line.get_data()
+        if not (y >= target).any():
+            others.append(end)
+            continue
+        reached = np.argmax(y >= target)
+        steps, low = x[reached], 0.4 * target
+        # The name is to the right of the last point of the rise that is lower than the name.
+        start = x[np.flatnonzero(np.append(True, y[:reached] < low))[-1]]
+        axes.plot(steps, target, "o", color=end[2], markersize=5, zorder=5, label="_reached")
+        axes.annotate(f"{end[3]} {_steps_text(float(f'{steps:.2g}'))}",
+                      (start, low), xytext=(5, 0),
+                      textcoords="offset points", rotation=90, va="center", ha="left",
+                      color=legible(end[2]), fontsize=10)
+    return others
 
 
 def plot_rewards_by_steps(axes, contestants, runs, references):
     """Plots Fig. 12a: the 50-episode mean return of the first run by time steps taken so far.
-    Returns the ends of the lines."""
+    Returns the ends of the lines that have no name yet."""
     ends = []
     for one in contestants:
         curve = runs[one.name][0]["curve"]
@@ -148,8 +179,29 @@ def plot_rewards_by_steps(axes, contestants, runs, references):
     axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter(lambda value, _: _steps_text(value))
     axes.xaxis.set_minor_formatter(ticker.NullFormatter())
-    _mark_reached(axes, references)
-    return ends + _plot_references(axes, references, max(end[0] for end in ends))
+    # RANDOM takes most steps; the chart ends where the last learner ends.
+    learners = {one.label for one in _learners(contestants)}
+    last = max((x for x, _, _, name in ends if name in learners), default=np.inf)
+    ends = [end for end in (_cut(axes, end, last) for end in ends) if end]
+    axes.relim()
+    axes.autoscale_view()
+    ends = _name_rises(axes, ends, _mark_reached(axes, references))
+    return ends + _plot_references(axes, references, axes.get_xlim()[1])
+
+
+def _cut(axes, end, last):
+    """Cuts the line with this end at x = last. Returns its new end; None if nothing is left, and
+    removes the line."""
+    if end[0] <= last:
+        return end
+    line, = (one for one in axes.lines if one.get_label() == end[3])
+    x, y = line.get_data()
+    shown = x <= last
+    if not shown.any():
+        line.remove()
+        return None
+    line.set_data(x[shown], y[shown])
+    return x[shown][-1], y[shown][-1], *end[2:]
 
 
 def _steps_text(value):
@@ -171,8 +223,8 @@ def draw_rewards(path, contestants, runs, references):
     """Draws Fig. 12a, and below it the same data by episodes."""
     data = (contestants, runs, references)
     _draw_returns(
-        path, lambda ends: _learning_times(contestants, runs, references) or
-        f"Return at the end of the training: {_listed(contestants, ends)}",
+        path, contestants, lambda ends: _learning_times(contestants, runs, references) or
+        _highest(contestants, ends, "return at the end of the training"),
         f"Fig. 12a: the first run of each learner, means of {measures.WINDOW} episodes.",
         f"{measures.WINDOW}-episode mean return", [
             (lambda axes: plot_rewards_by_steps(axes, *data), "time steps so far (logarithmic)"),
@@ -201,7 +253,8 @@ def _learning_times(contestants, runs, references):
 def draw_average_rewards(path, contestants, runs, references):
     """Draws Fig. 12b: the mean return of all episodes so far, over all runs."""
     _draw_returns(
-        path, lambda ends: f"Mean return of all episodes: {_listed(contestants, ends)}",
+        path, contestants,
+        lambda ends: _highest(contestants, ends, "mean return of all episodes"),
         f"Fig. 12b: mean return of all episodes so far. {_shading(contestants, runs)}",
         "mean return so far",
         [(lambda axes: plot_average_rewards(axes, contestants, runs, references), "episode")])
@@ -283,7 +336,7 @@ def plot_square_error(axes, contestants, runs):
             continue
         logs = np.log(smooth[:, known])
         low, median, high = np.exp(np.quantile(logs, (0.0, 0.5, 1.0), axis=0))
-        axes.plot(episodes[known], median, **_line_style(one), linewidth=2.2, label=one.label)
+        axes.plot(episodes[known], median, **line_style(one), linewidth=2.2, label=one.label)
         if len(smooth) > 1:
             shade(axes, episodes[known], low, high, one.colour)
         ends.append((episodes[known][-1], float(median[-1]), one.colour, one.label))
@@ -311,10 +364,11 @@ def draw_mean_score(path, contestants, runs, references):
         label_axes(all_axes[letter], f"{whose} (Fig. 13{letter})", "return per step")
         limits = None if letter == "c" else all_axes["c"].get_ylim()
         ends = plot_mean_score(all_axes[letter], panel, runs, references, limits)
+        all_axes[letter].margins(x=0.0)
         if letter == "c":  # in the other panels the title names the line
-            explain(figure, f"Return per step at the end: {_listed(contestants, ends, digits=1)}",
+            explain(figure, _highest(contestants, ends, "return per step at the end", digits=1),
                     f"Fig. 13: means of {measures.WINDOW} episodes. {_shading(contestants, runs)}")
-            name_ends(all_axes[letter], ends)
+            name_ends(all_axes[letter], _with_values(contestants, ends, digits=1))
         for name, value in references.items():
             if letter != "c":
                 all_axes[letter].annotate(name, (0.99, value), xytext=(0, -3), va="top", ha="right",
@@ -378,58 +432,11 @@ def plot_evaluation(axes, contestants, rows):
     axes.set_xticks(range(len(contestants)), [one.label for one in contestants], rotation=15)
 
 
-def draw_losses(path, contestants, rows):
-    """Draws the exceedance curves of the losses, and next to them the mean loss by kind of
-    device."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(13, 4.5), layout="constrained")
-    unit = next(row["money"]["currency"] for row in rows if row["money"])
-    label_axes(left, "Exceedance of losses", "probability of a larger loss", f"loss x [{unit}]")
-    plot_exceedance(left, contestants, rows)
-    label_axes(right, "Mean loss by kind of device", f"loss per episode [{unit}]", "")
-    plot_loss_by_kind(right, contestants, rows)
-    save(figure, path)
-
-
-def _with_money(contestants, rows):
-    by_name = {row["name"]: row["money"] for row in rows}
-    return [(one, by_name[one.name]) for one in contestants if by_name.get(one.name)]
-
-
-def plot_exceedance(axes, contestants, rows):
-    """Plots P(loss > x) by x for each contestant, as a step curve from x = 0. A mark on the 5 %
-    line shows the CVaR."""
-    for one, money in _with_money(contestants, rows):
-        x, probability = money["exceedance"]
-        axes.step([0.0, *x], [1.0 if x[0] > 0.0 else probability[0], *probability], where="post",
-                  label=one.label, **_line_style(one))
-        axes.plot(money["cvar"], losses.TAIL, marker="v", color=one.colour)
-    axes.axhline(losses.TAIL, color="black", linewidth=0.5, linestyle="--")
-    axes.set_ylim(-0.02, 1.02)
-    axes.legend(loc="best")
-
-
-def plot_loss_by_kind(axes, contestants, rows):
-    """Plots a group of bars for each kind of device, with a bar for each contestant. The lost part
-    is stacked on the damaged part."""
-    shown = _with_money(contestants, rows)
-    kinds = sorted({kind for _, money in shown for kind in money["by_kind"]})
-    width = 0.8 / max(1, len(shown))
-    for place, (one, money) in enumerate(shown):
-        x = np.arange(len(kinds)) + width * (place - (len(shown) - 1) / 2.0)
-        parts = {part: np.array([money["by_kind"].get(kind, {}).get(part, 0.0) for kind in kinds])
-                 for part in ("damaged", "lost")}
-        axes.bar(x, parts["damaged"], width, color=one.colour, label=one.label)
-        axes.bar(x, parts["lost"], width, bottom=parts["damaged"], color=one.colour, alpha=0.5)
-    axes.set_xticks(range(len(kinds)), [kind.replace("_", " ") for kind in kinds], rotation=15)
-    tallest = max((bar.get_y() + bar.get_height() for bar in axes.patches), default=0.0)
-    axes.set_ylim(0.0, 1.08 * tallest or 1.0)
-    axes.legend(loc="best", title="dark: damaged, light: lost")
-
-
 def draw_repeated(path, contestants, runs, references):
     """Draws Fig. 14: the 50-episode mean return over all runs."""
     _draw_returns(
-        path, lambda ends: f"Return at the end of the training: {_listed(contestants, ends)}",
+        path, contestants,
+        lambda ends: _highest(contestants, ends, "return at the end of the training"),
         f"Fig. 14: repeated trainings, means of {measures.WINDOW} episodes. "
         f"{_shading(contestants, runs)}", f"{measures.WINDOW}-episode mean return",
         [(lambda axes: plot_repeated(axes, contestants, runs, references), "episode")])
@@ -450,7 +457,7 @@ def _plot_shaded(axes, episodes, values, one, label, strength=1.0):
     """Plots the median of values [runs, episodes], shaded between their lowest and highest value.
     Returns the end of the line."""
     median = np.median(values, axis=0)
-    axes.plot(episodes, median, **_line_style(one), label=label)
+    axes.plot(episodes, median, **line_style(one), label=label)
     shade(axes, episodes, values.min(axis=0), values.max(axis=0), one.colour, strength)
     return episodes[-1], median[-1], one.colour, label
 

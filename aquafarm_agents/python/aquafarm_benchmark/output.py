@@ -41,7 +41,7 @@ def tabulate(folder, contestants, found, settings, people):
 def draw(folder, everyone, found, rows):
     """Writes the figures of the results."""
     # Imported here, because matplotlib takes a second to load, which would delay --help.
-    from aquafarm_benchmark import figures, route_figure
+    from aquafarm_benchmark import figures, loss_figures, route_figure
 
     pictures = folder / "figures"
     pictures.mkdir(exist_ok=True)
@@ -58,7 +58,7 @@ def draw(folder, everyone, found, rows):
         figures.draw_mean_score(pictures / "mean_score.png", trained, found, per_step)
     figures.draw_evaluation(pictures / "evaluation.png", everyone, rows)
     if any(row["money"] for row in rows):
-        figures.draw_losses(pictures / "losses.png", everyone, rows)
+        loss_figures.draw_losses(pictures / "losses.png", everyone, rows)
     for one in everyone:
         route = folder / "runs" / one.name / "seed_1" / "route.json"
         if route.is_file():  # people and rows of NAME=COMMAND have no route

@@ -6,6 +6,7 @@ import json
 import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Polygon, Rectangle
+from matplotlib.patheffects import withStroke
 
 from aquafarm_benchmark.style import plt, save
 
@@ -26,7 +27,8 @@ _SEA = "#eaf3f9"
 _LAND = "#c9b98a"
 _STOPS = {"pickup": ("P", "pickup"), "drop_off": ("X", "drop-off")}
 _STOP_STYLE = {"s": 130, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 7}
-
+_BEFORE = (60, 120)  # steps before the end whose rings are drawn
+_BEFORE_LABEL = "rings 60 and 120 steps before"
 
 def draw_route(path, label, route_file):
     """Draws Fig. 11: the greedy actions at the start and after the first pickup, and the route.
@@ -50,7 +52,12 @@ def draw_route(path, label, route_file):
     for empty in all_axes[len(panels) + 1:]:
         empty.axis("off")
     sea = _chart(axes, route["chart"])
-    stops = plot_route(axes, route["steps"])
+    names = place_names(route["chart"])
+    stops = plot_route(axes, route["steps"], names)
+    for cell, name in names.items():
+        axes.annotate(name, cell, xytext=(6, -7), textcoords="offset points", fontsize=9.5,
+                      ha="left", va="center", weight="bold", zorder=8,
+                      path_effects=[withStroke(linewidth=2.5, foreground="white")])
     _disasters(axes, route["steps"], sea)
     for shown in all_axes[:len(panels) + 1]:
         shown.set_xlabel("cells to the east")
@@ -107,6 +114,13 @@ def plot_unfinished(axes, name, route, size):
     sea = _chart(axes, chart, size, left)
     axes.set_xlabel("cells to the east")
     axes.set_ylabel("cells to the north")
+    for steps in _BEFORE:
+        then = len(route["steps"]) - 2 - steps
+        for disaster in route["steps"][then]["disasters"] if then >= 0 else []:
+            for ring in _rings(disaster):
+                outline, = axes.plot(*np.vstack([ring, ring[:1]]).T, color="#b22222", zorder=2,
+                                     linewidth=0.8, linestyle=":", label=_BEFORE_LABEL)
+                outline.set_clip_path(sea)
     for disaster in route["steps"][-2]["disasters"]:  # in the last state they have ended
         for ring in _rings(disaster):
             inside = axes.add_patch(Polygon(ring, color="#b22222", alpha=0.12, zorder=1))
@@ -117,7 +131,7 @@ def plot_unfinished(axes, name, route, size):
     *before, (loaded, last_leg) = legs(route["steps"])
     for _, cells in before:
         axes.plot(*np.array(cells, dtype=float).T, color="#5b6b78", linewidth=1.0, zorder=4,
-                  alpha=0.7, label="route before")
+                  alpha=0.45, label="route before")
     colour, kind = _LEGS[loaded][0], f"{'a device' if loaded else 'nothing'} aboard"
     axes.add_collection(LineCollection(  # one segment per step: repeated segments look darker
         [np.array(pair, dtype=float) for pair in zip(last_leg, last_leg[1:])], color=colour,
@@ -128,10 +142,12 @@ def plot_unfinished(axes, name, route, size):
                  label="ship at the end")
     result = f"{route['return']:.0f}".replace("-", "−")
     end = len(route["steps"]) - 1
+    stop = (f"last {'pickup' if loaded else 'delivery'} at {end - len(last_leg) + 1}" if before else
+            "no pickup")
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
                    f"return {result}\n"
-                   f"{route['reason'].replace('_', ' ')} at step {end}, "
-                   f"last stop at {end - len(last_leg) + 1}", fontsize=10.5, loc="left")
+                   f"{route['reason'].replace('_', ' ')} at step {end}, {stop}",
+                   fontsize=10.5, loc="left")
 
 
 def _symbols(charts):
@@ -231,16 +247,24 @@ def _point_along(axes, x, y, colour):
                                   "mutation_scale": 18, "shrinkA": 0, "shrinkB": 0})
 
 
-def plot_route(axes, steps):
-    """Draws the legs of a route and numbers its stops. Returns [(number, action, step)].
-    An action of step t is complete in step t + 1."""
+def place_names(chart):
+    """Returns {(x, y): name} of the devices, "F0", and ports, "A", of a ranch."""
+    names = {tuple(device["cell"]): f"F{i}" for i, device in enumerate(chart["devices"])}
+    names.update({tuple(cell): chr(ord("A") + i) for i, cell in enumerate(chart["ports"][:26])})
+    return names
+
+
+def plot_route(axes, steps, names):
+    """Draws the legs of a route and numbers its stops. Returns [(number, action, place, step)].
+    An action of step t is complete in step t + 1. names: see place_names"""
     _plot_legs(axes, steps)
     axes.scatter(*steps[0]["cell"], s=170, facecolor="none", edgecolor="black", linewidth=1.8,
                  zorder=6, label="start")
     stops, here = [], {}
     for at, step in enumerate(steps):
         if step.get("action") in _STOPS:
-            stops.append((len(stops) + 1, _STOPS[step["action"]][1], at + 1))
+            stops.append((len(stops) + 1, _STOPS[step["action"]][1],
+                          names.get(tuple(step["cell"]), ""), at + 1))
             here.setdefault(tuple(step["cell"]), []).append(len(stops))
     for cell, numbers in here.items():  # a cell may have several stops
         axes.annotate(", ".join(map(str, numbers)), cell, xytext=(-10, 0), zorder=8,
@@ -261,7 +285,7 @@ def _explain(empty, charts, stops, has_moves):
     empty.text(0.02, 0.66, "\n".join(lines), transform=empty.transAxes, va="top", fontsize=11,
                linespacing=1.4)
     if stops:
-        table = empty.table(stops, colLabels=["stop", "action", "step"], cellLoc="left",
+        table = empty.table(stops, colLabels=["stop", "action", "at", "step"], cellLoc="left",
                             colLoc="left", edges="horizontal",
                             bbox=(0.02, 0.5 - 0.06 * (len(stops) + 1), 0.6, 0.06 * (len(stops) + 1)))
         table.auto_set_font_size(False)

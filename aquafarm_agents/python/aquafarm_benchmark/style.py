@@ -94,6 +94,11 @@ def name_ends(axes, ends):
                                   "relpos": (0.0, 0.5), "shrinkA": 1.0, "shrinkB": 0.0})
 
 
+def line_style(one):
+    """Returns matplotlib's options for the line of a contestant."""
+    return {"color": one.colour, "linestyle": one.linestyle}
+
+
 def legible(colour):
     """Returns a colour, darkened until it is legible on white."""
     rgb = np.array(colors.to_rgb(colour))

@@ -11,9 +11,12 @@ LEAST_KM = 150.0  # min width of a drawing with a coast, because the coast is no
 
 
 def source():
-    """Returns the path of coast.csv, which aquafarm_viz describes; None if it is not in the
-    environment."""
-    import rospkg  # imported here, because pages can be written without ROS
+    """Returns the path of coast.csv (see aquafarm_viz/data/README.md); None without ROS, or if ROS
+    does not find the package aquafarm_viz."""
+    try:
+        import rospkg
+    except ImportError:
+        return None
     try:
         return pathlib.Path(rospkg.RosPack().get_path("aquafarm_viz")) / "data" / "coast.csv"
     except rospkg.ResourceNotFound:
@@ -47,7 +50,8 @@ def rings(origin, cell_size_m, box):
 
 
 def _project(origin, corners):
-    """Returns (east, north) [m] of (longitude, latitude) [degrees] on the near side of the Earth."""
+    """Returns (east, north) [m] of the corners (longitude, latitude) [degrees] that are within 60
+    degrees of the origin."""
     lon = np.radians(corners[:, 0] - origin["longitude"])
     lat, lat0 = np.radians(corners[:, 1]), np.radians(origin["latitude"])
     near = np.sin(lat0) * np.sin(lat) + np.cos(lat0) * np.cos(lat) * np.cos(lon) > 0.5

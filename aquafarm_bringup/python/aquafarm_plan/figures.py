@@ -13,7 +13,7 @@ from .words import compass, is_unknown, letter, numbered_name, order_text
 REGION = 330.0  # side of the drawing of the region [px]
 REGION_LABELS = 4  # max number of positions of the storm with a label
 LINE = (1100.0, 104.0)  # width and left margin of the timeline [px]
-TOP, HAZARD_HEIGHT, ROW, AXIS = 22.0, 62.0, 27.0, 48.0  # heights in the timeline [px]
+TOP, HAZARD_HEIGHT, ROW, AXIS = 20.0, 50.0, 27.0, 48.0  # heights in the timeline [px]
 NEAREST_H = 72  # the timeline includes a closest approach within this time [h]
 CURVE = (520.0, 270.0, 58.0, 44.0)  # width, height, left and lower margin of the loss curve [px]
 

@@ -4,7 +4,7 @@ fetch_by_value."""
 import io
 import pathlib
 
-from aquafarm_benchmark import figures, losses, results
+from aquafarm_benchmark import loss_figures, losses, results
 from aquafarm_benchmark.protocol import REFERENCES, Contestant
 
 from aquafarm_report import blocks, videos
@@ -35,17 +35,17 @@ def compare(own, scenario, folder, episodes, currency):
 
 def draw(contestants, rows):
     """Returns exceedance curves and the loss by kind of device as SVG."""
-    figure, (curves, bars) = figures.plt.subplots(2, 1, figsize=(7, 8))
-    figures.plot_exceedance(curves, contestants, rows)
+    figure, (curves, bars) = loss_figures.plt.subplots(2, 1, figsize=(7, 8))
+    loss_figures.plot_exceedance(curves, contestants, rows)
     currency = rows[0]["money"]["currency"]
     curves.set_xlabel(f"loss x [{currency}]")
     curves.set_ylabel("probability of a larger loss")
-    figures.plot_loss_by_kind(bars, contestants, rows)
+    loss_figures.plot_loss_by_kind(bars, contestants, rows)
     bars.set_ylabel(f"loss per episode [{currency}]")
     figure.tight_layout()
     text = io.StringIO()
     figure.savefig(text, format="svg", transparent=True, metadata={"Date": None})
-    figures.plt.close(figure)
+    loss_figures.plt.close(figure)
     svg = text.getvalue()
     return f'<div class="chart">{svg[svg.index("<svg"):]}</div>'
 

@@ -53,7 +53,7 @@ void DrawCentre(cv::Mat& map, const DisasterState& disaster, const SignPlace& si
                 const Layout& layout, const Fonts& fonts) {
   const cv::Point2d at = sign.at;
   const double radius = 8.0 * layout.unit;
-  if (disaster.speed > 0.0F) {
+  if (sign.arrow_to != at) {
     DrawHeading(map, at, disaster.heading_deg, cv::norm(sign.arrow_to - at), layout);
   }
   const cv::Scalar color = Bgr(GradeColor(disaster.grade));
@@ -97,7 +97,9 @@ SignPlace PlaceSign(const DisasterState& disaster, const Layout& layout) {
     const cv::Point2d heading(std::sin(turn), -std::cos(turn));
     const double length =
         std::clamp(2.2 * layout.view.cell_px(), 40.0 * layout.unit, 60.0 * layout.unit);
-    if (disaster.speed > 0.0F) sign.arrow_to = centre + heading * length;
+    const cv::Point2d tip = centre + heading * length;
+    const bool fits = cv::Rect2d({0.0, 0.0}, cv::Size2d(map)).contains(tip);
+    if (disaster.speed > 0.0F && fits) sign.arrow_to = tip;
     return sign;
   }
   // The pointer lies where the line from the middle of the map to the centre reaches the edge.

@@ -75,6 +75,9 @@ void DrawScaleBar(cv::Mat& image, cv::Point left, int room_px, double cell_size_
   std::string text = length_m >= 1000.0 ? Number(length_m / 1000.0, 0) + " km"
                                         : Number(length_m, length_m < 1.0 ? 3 : 0) + " m";
   if (length_m >= 100.0) text += " = " + Number(length_m / kNauticalMile_m, 2) + " nmi";
+  const std::string cells = " = " + Number(length_m / cell_size_m, 0) + " cells";
+  const bool is_whole = std::abs(std::remainder(length_m, cell_size_m)) < 1e-6 * length_m;
+  if (is_whole && fonts.small.Width(text + cells) <= room_px) text += cells;
   fonts.small.Draw(image, text, {left.x, left.y - layout.Px(4)}, Bgr(layout.style->words));
 }
 
@@ -222,9 +225,9 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
   bool has_pointer = false;
   for (const auto& disaster : state.disasters) {
     if (!IsDrawn(disaster)) continue;
-    const bool is_inside = PlaceSign(disaster, layout).is_inside;
-    has_heading = has_heading || (is_inside && disaster.speed > 0.0F);
-    has_pointer = has_pointer || !is_inside;
+    const SignPlace sign = PlaceSign(disaster, layout);
+    has_heading = has_heading || sign.arrow_to != sign.at;
+    has_pointer = has_pointer || !sign.is_inside;
   }
   add(has_pointer, Sign::kPointer);
   add(has_heading, Sign::kHeading);

@@ -41,17 +41,17 @@ const DeviceState* Find(const FarmState& state, std::int32_t id) {
   return found == state.devices.end() ? nullptr : &*found;
 }
 
-// Draws a line from a symbol to its label if the label is not next to it, unless the line would
-// cross another label.
-void DrawLeader(cv::Mat& map, cv::Point2d symbol, double radius, cv::Rect label, LabelSpace& space,
-                const Layout& layout) {
+// Draws a line in the colour of a label from its symbol to the label, if the label is not next to
+// the symbol. Leaves out a line that would cross another label.
+void DrawLeader(cv::Mat& map, cv::Point2d symbol, double radius, cv::Rect label, Rgb color,
+                LabelSpace& space, const Layout& layout) {
   const cv::Point2d to = NearestIn(label, symbol);
   const double length = cv::norm(to - symbol);
   if (length < 2.0 * radius + 6.0 * layout.unit) return;
   const cv::Point2d from = symbol + (to - symbol) * (radius / length);
   if (!space.AddLine(from, to, label, layout.Px(3))) return;
   DrawLine(map, from, to, Bgr(layout.style->halo), layout.Px(3));
-  DrawLine(map, from, to, Bgr(layout.style->label), layout.Px(1));
+  DrawLine(map, from, to, Bgr(color), layout.Px(1.2));
 }
 
 constexpr double kPlateMargins = 13.0;  // left and right of a text, in sum [design units]
@@ -190,8 +190,9 @@ std::set<std::int32_t> LabelDanger(cv::Mat& map, const FarmSpec& spec, const Far
     auto plate = space.Take(Cover::kNothing, size, at, 110.0 * layout.unit);
     if (!plate) plate = space.Take(size, at, 140.0 * layout.unit);
     if (!plate) continue;
-    DrawLeader(map, at, kDangerRing * layout.device_radius_px(), *plate, space, layout);
-    DrawPlate(map, *plate, lines, RiskColor(WorstRisk(one), layout), layout, fonts);
+    const Rgb color = RiskColor(WorstRisk(one), layout);
+    DrawLeader(map, at, kDangerRing * layout.device_radius_px(), *plate, color, space, layout);
+    DrawPlate(map, *plate, lines, color, layout, fonts);
     labelled.insert(one.id);
   }
   return labelled;
@@ -281,7 +282,7 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
       const std::string text = whose + name + "risk " + Number(double(disaster.risks[ring]), 0);
       const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins), layout.Px(kPlateRow));
       const auto points = PointsOnMap(disaster, ring, map.size(), layout);
-      FreeSpace water = space.space(Cover::kPaths);
+      FreeSpace water = space.space(Cover::kNothing);
       BlockOtherRings(state, disaster, ring, map.size(), water, layout);
       const auto place = PlaceBesideRing(points, size, water, layout);
       if (!place) continue;  // only the key of risks explains it
@@ -327,22 +328,23 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
       const double aside = size.width / 2.0 + 14.0 * layout.unit;
       place_aside = {sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside, sign.at.y};
     };
-    for (const Cover cover : {Cover::kNothing, Cover::kPaths}) {
-      for (const double width : {kMaxLine, 0.0}) {
-        if (place) break;
-        break_lines(width);
-        place = space.Take(cover, size, place_aside, 24.0 * layout.unit);
-      }
+    for (const double width : {kMaxLine, 0.0}) {
+      if (place) break;
+      break_lines(width);
+      place = space.Take(Cover::kNothing, size, place_aside, 24.0 * layout.unit);
+    }
+    for (const double reach : {0.8, 1.2}) {  // still with short lines
+      if (!place) place = TakeInSight(space, Cover::kNothing, size, sign.at, reach * size.width);
     }
     if (!place) break_lines(kMaxLine);
-    if (!place) place = TakeInSight(space, Cover::kNothing, size, sign.at, 0.8 * size.width);
+    if (!place) place = space.Take(Cover::kPaths, size, place_aside, 24.0 * layout.unit);
     if (!place) place = TakeInSight(space, Cover::kPaths, size, sign.at, 0.8 * size.width);
-    if (!place) place = TakeInSight(space, Cover::kNothing, size, sign.at, 1.2 * size.width);
     if (!place) place = space.Take(size, place_aside, 24.0 * layout.unit);
     if (!place) place = space.Take(size, sign.at, double(map.cols + map.rows));
     if (!place) continue;
-    DrawLeader(map, sign.at, 9.0 * layout.unit, *place, space, layout);
-    DrawPlate(map, *place, lines, GradeColor(disaster.grade), layout, fonts);
+    const Rgb color = GradeColor(disaster.grade);
+    DrawLeader(map, sign.at, 9.0 * layout.unit, *place, color, space, layout);
+    DrawPlate(map, *place, lines, color, layout, fonts);
   }
 }
 

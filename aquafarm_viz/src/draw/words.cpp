@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "draw/symbols.h"
@@ -42,19 +43,36 @@ std::string Capitalised(std::string text) {
   return text;
 }
 
-// Draws the danger in the first row, as large as it fits, in full if possible. Returns false if
-// there is nothing to draw.
+// Adds to the name of each disaster outside the farm in which direction it is.
+Outlook WithDirections(const FarmSpec& spec, const FarmState& state, Outlook outlook) {
+  for (std::size_t i = 0; i < outlook.names.size(); ++i) {
+    const auto& disaster = state.disasters[i];
+    if (IsCentreInFarm(spec, disaster)) continue;
+    outlook.names[i] += " in the " + PointFromFarm(spec, disaster.x, disaster.y);
+  }
+  return outlook;
+}
+
+// Draws the danger in the first row: large if possible, else in the small font, else a short form.
+// Returns false if there is nothing to draw.
 bool DrawDanger(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                 const Outlook& outlook, cv::Point at, int width, const Layout& layout,
                 const Fonts& fonts) {
-  const std::string full = Capitalised(OutlookText(spec, state, outlook));
   const std::string brief = Capitalised(ShortOutlookText(spec, outlook));
   if (brief.empty()) return false;
-  const bool fits = fonts.bold.Width(full) <= width;
-  const std::string& text = fits ? full : brief;
-  const Font& font = fonts.title.Width(text) <= width ? fonts.title : fonts.bold;
-  font.Draw(image, font.Fit(text, width), at,
-            Bgr(IsInDanger(outlook) ? layout.style->alarm : layout.style->words));
+  const Rgb color = IsInDanger(outlook) ? layout.style->alarm : layout.style->words;
+  const std::array<std::string, 2> full{
+      Capitalised(OutlookText(spec, state, WithDirections(spec, state, outlook))),
+      Capitalised(OutlookText(spec, state, outlook))};
+  for (const Font* font : {&fonts.title, &fonts.bold}) {
+    for (const std::string& text : full) {
+      if (font->Width(text) > width) continue;
+      font->Draw(image, text, at, Bgr(color));
+      return true;
+    }
+  }
+  const Font& font = fonts.title.Width(brief) <= width ? fonts.title : fonts.bold;
+  font.Draw(image, font.Fit(brief, width), at, Bgr(color));
   return true;
 }
 

@@ -351,9 +351,9 @@ MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state, cons
   const std::vector<std::size_t> outside = AddPointers(array, maker, spec, state, labels);
   AddDevices(array, maker, spec, state, outlook, labels);
   const bool is_over = state.terminated || state.truncated;
-  AddLines(array, maker, spec, "alarm", -1.0, is_over ? "" : OutlookText(spec, state, outlook),
+  AddLines(array, maker, spec, "alarm", 1.0, is_over ? "" : OutlookText(spec, state, outlook),
            IsInDanger(outlook) ? kAlarm : kPaper);
-  AddLines(array, maker, spec, "outside", 1.0, OutsideText(spec, state, courses, outside), kPaper);
+  AddLines(array, maker, spec, "outside", -1.0, OutsideText(spec, state, courses, outside), kPaper);
   const bool has_rings =
       std::any_of(state.disasters.begin(), state.disasters.end(),
                   [](const auto& disaster) { return disaster.known && disaster.steps_left > 0; });

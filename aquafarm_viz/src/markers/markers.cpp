@@ -330,28 +330,61 @@ double RadiusTowards(const DisasterState& disaster, double side) {
   return side > 0.0 ? std::max(radii[0], radii[3]) : std::max(radii[1], radii[2]);
 }
 
+// Returns whether a rectangle around (x, y) contains a ship, a deployed device or a port.
+// @param half_width, half_height  of the rectangle [cells]
+bool CoversSymbol(const FarmSpec& spec, const FarmState& state, double x, double y,
+                  double half_width, double half_height) {
+  const auto is_near = [&](double other_x, double other_y) {
+    return std::abs(other_x - x) < half_width && std::abs(other_y - y) < half_height;
+  };
+  return std::any_of(state.ships.begin(), state.ships.end(),
+                     [&](const auto& ship) { return is_near(ship.x, ship.y); }) ||
+         std::any_of(state.devices.begin(), state.devices.end(),
+                     [&](const auto& device) {
+                       return device.status == DeviceState::DEPLOYED && is_near(device.x, device.y);
+                     }) ||
+         std::any_of(spec.ports.begin(), spec.ports.end(),
+                     [&](const auto& port) { return is_near(port.cell.x, port.cell.y); });
+}
+
+// Returns how far north of the centre the name of a disaster is [cells]: on the side without the
+// arrow of the motion, outside the rings. A name that would be off the map or cover a symbol is
+// next to the centre instead, or on the other side.
+double NameOffset(const Maker& maker, const FarmSpec& spec, const FarmState& state,
+                  const DisasterState& disaster, double name_width) {
+  const double near = 0.9 * maker.thing_m() / maker.cell_m();
+  const double side =
+      disaster.speed > 0.0F && std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1 ? 1.0 : -1.0;
+  const std::array<double, 4> offsets{side * (near + RadiusTowards(disaster, side)), side * near,
+                                      -side * (near + RadiusTowards(disaster, -side)),
+                                      -side * near};
+  const auto is_on_map = [&](double offset) {
+    const double y = disaster.y + offset;
+    return y >= 0.0 && y <= spec.height - 1.0;
+  };
+  const auto is_free = [&](double offset) {
+    return is_on_map(offset) && !CoversSymbol(spec, state, disaster.x, disaster.y + offset,
+                                              0.5 * name_width + near, near);
+  };
+  const auto free = std::find_if(offsets.begin(), offsets.end(), is_free);
+  const auto on_map = std::find_if(offsets.begin(), offsets.end(), is_on_map);
+  return free != offsets.end() ? *free : on_map != offsets.end() ? *on_map : offsets.front();
+}
+
 void AddDisasterSigns(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
-                      const DisasterState& disaster) {
+                      const FarmState& state, const DisasterState& disaster) {
   Marker eye =
       maker.Make("disaster", disaster.id, Marker::CYLINDER, kSignLayer, disaster.x, disaster.y);
   eye.scale.x = eye.scale.y = 0.7 * maker.thing_m();
   eye.scale.z = 0.5 * maker.layer_m();
   eye.color = Color(GradeColor(disaster.grade));
   array.markers.push_back(eye);
-  // The name is north or south of the centre, on the side without the arrow of the motion, unless
-  // it would be off the map there. It is outside the rings if that position is on the map.
-  double side =
-      disaster.speed > 0.0F && std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1 ? 1.0 : -1.0;
-  const double near = 0.9 * maker.thing_m() / maker.cell_m();
-  const double next_to = disaster.y + side * near;
-  if (next_to < 0.0 || next_to > spec.height - 1.0) side = -side;
-  const double far = near + RadiusTowards(disaster, side);
-  const double outside = disaster.y + side * far;
-  const double aside = side * (outside > 0.0 && outside < spec.height - 1.0 ? far : near);
   const std::string name = DisasterName(disaster.kind);
+  const double width_m = (TextWidth(name) + 0.8) * maker.word_m();
+  const double north = NameOffset(maker, spec, state, disaster, width_m / maker.cell_m());
   AddOnPlate(array, maker, "disaster_name", disaster.id,
-             {double(disaster.x), double(disaster.y) + aside},
-             {(TextWidth(name) + 0.8) * maker.word_m(), 1.2 * maker.word_m()}, name);
+             {double(disaster.x), double(disaster.y) + north}, {width_m, 1.2 * maker.word_m()},
+             name);
   if (!(disaster.speed > 0.0F)) {
     array.markers.push_back(maker.Delete("heading", disaster.id));
     return;
@@ -373,7 +406,7 @@ void AddDisasters(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     AddRings(array, maker, spec, disaster, drawn);
     // A centre outside the farm has a pointer at the edge instead (danger.h).
     if (drawn && (!has_pointers || IsCentreInFarm(spec, disaster))) {
-      AddDisasterSigns(array, maker, spec, disaster);
+      AddDisasterSigns(array, maker, spec, state, disaster);
       continue;
     }
     for (const char* space : {"disaster", "disaster_name", "disaster_name_plate", "heading"}) {

@@ -289,12 +289,13 @@ std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
   return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
 }
 
-// Returns the local time `steps` steps from now, ", Sun 06:24 UTC+8"; empty if that is less than an
-// hour away or if the scenario has no start time.
+// Returns the local time `steps` steps from now, " (Sun 06:24)"; empty if that is less than an hour
+// away or if the scenario has no start time.
 std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double steps) {
   if (!spec.has_start_time || steps * spec.step_duration_s < 3600.0) return "";
   const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
-  return ", " + LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
+  const std::string time = LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
+  return " (" + time.substr(0, time.rfind(' ')) + ")";
 }
 
 // Shortens "hurricane force in 9 h" to "hurricane in 9 h".
@@ -306,7 +307,7 @@ std::string WithoutForce(std::string text) {
 
 std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
   if (!std::isfinite(outlook.known_until)) return "";
-  return "no danger to devices known until +" + AheadText(spec, outlook.known_until);
+  return "no known danger to devices until +" + AheadText(spec, outlook.known_until);
 }
 
 }  // namespace
@@ -359,7 +360,9 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
   };
   add(*next, (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next->steps) +
                  ClockAhead(spec, state, next->steps));
-  if (worst->risk < next->risk) add(*worst, AheadText(spec, worst->steps));
+  if (worst->risk < next->risk) {
+    add(*worst, AheadText(spec, worst->steps) + ClockAhead(spec, state, worst->steps));
+  }
   return text;
 }
 

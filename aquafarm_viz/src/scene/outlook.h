@@ -81,7 +81,7 @@ std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 /// follows the next arrival if that is at least an hour away.
 ///
 /// If the farm has devices but none is deployed, the text is "no device is deployed". If no ring
-/// covers or reaches a device, the text is empty, or "no danger to devices known until +12 h" if a
+/// covers or reaches a device, the text is empty, or "no known danger to devices until +12 h" if a
 /// course is known only until then. The text is also empty if the outlook is not known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);

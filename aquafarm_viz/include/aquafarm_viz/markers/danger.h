@@ -4,8 +4,8 @@
 /// Markers of the danger to devices and of the disasters outside the farm.
 ///
 ///     | namespace        | id       | content                                                |
-///     | alarm            | 0        | text below the clock: the danger to the devices        |
-///     | outside          | 0        | text above the clock: strength, position and motion of |
+///     | alarm            | 0        | text above the clock: the danger to the devices        |
+///     | outside          | 0        | text below the clock: strength, position and motion of |
 ///     |                  |          | up to two disasters whose centres lie outside the farm |
 ///     | danger           | device   | circle around a device that a ring covers or reaches   |
 ///     | danger_label (1) | device   | the ring over the device now, and the worst one ahead  |

@@ -7,6 +7,7 @@
 ///   y = r + γ max over a' of Q_target(s', a')        y = r after termination
 ///   loss = (y − Q(s, a))², or the Huber loss
 ///
+/// (with double_dqn, the default, the online network chooses a'; only legal a' are considered)
 /// and LSTM-DQN (Algorithm 2): DQN with a recurrent network, trained from sequences of steps of one
 /// episode. The network first reads the burn_in steps before a sequence. It starts with the
 /// recurrent state that was stored at the first of these steps. Near the start of an episode, the

@@ -15,9 +15,10 @@ namespace aquafarm::agents {
 
 /// A storm as an authority forecasts it, or, in a hindcast, as it was recorded later.
 struct CentralForecast {
-  StormPath path;              ///< in steps of the ensemble; step 0 is the start of the plan
-  std::vector<double> lead_h;  ///< lead time of each point [h]; 0 or negative for observed points
-  /// Lead time of the last report with radii [h]; minus infinity if all radii are estimated.
+  StormPath path;  ///< in steps of the ensemble; step 0 is the start of the plan
+  /// Time from the issue of the forecast to each point [h]; negative for earlier points.
+  std::vector<double> lead_h;
+  /// Lead time of the last observed point with reported radii [h]; minus infinity if none has them.
   double size_report_h{-std::numeric_limits<double>::infinity()};
   GradeRisks risks;  ///< risks of the rings for grades 1 to 4
 };

@@ -72,7 +72,7 @@ struct RescueShip {
 /// A ship that waits for its next departure consumes and costs nothing.
 struct RescueEnergy {
   double per_km{};      ///< [kWh/km]
-  double per_device{};  ///< added to a factor of 1 for each device aboard
+  double per_device{};  ///< relative increase of per_km for each device aboard
   double idle_kw{};     ///< power of a ship under way or at work, independent of its speed
   double per_kwh{};     ///< price of a kWh in the currency of the devices' values; 0: no cost
   double per_hour{};    ///< price of an hour of a ship under way or at work; 0: no cost
@@ -89,12 +89,12 @@ struct RescueProblem {
   double depart_s{};          ///< earliest departure of a ship that CompareChanges adds [s]
   std::int32_t abort_ring{};  ///< ring of the ensemble whose winds stop a ship
   double exposure_damage{};   ///< share of the value per step of the ensemble and unit of |risk|
-  /// Share of the worst members, in (0, 1]. The plan minimizes their mean loss plus the cost. With
-  /// 0, the plan maximizes the mean value saved over all members minus the cost.
+  /// In [0, 1]. Above 0: the plan minimizes the mean loss of this share of the members, the worst
+  /// ones, plus the cost. 0: it maximizes the mean value saved over all members minus the cost.
   double risk_averse{};
   std::optional<RescueEnergy> energy{};  ///< nullopt: energy and costs are unknown
 
-  /// Returns the ship that starts with a device aboard; kNone if no ship does.
+  /// Returns the ship that has `device` aboard at the start; kNone if no ship has it.
   std::int32_t CarrierOf(std::size_t device) const;
 };
 

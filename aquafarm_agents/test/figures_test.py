@@ -261,7 +261,7 @@ class FiguresTest(unittest.TestCase):
         figure = self.drawn(figures.draw_square_error, self.contestants, self.runs)
         headline = " ".join(figure._suptitle.get_text().split())
         self.assertTrue(headline.endswith(
-            "LSTM-DQN ×0.5, SARSA ×3.0"), headline)
+            "lowest for LSTM-DQN (×0.5), highest for SARSA (×3.0)"), headline)
         self.assertEqual({"SARSA: 10 → 30", "LSTM-DQN: 10 → 5"},
                          {axes.get_title("left") for axes in figure.axes} - {""})
 

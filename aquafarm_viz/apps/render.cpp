@@ -322,6 +322,25 @@ void RenderVideo(Request request) {
   video->Close();
 }
 
+/// Adds the options for the look of a picture.
+void AddLook(CLI::App& app, Request& request, std::string& layers) {
+  app.add_option("--layers", layers,
+                 "some of " + aquafarm_viz::LayerNames() + ", separated by commas; or none")
+      ->capture_default_str();
+  app.add_option("--style", request.style, "dark for screens, light for print")
+      ->check(CLI::IsMember({"dark", "light"}))
+      ->capture_default_str();
+  app.add_option("--width", request.size.width, "pixels")
+      ->check(CLI::Range(aquafarm_viz::kMinImageSide, aquafarm_viz::kMaxImageSide))
+      ->capture_default_str();
+  app.add_option("--height", request.size.height, "pixels")
+      ->check(CLI::Range(aquafarm_viz::kMinImageSide, aquafarm_viz::kMaxImageSide))
+      ->capture_default_str();
+  app.add_flag_callback(
+      "--no-panel", [&request] { request.size.has_panel = false; },
+      "no lists, inset and legend, so that the map is larger");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -339,12 +358,7 @@ int main(int argc, char** argv) {
   app.add_flag("--end", request.at_end, "the last step of the episode")->excludes(step);
   app.add_flag("--stacked", request.is_stacked,
                "several steps below each other, so that they stay readable in a narrow page");
-  app.add_option("--layers", layers,
-                 "some of " + aquafarm_viz::LayerNames() + ", separated by commas; or none")
-      ->capture_default_str();
-  app.add_option("--style", request.style, "dark for screens, light for print")
-      ->check(CLI::IsMember({"dark", "light"}))
-      ->capture_default_str();
+  AddLook(app, request, layers);
   app.add_option("--fps", request.rate_hz, "video: pictures per second")
       ->check(CLI::Range(0.5, 60.0))
       ->capture_default_str();
@@ -355,12 +369,6 @@ int main(int argc, char** argv) {
                  "episode (default: the first one that has the step)");
   app.add_option("--asked", request.asked)->group("");  // hidden; for render --policy
   app.add_option("--ns", request.ns, "namespace of the ranch (default: the only one in the bag)");
-  app.add_option("--width", request.size.width, "pixels")
-      ->check(CLI::Range(aquafarm_viz::kMinImageSide, aquafarm_viz::kMaxImageSide))
-      ->capture_default_str();
-  app.add_option("--height", request.size.height, "pixels")
-      ->check(CLI::Range(aquafarm_viz::kMinImageSide, aquafarm_viz::kMaxImageSide))
-      ->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

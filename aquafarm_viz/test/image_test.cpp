@@ -249,6 +249,23 @@ TEST(Image, WritesLegendAndLines) {
   EXPECT_GT(variety(before(cv::Rect(0, 598, 640, 20))), 10.0);     // reward terms
 }
 
+TEST(Image, HasALargerMapWithoutThePanel) {
+  const ImageSize with{640, 640};
+  const ImageSize without{640, 640, /*has_panel=*/false};
+  const MapPlace larger = PlaceMap(25, 25, without);
+  EXPECT_GT(larger.map.width, PlaceMap(25, 25, with).map.width + 100);
+  EXPECT_GT(larger.map.y, 40) << "the lines above the map stay";
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  const cv::Mat before = DrawFarm(spec, state, without);
+  state.step += 7;
+  const cv::Rect top(0, 0, 640, 40);
+  EXPECT_GT(cv::norm(before(top), DrawFarm(spec, state, without)(top)), 100.0);
+  cv::Mat1b grey;
+  cv::cvtColor(before(cv::Rect(0, 60, larger.map.x - 4, 500)), grey, cv::COLOR_BGR2GRAY);
+  EXPECT_GT(cv::countNonZero(grey > 100), 50) << "numbers of the axis";
+}
+
 TEST(Image, SaysHowTheEpisodeEndedAboveTheMap) {
   const auto spec = test::MakeSpec();
   auto state = test::MakeState();

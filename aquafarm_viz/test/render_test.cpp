@@ -76,6 +76,15 @@ TEST_F(RenderTest, WritesTheStepAskedForInTheSizeAskedFor) {
   EXPECT_EQ(cv::imread(Path("x.png")).size(), cv::Size(640, 480));
 }
 
+TEST_F(RenderTest, LeavesThePanelOut) {
+  const std::string size = "--bag " + MakeBag({""}) + " --width 640 --height 480 -o ";
+  EXPECT_EQ(Render(size + Path("with.png")).code, 0);
+  EXPECT_EQ(Render(size + Path("without.png") + " --no-panel").code, 0);
+  const cv::Mat without = cv::imread(Path("without.png"));
+  EXPECT_EQ(without.size(), cv::Size(640, 480));
+  EXPECT_GT(cv::norm(without, cv::imread(Path("with.png"))), 1000.0);
+}
+
 TEST_F(RenderTest, DistinguishesEpisodesAndFindsTheEnd) {
   const std::string bag = MakeBag({""});
   EXPECT_EQ(Render("--bag " + bag + " --end -o " + Path("a.png")).code, 0);

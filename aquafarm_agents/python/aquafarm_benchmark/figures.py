@@ -86,17 +86,19 @@ def _draw_returns(path, contestants, find, note, ylabel, plots):
 
     find: function that returns the headline, given the ends of the lines of the last chart
     note: how the data were computed
-    plots: for each chart, from top to bottom: (function, xlabel). The function plots on axes and
-        returns the ends of the lines, as name_ends expects them
+    plots: for each chart, from top to bottom: (function, xlabel, has_values). The function plots on
+        axes and returns the ends of the lines, as name_ends expects them; has_values: names are
+        followed by the last values
     """
     figure, rows = plt.subplots(len(plots), 1, figsize=(8.7, 1.0 + 4.4 * len(plots)),
                                 squeeze=False, layout="constrained")
-    charts = [(axes, plot(axes), xlabel) for (plot, xlabel), axes in zip(plots, rows[:, 0])]
+    charts = [(axes, plot(axes), xlabel, has_values)
+              for (plot, xlabel, has_values), axes in zip(plots, rows[:, 0])]
     explain(figure, find(charts[-1][1]), note)
-    for axes, ends, xlabel in charts:
+    for axes, ends, xlabel, has_values in charts:
         label_axes(axes, "", ylabel + _scale_returns(axes), xlabel)
         axes.yaxis.set_major_formatter(lambda value, _: number(value))
-        name_ends(axes, _with_values(contestants, ends))
+        name_ends(axes, _with_values(contestants, ends) if has_values else ends)
     save(figure, path)
 
 
@@ -227,8 +229,9 @@ def draw_rewards(path, contestants, runs, references):
         _highest(contestants, ends, "return at the end of the training"),
         f"Fig. 12a: the first run of each learner, means of {measures.WINDOW} episodes.",
         f"{measures.WINDOW}-episode mean return", [
-            (lambda axes: plot_rewards_by_steps(axes, *data), "time steps so far (logarithmic)"),
-            (lambda axes: plot_rewards_by_episodes(axes, *data), "episode")])
+            (lambda axes: plot_rewards_by_steps(axes, *data), "time steps so far (logarithmic)",
+             False),
+            (lambda axes: plot_rewards_by_episodes(axes, *data), "episode", True)])
 
 
 def _learning_times(contestants, runs, references):
@@ -257,7 +260,7 @@ def draw_average_rewards(path, contestants, runs, references):
         lambda ends: _highest(contestants, ends, "mean return of all episodes"),
         f"Fig. 12b: mean return of all episodes so far. {_shading(contestants, runs)}",
         "mean return so far",
-        [(lambda axes: plot_average_rewards(axes, contestants, runs, references), "episode")])
+        [(lambda axes: plot_average_rewards(axes, contestants, runs, references), "episode", True)])
 
 
 def plot_average_rewards(axes, contestants, runs, references):
@@ -293,7 +296,9 @@ def draw_square_error(path, contestants, runs):
     _equal_decades(all_axes.flat[:len(learners)])
     for axes in all_axes[:, 0]:
         axes.set_ylabel("error [reward²]")
-    found = ", ".join(f"{name}{_NBSP}×{ratio:.1f}" for ratio, name in sorted(changes))
+    changes = [f"{name} (×{ratio:.1f})" for ratio, name in sorted(changes)]
+    found = (f"lowest for {changes[0]}, highest for {changes[-1]}" if len(changes) > 1 else
+             ", ".join(changes))
     note = (f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic; the titles "
             f"give the first and the last value. {_shading(contestants, runs)} The error is relative "
             "to each learner's own targets and cannot be compared between learners. A policy that "
@@ -392,7 +397,7 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
                            for pair in zip(returns, steps)])
         episodes = np.arange(window, returns.shape[1] + 1)
         ends.append(_plot_shaded(axes, episodes, scores, one, one.label,
-                                 strength=1.0 if len(contestants) < 3 else 0.5))
+                                 strength=1.0 if len(contestants) < 3 else 0.35))
     axes.axhline(0.0, color="black", linewidth=0.5, label="_zero")
     ends += _plot_references(axes, references, max(end[0] for end in ends), digits=2)
     if limits:
@@ -439,7 +444,7 @@ def draw_repeated(path, contestants, runs, references):
         lambda ends: _highest(contestants, ends, "return at the end of the training"),
         f"Fig. 14: repeated trainings, means of {measures.WINDOW} episodes. "
         f"{_shading(contestants, runs)}", f"{measures.WINDOW}-episode mean return",
-        [(lambda axes: plot_repeated(axes, contestants, runs, references), "episode")])
+        [(lambda axes: plot_repeated(axes, contestants, runs, references), "episode", True)])
 
 
 def plot_repeated(axes, contestants, runs, references):

@@ -54,9 +54,11 @@ def draw_route(path, label, route_file):
     sea = _chart(axes, route["chart"])
     names = place_names(route["chart"])
     stops = plot_route(axes, route["steps"], names)
+    ports = {tuple(cell) for cell in route["chart"]["ports"]}
     for cell, name in names.items():
-        axes.annotate(name, cell, xytext=(6, -7), textcoords="offset points", fontsize=9.5,
-                      ha="left", va="center", weight="bold", zorder=8,
+        axes.annotate(name, cell, xytext=(0, 11) if cell in ports else (10, -7),
+                      textcoords="offset points", fontsize=9.5, ha="center", va="center",
+                      weight="bold", zorder=8,
                       path_effects=[withStroke(linewidth=2.5, foreground="white")])
     _disasters(axes, route["steps"], sea)
     for shown in all_axes[:len(panels) + 1]:

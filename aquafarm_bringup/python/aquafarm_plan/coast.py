@@ -7,7 +7,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Bbox
 
 EARTH_M = 6.371e6  # mean radius
-LEAST_KM = 150.0  # min width of a drawing with a coast, because the coast is not exact
+LEAST_KM = 150.0  # narrower drawings have no coast: its error of up to 2 km would be visible
 
 
 def source():

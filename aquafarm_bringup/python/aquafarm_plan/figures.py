@@ -228,11 +228,11 @@ def _nearest(plan, clock, end, x_of):
 
 def _name_ends(plan, rows, clock, right):
     """Adds the text "end" to each row. It follows the last bar and states when the ship is back in
-    port. In the first row it also explains the two shades, if there is space. It is empty if it
+    port. In the first row it also explains the bars, if there is space. It is empty if it
     would extend beyond `right` [px]."""
     for i, (row, route) in enumerate(zip(rows, plan["plan"]["routes"])):
         at = f"in port {clock.time(route['orders'][-1]['time'])}" if row["bars"] else ""
-        key = "dark: out, light: home"
+        key = "each bar: the way to this stop"
         row["end"] = next(
             (text for text in ([f"{at}; {key}"] if i == 0 and at else []) + [at]
              if row["bars"] and row["bars"][-1]["x"] + row["bars"][-1]["w"] + 6.6 * len(text) < right),

@@ -252,7 +252,7 @@ def draw(text, values, layers, results, path):
     figure.suptitle("\n".join(found), fontsize=13, weight="bold", x=0.02, y=0.99, ha="left")
     said = verdict(values, text)
     figure.text(0.02, 1.0 - (0.1 + _LINE * len(found)) / height_in, "\n".join([
-        *([said] if said else []), f"{text['policy']} on {text['scenario']}, {episodes}"]),
+        *([said] if said else []), f"policy {text['policy']}, scenario {text['scenario']}, {episodes}"]),
         fontsize=10.5, color="0.25", va="top")
     with open_atomically(path, "wb") as file:
         figure.savefig(file, dpi=150, format="png")

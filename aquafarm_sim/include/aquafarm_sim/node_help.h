@@ -32,7 +32,7 @@ inline bool PrintHelpIfRequested(int argc, char** argv, const NodeHelp& help) {
         help.launch, help.launch);
   }
   std::printf(
-      "docs/ros_api.md lists its parameters; so does the error message for an unknown "
+      "docs/ros_api.md lists the node's parameters; so does the error message for an unknown "
       "parameter.\n");
   return true;
 }

@@ -173,7 +173,7 @@ cv::Mat DrawBackground(const FarmSpec& spec, const Layout& layout, const Fonts& 
     if (!InGrid(spec, rock.cell.x, rock.cell.y)) continue;
     DrawRock(map, layout.view.ToPixel(rock.cell.x, rock.cell.y), rock_px);
   }
-  if (layout.panel.empty()) return image;
+  if (layout.top.empty()) return image;
   cv::rectangle(
       image,
       cv::Rect(layout.map.x - 1, layout.map.y - 1, layout.map.width + 2, layout.map.height + 2),
@@ -182,6 +182,7 @@ cv::Mat DrawBackground(const FarmSpec& spec, const Layout& layout, const Fonts& 
   for (const int y : {layout.top.height - 1, layout.bottom.y}) {
     cv::rectangle(image, cv::Rect(0, y, size.width, 1), Bgr(layout.style->rule), cv::FILLED);
   }
+  if (layout.panel.empty()) return image;
   cv::rectangle(image, cv::Rect(layout.panel.x, layout.panel.y, 1, layout.panel.height),
                 Bgr(layout.style->rule), cv::FILLED);
   DrawLegend(image, spec, layout, fonts);

@@ -47,7 +47,7 @@ struct FarmPainter::Parts {
   Parts(ImageSize wanted, const Style& colours)
       : style(&colours),
         size{std::clamp(wanted.width, kMinImageSide, kMaxImageSide),
-             std::clamp(wanted.height, kMinImageSide, kMaxImageSide)},
+             std::clamp(wanted.height, kMinImageSide, kMaxImageSide), wanted.has_panel},
         fonts(MakeLayout(1, 1, size).unit) {}
 
   const Style* style;

@@ -48,11 +48,12 @@ Layout MakeLayout(int width, int height, ImageSize size, const Style& style) {
     layout.bottom = {0, size.height - layout.Px(kBottom), size.width, layout.Px(kBottom)};
     const int panel = std::clamp(cvRound(kPanelShare * size.width), layout.Px(kPanelWidth),
                                  layout.Px(kMaxPanelWidth));
-    layout.panel = {size.width - panel, layout.top.height, panel,
-                    layout.bottom.y - layout.top.height};
+    const int middle = layout.bottom.y - layout.top.height;  // height between top and bottom
+    const int right = size.has_panel ? size.width - panel : size.width;
+    if (size.has_panel) layout.panel = {right, layout.top.height, panel, middle};
     room = {layout.Px(kAxisLeft), layout.top.height + layout.Px(kGap),
-            layout.panel.x - layout.Px(kAxisLeft) - layout.Px(kGap),
-            layout.panel.height - layout.Px(kAxisBottom) - layout.Px(kGap)};
+            right - layout.Px(kAxisLeft) - layout.Px(kGap),
+            middle - layout.Px(kAxisBottom) - layout.Px(kGap)};
   }
   double cell_px = std::min(double(room.width) / width, double(room.height) / height);
   if (cell_px >= kWholePixels) cell_px = std::floor(cell_px);
@@ -73,7 +74,8 @@ Layout MakeLayout(int width, int height, ImageSize size, const Style& style) {
 
 MapPlace PlaceMap(int width, int height, ImageSize size) {
   const auto side = [](int pixels) { return std::clamp(pixels, kMinImageSide, kMaxImageSide); };
-  const Layout layout = MakeLayout(width, height, {side(size.width), side(size.height)});
+  const Layout layout =
+      MakeLayout(width, height, {side(size.width), side(size.height), size.has_panel});
   return {layout.map, layout.view};
 }
 
@@ -98,6 +100,7 @@ void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Po
 Fonts::Fonts(double unit)
     : small(std::max(8, cvRound(11.0 * unit)), FindFontFile(false)),
       bold(std::max(8, cvRound(11.0 * unit)), FindFontFile(true)),
-      title(std::max(9, cvRound(14.0 * unit)), FindFontFile(true)) {}
+      title(std::max(9, cvRound(14.0 * unit)), FindFontFile(true)),
+      headline(std::max(8, cvRound(12.5 * unit)), FindFontFile(true)) {}
 
 }  // namespace aquafarm_viz

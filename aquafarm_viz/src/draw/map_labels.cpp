@@ -144,7 +144,8 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlo
   for (std::size_t i = 0; i < signs.size(); ++i) {
     if (!IsDrawn(state.disasters[i])) continue;
     const SignPlace& sign = signs[i];
-    space.Block(Around(sign.at, 12.0 * layout.unit));
+    // Only the label of a pointer may be close to it.
+    space.Block(Around(sign.at, (sign.is_inside ? 12.0 : 14.0) * layout.unit));
     const cv::Point2d middle = (sign.at + sign.arrow_to) * 0.5;
     const cv::Point2d half(std::abs(sign.arrow_to.x - sign.at.x) / 2.0 + 8.0 * layout.unit,
                            std::abs(sign.arrow_to.y - sign.at.y) / 2.0 + 8.0 * layout.unit);
@@ -325,7 +326,7 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
       lines = BrokenAtCommas(CentreText(spec, disaster, courses[i]), width, layout, fonts);
       if (layout.panel.empty()) lines.push_back(MotionNow(spec, disaster));
       size = PlateSize(lines, layout, fonts);
-      const double aside = size.width / 2.0 + 14.0 * layout.unit;
+      const double aside = size.width / 2.0 + 15.0 * layout.unit;
       place_aside = {sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside, sign.at.y};
     };
     for (const double width : {kMaxLine, 0.0}) {
@@ -336,6 +337,7 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     for (const double reach : {0.8, 1.2}) {  // still with short lines
       if (!place) place = TakeInSight(space, Cover::kNothing, size, sign.at, reach * size.width);
     }
+    if (!place) place = space.Take(Cover::kPaths, size, place_aside, 24.0 * layout.unit);
     if (!place) break_lines(kMaxLine);
     if (!place) place = space.Take(Cover::kPaths, size, place_aside, 24.0 * layout.unit);
     if (!place) place = TakeInSight(space, Cover::kPaths, size, sign.at, 0.8 * size.width);

@@ -59,6 +59,7 @@ struct Fonts {
   Font small;
   Font bold;
   Font title;
+  Font headline;  ///< between bold and title
 };
 
 /// Draws the parts that are constant during an episode: sea, islands, rocks, axes and the constant

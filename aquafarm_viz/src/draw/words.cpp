@@ -53,7 +53,7 @@ Outlook WithDirections(const FarmSpec& spec, const FarmState& state, Outlook out
   return outlook;
 }
 
-// Draws the danger in the first row: large if possible, else in the small font, else a short form.
+// Draws the danger in the first row, in the largest font in which it fits, else a short form.
 // Returns false if there is nothing to draw.
 bool DrawDanger(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                 const Outlook& outlook, cv::Point at, int width, const Layout& layout,
@@ -64,8 +64,8 @@ bool DrawDanger(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   const std::array<std::string, 2> full{
       Capitalised(OutlookText(spec, state, WithDirections(spec, state, outlook))),
       Capitalised(OutlookText(spec, state, outlook))};
-  for (const Font* font : {&fonts.title, &fonts.bold}) {
-    for (const std::string& text : full) {
+  for (const std::string& text : full) {
+    for (const Font* font : {&fonts.title, &fonts.headline, &fonts.bold}) {
       if (font->Width(text) > width) continue;
       font->Draw(image, text, at, Bgr(color));
       return true;
@@ -180,7 +180,7 @@ void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const
 void DrawWords(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                const Overlays& overlays, const Outlook& outlook, const Layout& layout,
                const Fonts& fonts) {
-  if (layout.panel.empty()) return DrawEnd(image, state, layout, fonts);
+  if (layout.top.empty()) return DrawEnd(image, state, layout, fonts);
   DrawTop(image, spec, state, outlook, layout, fonts);
   DrawEnd(image, state, layout, fonts);
   DrawRewardLine(image, state, layout, fonts);

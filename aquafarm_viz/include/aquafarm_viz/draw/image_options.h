@@ -20,6 +20,7 @@ inline constexpr int kMaxImageSide = 4096;  ///< max width and height [pixels]
 struct ImageSize {
   int width{800};
   int height{640};
+  bool has_panel{true};  ///< false: no lists, inset and legend, so that the map is larger
 };
 
 /// Optional content of a picture in addition to the state. A null pointer omits that content.

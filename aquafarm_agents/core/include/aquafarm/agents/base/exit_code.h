@@ -3,14 +3,17 @@
 
 namespace aquafarm::agents {
 
-/// Exit codes of the programs of this package. aquafarm_plan also has those of PlanResult
-/// (rescue/plan_report.h).
+/// Exit codes of the C++ programs and nodes of this package. aquafarm_plan also has those of
+/// PlanResult (rescue/plan_report.h). bag_policy exits with 1 if a bag and a policy differ.
+///
+/// (1) A training on one rank is saved, except after a deadlock in roscpp: its last checkpoint is
+/// kept.
 enum class ExitCode : int {
   kOk = 0,
   kInternal = 1,      ///< a bug in the suite
   kBadInput = 2,      ///< an argument, scenario, policy or checkpoint was refused
   kStorage = 3,       ///< a file cannot be written, or the run folder is in use
-  kLost = 4,          ///< the farms were unreachable for too long; a training on one rank is saved
+  kLost = 4,          ///< farms did not respond, refused a call or were changed by others (1)
   kDiverged = 5,      ///< learning failed; the last valid checkpoint is kept
   kRankLost = 6,      ///< another rank is missing or has ended; checkpoints are kept
   kInterrupted = 130  ///< stopped with Ctrl-C or SIGTERM; a training run is saved

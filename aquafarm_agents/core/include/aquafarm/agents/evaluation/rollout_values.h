@@ -23,7 +23,7 @@ struct RolloutValues {
   std::uint64_t episode{};  ///< number of the first episode
   std::int32_t episodes{};  ///< number of episodes played from each cell
   /// [H, W] row by row from the south-west, mean over the episodes. NaN if ship 0 cannot start in
-  /// the cell in at least one of the episodes.
+  /// the cell in one or more episodes.
   std::vector<double> value;
   double discount{1.0};       ///< γ of Eq. 10, per step; 1: undiscounted
   std::vector<Cell> ports;    ///< cells of the ports in the first episode

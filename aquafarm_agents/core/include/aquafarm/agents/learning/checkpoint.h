@@ -29,7 +29,7 @@ struct CheckpointInfo {
   std::string kind;          ///< Checkpoint::kTraining or Checkpoint::kPolicy
   std::string algorithm;     ///< such as q_learning
   std::string options;       ///< resolved options of the learner
-  std::string version;       ///< version of the suite that wrote the file
+  std::string version;       ///< version of the suite that ran the farms
   std::uint64_t seed{};      ///< seed of the training
   EnvironmentSpec spec;      ///< spec of the training farms; files lack its YAML text
   std::uint64_t steps{};     ///< farm steps of training so far

@@ -25,7 +25,7 @@ struct RescueOrder {
   Cell cell{};                 ///< where the order is carried out
   std::int32_t device{kNone};  ///< fetch: index of the device
   std::int32_t port{kNone};    ///< deliver, or leave from a port: index of the port; else kNone
-  std::vector<std::int32_t> devices;  ///< deliver: indices of all unloaded devices
+  std::vector<std::int32_t> devices;  ///< deliver: indices of the devices that the ship unloads
   double km{};                        ///< distance since the previous order [km]
   double kwh{};          ///< energy since the previous order [kWh]; 0 without RescueProblem::energy
   double probability{};  ///< share of the members in which the order is carried out

@@ -12,7 +12,8 @@
 /// of `abort_ring` have reached since the start of the plan. This is also true in port. From then
 /// on it fetches and delivers nothing, and it does not resume work after the storm. Delivered
 /// devices are safe. A device that is not delivered, even if it is aboard, takes the damage of the
-/// whole storm at its own site. No trip may end after the time until which the storm is known.
+/// whole storm at its own site. A trip fails in all members if it
+/// ends after the time until which the storm is known.
 ///
 /// **Devices aboard at the start.** A ship that starts with devices aboard gets the order to
 /// deliver them, even if no winds are expected or if winds stop it in all members. There are two

@@ -220,8 +220,11 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(1, len({axes.get_ylim() for axes in figure.axes}), "one scale")
         first, second, both = [self.names_of(axes) for axes in figure.axes]
         self.assertEqual([{"clairvoyant"}, {"clairvoyant"}], [first, second])
-        self.assertEqual({"SARSA", "LSTM-DQN", "clairvoyant"},
-                         {name.replace(figures._NBSP, " ").split()[0] for name in both})
+        both = {name.replace(figures._NBSP, " ") for name in both}
+        self.assertIn("clairvoyant 5.10", both)
+        self.assertEqual({"SARSA", "LSTM-DQN", "clairvoyant"}, {name.split()[0] for name in both})
+        for name in both:
+            self.assertRegex(name, r"^\S+ −?\d\.\d\d$")
         panels = [set(self.lines(axes)) for axes in figure.axes]
         self.assertEqual([{"LSTM-DQN"}, {"SARSA"}, {"SARSA", "LSTM-DQN"}], panels)
 
@@ -243,6 +246,15 @@ class FiguresTest(unittest.TestCase):
                              {name for _, _, _, name in ends})
             if has_random:
                 self.assertLessEqual(lines["RANDOM"][0].max(), 1500, "SARSA ends there")
+
+    def test_a_headline_names_all_learners_with_the_highest_printed_value(self):
+        ends = [(9, 4.46, "red", "SARSA"), (9, 4.54, "blue", "LSTM-DQN")]
+        self.assertEqual("LSTM-DQN has the highest return: 5",
+                         figures._highest(self.contestants, ends, "return"))
+        self.assertEqual("LSTM-DQN and SARSA have the highest return: 4",
+                         figures._highest(self.contestants, [(9, 4.46, "red", "SARSA"),
+                                                             (9, 4.48, "blue", "LSTM-DQN")], "return"))
+        self.assertEqual("SARSA: return 4", figures._highest(self.contestants, ends[:1], "return"))
 
     def test_the_headline_of_fig_12a_has_the_steps_until_90_percent_of_the_reference(self):
         learnt = {"return": np.array([-100.0] * 50 + [100.0] * 100), "steps": np.full(150, 10)}
@@ -351,13 +363,13 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual([[0, 0]], marks["ship at the end"])
         lines = self.lines()
         self.assertIn("ring of a disaster in the last step", lines)
-        self.assertNotIn("rings 60 and 120 steps before", lines, "the episode has 3 steps")
+        self.assertNotIn("ring 60 steps before", lines, "the episode has 3 steps")
         last, = (one for one in self.axes.collections if isinstance(one, LineCollection))
         self.assertIn("last leg, a device aboard", last.get_label())
         np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
         np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
         self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
-                         "time limit at step 3, last pickup at 1",
+                         "time limit at step 3, last stop at 1",
                          self.axes.get_title("left"))
         low, high = self.axes.get_ylim()
         self.assertEqual(8.7, self.axes.get_xlim()[1], "the scale of the largest ranch")

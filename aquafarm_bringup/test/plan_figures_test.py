@@ -40,12 +40,12 @@ class PlanFiguresTest(unittest.TestCase):
         clock = document.Clock(plan["clock"])
         rows = figures.timeline(plan)["rows"]
         end = rows[0]["bars"][-1]["x"] + rows[0]["bars"][-1]["w"]
-        for right, expected in ((end + 2000.0, "{}; each bar: the way to this stop"),
+        for right, expected in ((end + 2000.0, "{}; dark: to a device, light: to a port"),
                                 (end + 200.0, "{}"), (end, "")):
             figures._name_ends(plan, rows, clock, right)
             at = f"in port {clock.time(plan['plan']['routes'][0]['orders'][-1]['time'])}"
             self.assertEqual(expected.format(at), rows[0]["end"])
-            self.assertFalse(any("each bar" in row["end"] for row in rows[1:]), "said once")
+            self.assertFalse(any("dark" in row["end"] for row in rows[1:]), "said once")
 
     def test_ships_have_numbers_and_ports_letters(self):
         plan = plan_sample.sample(members=100)

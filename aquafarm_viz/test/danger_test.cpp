@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "aquafarm_viz/base/palette.h"
+#include "aquafarm_viz/markers/markers.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {
@@ -84,9 +85,8 @@ TEST(DangerMarkers, ExplainTheSignsThatAreOnTheMap) {
     }
     return result;
   };
-  EXPECT_EQ(words(&trail),
-            "danger: worst to come|to the centre|pattern: at risk|dashed: empty ship|");
-  EXPECT_EQ(words(nullptr), "danger: worst to come|to the centre|pattern: at risk|");
+  EXPECT_EQ(words(&trail), "danger: worst ring|to the centre|pattern: at risk|dashed: empty ship|");
+  EXPECT_EQ(words(nullptr), "danger: worst ring|to the centre|pattern: at risk|");
   scene.state.disasters[0].x = 24.0F;
   scene.state.disasters[0].radii = {1.0F, 2.0F};
   EXPECT_EQ(words(nullptr), "pattern: at risk|");
@@ -99,6 +99,18 @@ TEST(DangerMarkers, ReplaceTheLabelOfTheDevice) {
   const auto markers = scene.Draw();
   EXPECT_EQ(markers.at({"device_label", 0}).action, Marker::DELETE) << "F0 is in danger";
   EXPECT_EQ(markers.count({"device_label", 1}), 0U);
+}
+
+TEST(DangerMarkers, ReplaceMarkersOfTheStateWithTheSameId) {
+  Scene scene;
+  const auto array =
+      Joined(StateMarkers(scene.spec, scene.state), scene.danger.Of(scene.spec, scene.state));
+  std::map<Key, Marker> all;
+  for (const auto& marker : array.markers) {
+    EXPECT_TRUE(all.emplace(Key(marker.ns, marker.id), marker).second) << marker.ns;
+  }
+  EXPECT_EQ(all.at({"device_label", 0}).action, Marker::DELETE) << "F0 is in danger";
+  EXPECT_EQ(all.at({"device_label", 1}).text, "F1");
 }
 
 TEST(DangerMarkers, AreDeletedWhenTheDangerIsOver) {
@@ -312,7 +324,7 @@ disasters:
   scene.state.devices.push_back(test::MakeDevice(10, 0, 4, 12, 1.0F));
   const Marker alarm = scene.Draw().at({"alarm", 0});
   EXPECT_EQ(alarm.text,
-            "typhoon: gale over F0 and F10 now, storm in 4.0 h (Sun 04:16),\n"
+            "typhoon: gale over F0 and F10 now, storm in 4.0 h (Sun 04:16 UTC+8),\n"
             "hurricane force in 10 h (Sun 10:16)");
   // whole_view.cpp leaves 3.5 % of the farm free on its right. On the screen, letters are 0.40 of
   // their height wide on average.

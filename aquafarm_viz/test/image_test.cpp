@@ -249,6 +249,24 @@ TEST(Image, WritesLegendAndLines) {
   EXPECT_GT(variety(before(cv::Rect(0, 598, 640, 20))), 10.0);     // reward terms
 }
 
+TEST(Image, WritesTheDangerInTheFirstLineEvenWhereThereIsLittleSpace) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  state.devices = {test::MakeDevice(3, 0, 12, 12, 1.0F)};
+  state.disasters = {test::MakeDisaster(0, 12.0F, 12.0F)};
+  state.seed = 18446744073709551615ULL;
+  state.joint_return = -123456.7F;
+  auto worse = state;
+  for (float& risk : worse.disasters[0].risks) risk -= 1.0F;
+  for (const int width : {640, 320}) {
+    const auto head = [&](const aquafarm_msgs::FarmState& shown) {
+      const cv::Mat image = DrawFarm(spec, shown, {width, width});
+      return image(cv::Rect(0, 0, width, width == 640 ? 22 : 15)).clone();
+    };
+    EXPECT_GT(cv::norm(head(state), head(worse)), 100.0) << "another risk, " << width;
+  }
+}
+
 TEST(Image, HasALargerMapWithoutThePanel) {
   const ImageSize with{640, 640};
   const ImageSize without{640, 640, /*has_panel=*/false};

@@ -59,7 +59,7 @@ TEST(Outlook, OfAPresentCourseNamesEachRingAndItsTime) {
   EXPECT_EQ(outlook.devices[0].arrivals[1].steps, 25.0);
   EXPECT_EQ(outlook.devices[0].arrivals[1].risk, -20.0);
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, risk -5, reaches F3 in about 1.0 h, risk -20 in 1.2 h");
+            "typhoon, risk -5, reaches F3 in about 1.0 h, risk -20 in about 1.2 h");
 }
 
 TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
@@ -74,7 +74,7 @@ TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
   scene.spec.has_start_time = true;
   scene.spec.step_duration_s = 1800.0;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, risk -5, reaches F3 in 5.0 h (Thu 05:51)")
+            "typhoon, risk -5, reaches F3 in 5.0 h (Thu 05:51 UTC)")
       << "5 h after the state's time, 0 h 51 min";
   scene.spec.has_start_time = false;
   scene.spec.step_duration_s = 0.0;
@@ -268,7 +268,7 @@ TEST(Outlook, ListsADeviceInARingBeforeOneThatIsReachedLater) {
   EXPECT_EQ(outlook.devices[2].id, 3) << "reached in 2 steps";
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
             "typhoon: risk -20 over F2 and F6 now, risk -5 reaches F3 in about 6 min, "
-            "risk -20 in 21 min");
+            "risk -20 in about 21 min");
   EXPECT_EQ(ShortOutlookText(scene.spec, outlook), "F2: risk -20 now");
 }
 
@@ -295,20 +295,18 @@ TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
   EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "risk -5 now, -20 in 9 min");
 }
 
-TEST(Outlook, IsInTheHeadLineEvenWhereThereIsLittleSpace) {
+TEST(Outlook, HasHeadlinesWithAndWithoutDirectionsAndAShortOne) {
   Outlooks scene;
-  scene.state.disasters[0].x = 12.0F;
-  scene.state.seed = 18446744073709551615ULL;
-  scene.state.episode = 123456789;
-  scene.state.joint_return = -123456.7F;
-  scene.state.paused = true;
-  auto calm = scene.state;
-  calm.disasters[0].steps_left = 0;
-  const auto head = [&scene](const aquafarm_msgs::FarmState& state) {
-    const cv::Mat image = DrawFarm(scene.spec, state, {640, 640});
-    return image(cv::Rect(400, 24, 240, 14)).clone();
-  };
-  EXPECT_GT(cv::norm(head(scene.state), head(calm)), 300.0);
+  const std::vector<std::string> expected{
+      "Typhoon in the E, risk -5, reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
+      "Typhoon, risk -5, reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
+      "F3: risk -5 in 1.0 h, -20 in 1.2 h"};
+  EXPECT_EQ(Headlines(scene.spec, scene.state, scene.outlook()), expected);
+  scene.state.disasters[0].x = 212.0F;
+  EXPECT_EQ(Headlines(scene.spec, scene.state, scene.outlook())[0],
+            "No known danger to devices until +3.0 h");
+  scene.state.disasters[0].steps_left = 0;
+  EXPECT_TRUE(Headlines(scene.spec, scene.state, scene.outlook()).empty());
 }
 
 TEST(Outlook, SaysUntilWhenItIsKnown) {

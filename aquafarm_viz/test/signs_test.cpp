@@ -53,9 +53,9 @@ TEST(Signs, HaveOneLineOfTheKeyEach) {
               SignSpan(sign) * (layout.panel.width - 16) / 2 - 20)
         << SignWords(sign) << " fits";
   }
-  EXPECT_EQ(words, (std::set<std::string>{"at risk", "first hit", "danger: worst to come",
-                                          "in port", "loaded", "empty", "to centre", "heading",
-                                          "legal move", "sensors", "fetched"}));
+  EXPECT_EQ(words, (std::set<std::string>{"at risk", "first hit", "danger: worst ring", "in port",
+                                          "loaded", "empty", "to centre", "heading", "legal move",
+                                          "sensors", "fetched"}));
   const RiskKey key{{34, -5.0, aquafarm_msgs::DisasterState::TYPHOON}};
   EXPECT_EQ(SignsOf(spec, state, overlays, outlook, key, layout).size() + 1, signs.size())
       << "the key of risks shows the pattern";

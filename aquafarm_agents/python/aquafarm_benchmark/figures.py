@@ -16,19 +16,21 @@ _REACHED = 0.9  # a learner has learnt once it reaches this fraction of the best
 
 def _learners(contestants):
     """Returns the contestants except RANDOM."""
-    return [one for one in contestants if one.name != "random"]
+    return [one for one in contestants if not one.name.startswith("random")]
 
 
 def _highest(contestants, ends, what, digits=0):
     """Returns the headline of a chart: "DQN has the highest return: 271". The last values of the
-    lines of the learners are compared; RANDOM is left out."""
+    lines of the learners are compared as they are printed; RANDOM is left out."""
     learners = {one.label for one in _learners(contestants)}
     last = sorted(((y, name) for _, y, _, name in ends if name in learners), reverse=True)
     if not last:
         return what.capitalize()
-    value, name = last[0]
-    return (f"{name} has the highest {what}: {number(value, digits)}" if len(last) > 1 else
-            f"{name}: {what} {number(value, digits)}")
+    value = number(last[0][0], digits)
+    names = [name for y, name in last if number(y, digits) == value]
+    if len(last) == 1:
+        return f"{names[0]}: {what} {value}"
+    return f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} the highest {what}: {value}"
 
 
 def _with_values(contestants, ends, digits=0):
@@ -227,7 +229,8 @@ def draw_rewards(path, contestants, runs, references):
     _draw_returns(
         path, contestants, lambda ends: _learning_times(contestants, runs, references) or
         _highest(contestants, ends, "return at the end of the training"),
-        f"Fig. 12a: the first run of each learner, means of {measures.WINDOW} episodes.",
+        f"Fig. 12a: the first run of each learner, means of {measures.WINDOW} episodes. The upper "
+        "chart ends with the last learner; RANDOM takes more steps.",
         f"{measures.WINDOW}-episode mean return", [
             (lambda axes: plot_rewards_by_steps(axes, *data), "time steps so far (logarithmic)",
              False),
@@ -371,9 +374,9 @@ def draw_mean_score(path, contestants, runs, references):
         ends = plot_mean_score(all_axes[letter], panel, runs, references, limits)
         all_axes[letter].margins(x=0.0)
         if letter == "c":  # in the other panels the title names the line
-            explain(figure, _highest(contestants, ends, "return per step at the end", digits=1),
+            explain(figure, _highest(contestants, ends, "return per step at the end", digits=2),
                     f"Fig. 13: means of {measures.WINDOW} episodes. {_shading(contestants, runs)}")
-            name_ends(all_axes[letter], _with_values(contestants, ends, digits=1))
+            name_ends(all_axes[letter], _with_values(contestants, ends, digits=2))
         for name, value in references.items():
             if letter != "c":
                 all_axes[letter].annotate(name, (0.99, value), xytext=(0, -3), va="top", ha="right",

@@ -27,8 +27,8 @@ _SEA = "#eaf3f9"
 _LAND = "#c9b98a"
 _STOPS = {"pickup": ("P", "pickup"), "drop_off": ("X", "drop-off")}
 _STOP_STYLE = {"s": 130, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 7}
-_BEFORE = (60, 120)  # steps before the end whose rings are drawn
-_BEFORE_LABEL = "rings 60 and 120 steps before"
+_BEFORE = {60: "--", 120: ":"}  # steps before the end whose rings are drawn, and their line style
+
 
 def draw_route(path, label, route_file):
     """Draws Fig. 11: the greedy actions at the start and after the first pickup, and the route.
@@ -116,12 +116,13 @@ def plot_unfinished(axes, name, route, size):
     sea = _chart(axes, chart, size, left)
     axes.set_xlabel("cells to the east")
     axes.set_ylabel("cells to the north")
-    for steps in _BEFORE:
+    for steps, style in _BEFORE.items():
         then = len(route["steps"]) - 2 - steps
         for disaster in route["steps"][then]["disasters"] if then >= 0 else []:
             for ring in _rings(disaster):
                 outline, = axes.plot(*np.vstack([ring, ring[:1]]).T, color="#b22222", zorder=2,
-                                     linewidth=0.8, linestyle=":", label=_BEFORE_LABEL)
+                                     linewidth=0.8, linestyle=style,
+                                     label=f"ring {steps} steps before")
                 outline.set_clip_path(sea)
     for disaster in route["steps"][-2]["disasters"]:  # in the last state they have ended
         for ring in _rings(disaster):
@@ -144,8 +145,7 @@ def plot_unfinished(axes, name, route, size):
                  label="ship at the end")
     result = f"{route['return']:.0f}".replace("-", "−")
     end = len(route["steps"]) - 1
-    stop = (f"last {'pickup' if loaded else 'delivery'} at {end - len(last_leg) + 1}" if before else
-            "no pickup")
+    stop = f"last stop at {end - len(last_leg) + 1}" if before else "no stop"
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
                    f"return {result}\n"
                    f"{route['reason'].replace('_', ' ')} at step {end}, {stop}",

@@ -6,8 +6,9 @@ import numpy as np
 from matplotlib.path import Path
 from matplotlib.transforms import Bbox
 
-EARTH_M = 6.371e6  # mean radius
-LEAST_KM = 150.0  # narrower drawings have no coast: its error of up to 2 km would be visible
+from .geodesy import LocalPlane
+
+LEAST_KM = 300.0  # narrower drawings would show the error of the coast
 
 
 def source():
@@ -26,8 +27,8 @@ def source():
 def rings(origin, cell_size_m, box):
     """Returns the land within a box as closed rings, each an array of corners (x, y) [cells].
 
-    Every corner is projected onto the tangent plane of a sphere at `origin`, the position of cell
-    [0, 0]. Corners more than about 60 degrees away are left out.
+    Every corner is projected onto the tangent plane at `origin`, the position of cell [0, 0].
+    Corners more than about 60 degrees away are left out.
     @param box  (west, south, east, north) [cells]
     """
     path = source()
@@ -55,6 +56,6 @@ def _project(origin, corners):
     lon = np.radians(corners[:, 0] - origin["longitude"])
     lat, lat0 = np.radians(corners[:, 1]), np.radians(origin["latitude"])
     near = np.sin(lat0) * np.sin(lat) + np.cos(lat0) * np.cos(lat) * np.cos(lon) > 0.5
-    east = np.cos(lat) * np.sin(lon)
-    north = np.cos(lat0) * np.sin(lat) - np.sin(lat0) * np.cos(lat) * np.cos(lon)
-    return EARTH_M * np.stack([east, north], axis=1)[near]
+    plane = LocalPlane(origin["latitude"], origin["longitude"])
+    return np.array([plane.to_plane(latitude, longitude)
+                     for longitude, latitude in corners[near]]).reshape(-1, 2)

@@ -232,7 +232,7 @@ def _name_ends(plan, rows, clock, right):
     would extend beyond `right` [px]."""
     for i, (row, route) in enumerate(zip(rows, plan["plan"]["routes"])):
         at = f"in port {clock.time(route['orders'][-1]['time'])}" if row["bars"] else ""
-        key = "each bar: the way to this stop"
+        key = "dark: to a device, light: to a port"
         row["end"] = next(
             (text for text in ([f"{at}; {key}"] if i == 0 and at else []) + [at]
              if row["bars"] and row["bars"][-1]["x"] + row["bars"][-1]["w"] + 6.6 * len(text) < right),

@@ -75,7 +75,8 @@ void DrawScaleBar(cv::Mat& image, cv::Point left, int room_px, double cell_size_
   std::string text = length_m >= 1000.0 ? Number(length_m / 1000.0, 0) + " km"
                                         : Number(length_m, length_m < 1.0 ? 3 : 0) + " m";
   if (length_m >= 100.0) text += " = " + Number(length_m / kNauticalMile_m, 2) + " nmi";
-  const std::string cells = " = " + Number(length_m / cell_size_m, 0) + " cells";
+  const std::string count = Number(length_m / cell_size_m, 0);
+  const std::string cells = " = " + count + (count == "1" ? " cell" : " cells");
   const bool is_whole = std::abs(std::remainder(length_m, cell_size_m)) < 1e-6 * length_m;
   if (is_whole && fonts.small.Width(text + cells) <= room_px) text += cells;
   fonts.small.Draw(image, text, {left.x, left.y - layout.Px(4)}, Bgr(layout.style->words));
@@ -204,7 +205,7 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
           std::any_of(state.disasters.begin(), state.disasters.end(), IsDrawn),
       Sign::kAtRisk);
   const auto in_danger = layers.risk ? CountInDanger(outlook) : 0;
-  add(in_danger > 1, Sign::kInDanger);
+  add(in_danger > 0, Sign::kInDanger);
   add(in_danger > 0, Sign::kFirstReached);
   add(std::any_of(state.devices.begin(), state.devices.end(),
                   [](const auto& device) {
@@ -245,7 +246,7 @@ const char* SignWords(Sign sign) {
     case Sign::kFirstReached:
       return "first hit";
     case Sign::kInDanger:
-      return "danger: worst to come";
+      return "danger: worst ring";
     case Sign::kDelivered:
       return "in port";
     case Sign::kFetched:

@@ -50,7 +50,7 @@ using Outline = std::vector<cv::Point2d>;  // [pixels]
 // Fills the land of the region and draws its coasts.
 void DrawLand(Inset& inset, const FarmSpec& spec, const std::vector<CoastRing>& coast,
               const Style& style) {
-  constexpr double kSmallest_m = 150e3;  // min width of the inset, because coasts are not exact
+  constexpr double kSmallest_m = 300e3;  // narrower insets would show the error of the coast
   const cv::Point2d size(inset.image.cols / inset.px_per_cell,
                          inset.image.rows / inset.px_per_cell);
   if (size.x * spec.cell_size_m < kSmallest_m) return;

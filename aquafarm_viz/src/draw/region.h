@@ -37,7 +37,7 @@ RegionWords RegionText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs:
 
 /// Draws a map of the region around the farm with its coasts, and with the centre, the rings and
 /// the course of each disaster (IsDrawn). Writes the lines of RegionText below it. Leaves the
-/// coasts out of a map less than 150 km wide, because they are not exact enough for it. Leaves the
+/// coasts out of a map less than 300 km wide, because they are not exact enough for it. Leaves the
 /// map out if no centre is outside the farm or if `room` is too small for it. Leaves the lines out
 /// if they do not fit in addition to the map, unless they are about a known course or an arrival.
 /// Draws nothing if `room` has less than three rows. Also draws nothing if the map is left out and

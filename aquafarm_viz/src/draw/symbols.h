@@ -105,14 +105,14 @@ struct SignPlace {
   cv::Point2d arrow_to;  ///< tip of the arrow of its motion; equals `at` if there is no arrow
   bool is_inside{};      ///< false: the centre lies outside the map
 };
-/// Returns the position of the sign of one disaster. A sign has an arrow if the disaster moves and
-/// its centre is on the map.
+/// Returns the position of the sign of one disaster. A sign has an arrow if the disaster moves, its
+/// centre is on the map, and so is the tip of the arrow.
 SignPlace PlaceSign(const aquafarm_msgs::DisasterState& disaster, const Layout& layout);
 /// Returns the position of the sign of each disaster of the state. Pointers that would overlap are
 /// moved apart along the border if there is space.
 std::vector<SignPlace> PlaceSigns(const aquafarm_msgs::FarmState& state, const Layout& layout);
 
-/// Draws the centre of each disaster (IsDrawn) with an arrow if it moves. If the centre is outside
+/// Draws the centre of each disaster (IsDrawn) with its arrow (PlaceSign). If the centre is outside
 /// the map, draws a pointer at the border instead.
 void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Layout& layout,
                        const Fonts& fonts);

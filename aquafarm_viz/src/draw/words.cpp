@@ -2,11 +2,11 @@
 // The texts above and below the map.
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
 
-#include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "draw/symbols.h"
@@ -38,41 +38,22 @@ class Line {
   int right_;
 };
 
-std::string Capitalised(std::string text) {
-  if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
-
-// Adds to the name of each disaster outside the farm in which direction it is.
-Outlook WithDirections(const FarmSpec& spec, const FarmState& state, Outlook outlook) {
-  for (std::size_t i = 0; i < outlook.names.size(); ++i) {
-    const auto& disaster = state.disasters[i];
-    if (IsCentreInFarm(spec, disaster)) continue;
-    outlook.names[i] += " in the " + PointFromFarm(spec, disaster.x, disaster.y);
-  }
-  return outlook;
-}
-
-// Draws the danger in the first row, in the largest font in which it fits, else a short form.
-// Returns false if there is nothing to draw.
+// Draws the danger in the first row: the longest headline that fits, in the largest font. Returns
+// false if there is nothing to draw.
 bool DrawDanger(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                 const Outlook& outlook, cv::Point at, int width, const Layout& layout,
                 const Fonts& fonts) {
-  const std::string brief = Capitalised(ShortOutlookText(spec, outlook));
-  if (brief.empty()) return false;
-  const Rgb color = IsInDanger(outlook) ? layout.style->alarm : layout.style->words;
-  const std::array<std::string, 2> full{
-      Capitalised(OutlookText(spec, state, WithDirections(spec, state, outlook))),
-      Capitalised(OutlookText(spec, state, outlook))};
-  for (const std::string& text : full) {
+  const std::vector<std::string> lines = Headlines(spec, state, outlook);
+  if (lines.empty()) return false;
+  const cv::Scalar color = Bgr(IsInDanger(outlook) ? layout.style->alarm : layout.style->words);
+  for (const std::string& line : lines) {
     for (const Font* font : {&fonts.title, &fonts.headline, &fonts.bold}) {
-      if (font->Width(text) > width) continue;
-      font->Draw(image, text, at, Bgr(color));
+      if (font->Width(line) > width) continue;
+      font->Draw(image, line, at, color);
       return true;
     }
   }
-  const Font& font = fonts.title.Width(brief) <= width ? fonts.title : fonts.bold;
-  font.Draw(image, font.Fit(brief, width), at, Bgr(color));
+  fonts.bold.Draw(image, fonts.bold.Fit(lines.back(), width), at, color);
   return true;
 }
 
@@ -92,7 +73,8 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
   const std::string name = spec.scenario_name.empty() ? "aquafarm" : spec.scenario_name;
   const bool is_over = state.terminated || state.truncated;
   if (is_over || DrawDanger(image, spec, state, outlook, first, right - left, layout, fonts)) {
-    line.Put(fonts.bold, name, layout.style->words, gap);
+    // A long name leaves space for the step and the return.
+    line.Put(fonts.bold, fonts.bold.Fit(name, (time_left - left) / 3), layout.style->words, gap);
   } else {
     fonts.title.Draw(image, fonts.title.Fit(name, right - left), first, Bgr(layout.style->words));
   }

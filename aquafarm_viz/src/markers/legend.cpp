@@ -181,11 +181,20 @@ void AddLegend(MarkerArray& array, const FarmSpec& spec) {
 void AddSignLegend(MarkerArray& array, const FarmSpec& spec, const MapSigns& signs) {
   Row row(array, spec, 1, "sign_legend");
   const auto text = [&row](bool is_shown, const char* words) {
-    is_shown ? row.Text(words) : row.Remove("sign_legend_text");
+    if (is_shown) return row.Text(words);
+    row.Remove("sign_legend_text");
   };
-  signs.circle ? row.Ring() : row.Remove("sign_legend");
-  text(signs.circle, "danger: worst to come");
-  signs.pointer ? row.Pointer() : row.Remove("sign_legend");
+  if (signs.circle) {
+    row.Ring();
+  } else {
+    row.Remove("sign_legend");
+  }
+  text(signs.circle, "danger: worst ring");
+  if (signs.pointer) {
+    row.Pointer();
+  } else {
+    row.Remove("sign_legend");
+  }
   text(signs.pointer, "to the centre");
   text(signs.pattern, "pattern: at risk");
   text(signs.dashes, "dashed: empty ship");

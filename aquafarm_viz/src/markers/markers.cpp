@@ -457,4 +457,16 @@ MarkerArray StateMarkers(const FarmSpec& spec, const FarmState& state, const Tra
   return array;
 }
 
+MarkerArray Joined(MarkerArray first, const MarkerArray& second) {
+  std::set<std::pair<std::string, std::int32_t>> replaced;
+  for (const Marker& marker : second.markers) replaced.emplace(marker.ns, marker.id);
+  const auto is_replaced = [&replaced](const Marker& marker) {
+    return marker.action != Marker::DELETEALL && replaced.count({marker.ns, marker.id}) > 0;
+  };
+  first.markers.erase(std::remove_if(first.markers.begin(), first.markers.end(), is_replaced),
+                      first.markers.end());
+  first.markers.insert(first.markers.end(), second.markers.begin(), second.markers.end());
+  return first;
+}
+
 }  // namespace aquafarm_viz

@@ -26,12 +26,6 @@ constexpr int kJpegQuality = 90;
 constexpr std::size_t kStamps = 200;     // number of last states to which values may belong
 constexpr std::int32_t kMaxRoutes = 64;  // max ships with a route topic
 
-visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
-                                       const visualization_msgs::MarkerArray& second) {
-  first.markers.insert(first.markers.end(), second.markers.begin(), second.markers.end());
-  return first;
-}
-
 }  // namespace
 
 VizParams ReadVizParams(const ros::NodeHandle& node) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <iterator>
+#include <utility>
 
 #include "aquafarm/grid/geo_frame.h"
 #include "scene/graticule.h"

@@ -289,14 +289,16 @@ std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
   return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
 }
 
-// Returns the local time `steps` steps from now, " (Sun 06:24)"; empty if that is less than an hour
-// away or if the scenario has no start time.
-std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double steps) {
+// Returns the local time `steps` steps from now, " (Sun 06:24 UTC+8)" or without its zone; empty if
+// that is less than an hour away or if the scenario has no start time.
+std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double steps, bool has_zone) {
   if (!spec.has_start_time || steps * spec.step_duration_s < 3600.0) return "";
   const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
   const std::string time = LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
-  return " (" + time.substr(0, time.rfind(' ')) + ")";
+  return " (" + (has_zone ? time : time.substr(0, time.rfind(' '))) + ")";
 }
+
+const std::string kInThe = " in the ";  // between a name and its direction, see Headlines
 
 // Shortens "hurricane force in 9 h" to "hurricane in 9 h".
 std::string WithoutForce(std::string text) {
@@ -351,19 +353,41 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
       text = outlook.names[ring.disaster] + ", " + RingText(ring.risk, ring.wind_kt) +
              ", reaches " + these;
     } else {
-      text += ", " + (ring.disaster == disaster ? "" : outlook.names[ring.disaster] + " ") +
+      const std::string& name = outlook.names[ring.disaster];
+      const bool has_direction = name.find(kInThe) != std::string::npos;
+      text += ", " + (ring.disaster == disaster ? "" : name + (has_direction ? ", " : " ")) +
               RingText(ring.risk, ring.wind_kt) + (these == whom ? "" : " reaches " + these);
     }
     text += " in " + when;
     whom = these;
     disaster = ring.disaster;
   };
-  add(*next, (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next->steps) +
-                 ClockAhead(spec, state, next->steps));
+  const std::string about = outlook.is_extrapolated ? "about " : "";
+  const std::string clock = ClockAhead(spec, state, next->steps, /*has_zone=*/true);
+  add(*next, about + AheadText(spec, next->steps) + clock);
   if (worst->risk < next->risk) {
-    add(*worst, AheadText(spec, worst->steps) + ClockAhead(spec, state, worst->steps));
+    add(*worst, about + AheadText(spec, worst->steps) +
+                    ClockAhead(spec, state, worst->steps, /*has_zone=*/clock.empty()));
   }
   return text;
+}
+
+std::vector<std::string> Headlines(const FarmSpec& spec, const FarmState& state,
+                                   const Outlook& outlook) {
+  const std::string brief = ShortOutlookText(spec, outlook);
+  if (brief.empty()) return {};
+  Outlook directed = outlook;
+  for (std::size_t i = 0; i < directed.names.size(); ++i) {
+    const auto& disaster = state.disasters[i];
+    if (IsCentreInFarm(spec, disaster)) continue;
+    directed.names[i] += kInThe + PointFromFarm(spec, disaster.x, disaster.y);
+  }
+  std::vector<std::string> lines{OutlookText(spec, state, directed),
+                                 OutlookText(spec, state, outlook), brief};
+  for (std::string& line : lines) {
+    line[0] = char(std::toupper(static_cast<unsigned char>(line[0])));
+  }
+  return lines;
 }
 
 std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {

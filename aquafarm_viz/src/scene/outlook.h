@@ -78,13 +78,19 @@ std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 /// Examples: "typhoon, risk -10, reaches F3 in 6.5 h" and "typhoon: risk -5 over F2 now, risk -20
 /// in 6.5 h". If the winds of the rings are given: "typhoon In-Fa: gale over F0 and F1 now, gale
 /// reaches F5 in 8 min, storm reaches F0 in 6.5 h". On a farm with a start time, the local time
-/// follows the next arrival if that is at least an hour away.
+/// follows each arrival that is at least an hour away, the first one with its zone.
 ///
 /// If the farm has devices but none is deployed, the text is "no device is deployed". If no ring
 /// covers or reaches a device, the text is empty, or "no known danger to devices until +12 h" if a
 /// course is known only until then. The text is also empty if the outlook is not known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
+
+/// Returns the outlook as headlines, the longest first: OutlookText with the direction of each
+/// disaster outside the farm, OutlookText, and the danger to the most urgent device. Empty if the
+/// outlook is not known or if there is nothing to report.
+std::vector<std::string> Headlines(const aquafarm_msgs::FarmSpec& spec,
+                                   const aquafarm_msgs::FarmState& state, const Outlook& outlook);
 
 /// Returns the risk of the worst ring that covers or reaches a device; 0 if none does.
 double WorstRisk(const DeviceOutlook& device);

@@ -53,4 +53,9 @@ visualization_msgs::MarkerArray StateMarkers(const aquafarm_msgs::FarmSpec& spec
                                              const Trail* trail = nullptr,
                                              const Layers& layers = {});
 
+/// Returns the markers of both arrays. A marker of `second` replaces that of `first` with the same
+/// namespace and id: rviz warns about an array that adds and deletes the same marker.
+visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
+                                       const visualization_msgs::MarkerArray& second);
+
 }  // namespace aquafarm_viz

@@ -120,17 +120,13 @@ def plot_unfinished(axes, name, route, size):
         then = len(route["steps"]) - 2 - steps
         for disaster in route["steps"][then]["disasters"] if then >= 0 else []:
             for ring in _rings(disaster):
-                outline, = axes.plot(*np.vstack([ring, ring[:1]]).T, color="#b22222", zorder=2,
-                                     linewidth=0.8, linestyle=style,
-                                     label=f"ring {steps} steps before")
-                outline.set_clip_path(sea)
+                _plot_ring(axes, ring, sea, linewidth=0.8, linestyle=style,
+                           label=f"ring {steps} steps before")
     for disaster in route["steps"][-2]["disasters"]:  # in the last state they have ended
         for ring in _rings(disaster):
             inside = axes.add_patch(Polygon(ring, color="#b22222", alpha=0.12, zorder=1))
-            outline, = axes.plot(*np.vstack([ring, ring[:1]]).T, color="#b22222", zorder=2,
-                                 linewidth=1.4, label="ring of a disaster in the last step")
             inside.set_clip_path(sea)
-            outline.set_clip_path(sea)
+            _plot_ring(axes, ring, sea, linewidth=1.4, label="ring of a disaster in the last step")
     *before, (loaded, last_leg) = legs(route["steps"])
     for _, cells in before:
         axes.plot(*np.array(cells, dtype=float).T, color="#5b6b78", linewidth=1.0, zorder=4,
@@ -303,6 +299,12 @@ def _rings(disaster):
         radii = np.repeat(ring, 90)  # quadrants are clockwise from north-east, as bearings
         yield np.column_stack([disaster["x"] + radii * np.sin(bearings),
                                disaster["y"] + radii * np.cos(bearings)])
+
+
+def _plot_ring(axes, ring, sea, **style):
+    """Draws the outline of a ring, clipped at the edge of the sea."""
+    outline, = axes.plot(*np.vstack([ring, ring[:1]]).T, color="#b22222", zorder=2, **style)
+    outline.set_clip_path(sea)
 
 
 def _disasters(axes, steps, sea):

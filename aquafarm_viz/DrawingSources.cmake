@@ -31,6 +31,7 @@ set(AQUAFARM_DRAWING_SOURCES
   src/scene/layers.cpp
   src/scene/nautical.cpp
   src/scene/outlook.cpp
+  src/scene/outlook_text.cpp
   src/scene/ship_place.cpp
   src/scene/shown_actions.cpp
   src/scene/storm_track.cpp

@@ -73,7 +73,7 @@ def finding(storms):
     share = sum(s["saved"] for s in storms) / sum(s["clairvoyant"] for s in storms)
     less = sum(s["promised"] < s["saved"] for s in storms)
     return (f"In {as_good} of {len(staked)} recorded storms with something at stake the plan saves "
-            f"what a clairvoyant\nsaves ({share:.0%} in all); in {less} of {len(storms)} storms it saves "
+            f"what a clairvoyant\nsaves ({100 * share:.0f} % in all); in {less} of {len(storms)} storms it saves "
             "more than it promised")
 
 
@@ -87,7 +87,7 @@ def name_of(storm):
 def draw_back_test(data, path):
     """Draws three values for each recorded storm: saved by the plan, promised by the plan, and
     saved by a clairvoyant."""
-    storms = data["storms"]
+    storms = sorted(data["storms"], key=lambda storm: -storm["at_risk"])
     figure, axes = plt.subplots(figsize=(8.2, 0.27 * len(storms) + 1.2))
     places = range(len(storms), 0, -1)
     low = [max(0.0, s["saved"] - s["saved_low"]) for s in storms]
@@ -99,7 +99,7 @@ def draw_back_test(data, path):
     axes.errorbar([s["saved"] for s in storms], places, xerr=[low, high], fmt="o", color="black",
                   markersize=4, capsize=3, label="saved by the plan (mean, range)")
     axes.plot([s["promised"] for s in storms], places, "x", color="#0072b2", markersize=7,
-              markeredgewidth=1.8, label="promised before the storm (beyond the bar: a milder storm came)")
+              markeredgewidth=1.8, label="promised (beyond the bar: a milder storm came)")
     for place, storm in zip(places, storms):
         if storm["at_risk"] <= 0.5:
             axes.text(max(storm["promised"], storm["saved"]) + 6, place, "nothing at stake",
@@ -111,9 +111,9 @@ def draw_back_test(data, path):
     axes.grid(alpha=0.3, axis="x")
     handles, words = axes.get_legend_handles_labels()
     order = [words.index(word) for word in sorted(words)]
-    axes.legend([handles[i] for i in order], [words[i] for i in order], fontsize=10, ncol=1,
-                loc="lower left", bbox_to_anchor=(-0.01, 1.0), frameon=False, borderpad=0.2)
-    figure.suptitle(finding(storms), fontsize=12, weight="bold", x=-0.05, y=1.10, ha="left")
+    axes.legend([handles[i] for i in order], [words[i] for i in order], fontsize=10, ncol=2,
+                loc="lower left", bbox_to_anchor=(-0.17, 1.0), frameon=False, borderpad=0.2)
+    figure.suptitle(finding(storms), fontsize=12, weight="bold", x=-0.05, y=1.05, ha="left")
     figure.savefig(path, dpi=DPI, bbox_inches="tight")
     plt.close(figure)
 

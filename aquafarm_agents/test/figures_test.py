@@ -239,13 +239,25 @@ class FiguresTest(unittest.TestCase):
             _, axes = style.plt.subplots()
             ends = figures.plot_rewards_by_steps(axes, [*self.contestants, random], self.runs,
                                                  {"clairvoyant": 100.0})
-            self.assertEqual({"SARSA 980", "90 %"}, {text.get_text() for text in axes.texts})
+            self.assertEqual({"SARSA 980"}, {text.get_text() for text in axes.texts})
             lines = self.lines(axes)
             self.assertEqual(has_random, "RANDOM" in lines)
-            self.assertEqual({"LSTM-DQN", "clairvoyant 100"} | ({"RANDOM"} if has_random else set()),
+            self.assertEqual({"LSTM-DQN", "90 % of 100", "clairvoyant 100"} |
+                             ({"RANDOM"} if has_random else set()),
                              {name for _, _, _, name in ends})
             if has_random:
                 self.assertLessEqual(lines["RANDOM"][0].max(), 1500, "SARSA ends there")
+
+    def test_names_above_fig_12a_do_not_overlap(self):
+        for name, steps in (("sarsa", 10), ("lstm_dqn", 12)):  # reach the return close to each other
+            rising = np.array([-100.0] * 50 + [100.0] * 100)
+            self.runs[name] = [{"curve": {"return": rising, "steps": np.full(150, steps)}}]
+        figure, axes = style.plt.subplots()
+        figures.plot_rewards_by_steps(axes, self.contestants, self.runs, {"clairvoyant": 100.0})
+        figure.draw_without_rendering()
+        first, second = (Text.get_window_extent(text) for text in axes.texts)  # without the leader
+        self.assertFalse(first.overlaps(second))
+        self.assertGreater(min(first.y0, second.y0), axes.get_window_extent().y1, "above the chart")
 
     def test_a_headline_names_all_learners_with_the_highest_printed_value(self):
         ends = [(9, 4.46, "red", "SARSA"), (9, 4.54, "blue", "LSTM-DQN")]

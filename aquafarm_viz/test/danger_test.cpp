@@ -71,6 +71,18 @@ TEST(DangerMarkers, NameTheDeviceTheRiskAndTheCentreOutsideTheFarm) {
   EXPECT_EQ(markers.at({"pointer", 0}).pose.position.y, 12000.0);
 }
 
+TEST(DangerMarkers, DrawTwoCirclesAroundADeviceThatIsHitFirst) {
+  Scene scene;
+  scene.state.disasters[0].speed = 0.25F;  // moves to the east
+  scene.state.disasters[0].heading_deg = 90;
+  scene.state.devices = {test::MakeDevice(0, 0, 4, 12, 1.0F), test::MakeDevice(1, 0, 4, 13, 1.0F),
+                         test::MakeDevice(2, 0, 9, 12, 1.0F)};
+  const auto markers = scene.Draw();
+  const auto points = [&](int id) { return markers.at({"danger", id}).points.size(); };
+  EXPECT_EQ(points(0), 2 * points(2)) << "the second ring reaches device 2 later";
+  EXPECT_GT(points(2), 0U);
+}
+
 TEST(DangerMarkers, ExplainTheSignsThatAreOnTheMap) {
   Scene scene;
   Trail trail;
@@ -85,8 +97,8 @@ TEST(DangerMarkers, ExplainTheSignsThatAreOnTheMap) {
     }
     return result;
   };
-  EXPECT_EQ(words(&trail), "danger: worst ring|to the centre|pattern: at risk|dashed: empty ship|");
-  EXPECT_EQ(words(nullptr), "danger: worst ring|to the centre|pattern: at risk|");
+  EXPECT_EQ(words(&trail), "danger|hit first|to the centre|pattern: at risk|dashed: empty ship|");
+  EXPECT_EQ(words(nullptr), "danger|hit first|to the centre|pattern: at risk|");
   scene.state.disasters[0].x = 24.0F;
   scene.state.disasters[0].radii = {1.0F, 2.0F};
   EXPECT_EQ(words(nullptr), "pattern: at risk|");

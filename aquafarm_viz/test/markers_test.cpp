@@ -97,14 +97,14 @@ TEST(StateMarkers, NameADisasterOnTheSideThatItsArrowLeavesFree) {
   }
 }
 
-TEST(StateMarkers, NameADisasterOutsideItsRingsWhereThatIsOnTheMap) {
+TEST(StateMarkers, NameADisasterOutsideSmallRingsAndNextToTheCentreOfLargeOnes) {
   const auto spec = test::MakeSpec();
   auto state = test::MakeState();
   auto& disaster = state.disasters[0];
   disaster.heading_deg = 180;
   disaster.speed = 0.5F;
   disaster.y = 12.0F;
-  for (const auto& [radius, is_outside] : {std::pair(6.0F, true), {14.0F, false}}) {
+  for (const auto& [radius, is_outside] : {std::pair(4.0F, true), {8.0F, false}, {14.0F, false}}) {
     disaster.radii.back() = radius;
     const auto at = ByKey(StateMarkers(spec, state)).at({"disaster_name", 0}).pose.position;
     EXPECT_EQ(at.y / spec.cell_size_m > 12.0 + double(radius), is_outside) << radius;
@@ -344,9 +344,9 @@ TEST(StateMarkers, StayBelowTheHeightAtWhichRvizCutsOff) {
 }
 
 TEST(StateMarkers, HaveTextOfElevenPixelsInAWindowOf1280x720) {
-  // In this window the view is about 600 pixels high. It contains the farm and the lines above and
-  // below it: 29 % of the side of the farm are assumed for these, whole_view.cpp leaves 34.5 %.
-  constexpr double kView_px = 600.0 / 1.29;
+  // In this window the view is about 620 pixels high. It contains the farm and the lines above and
+  // below it: 34.5 % of the side of the farm times TextScale, see whole_view.cpp.
+  constexpr double kView_px = 620.0 / (1.0 + 0.345 * 1.2);
   // Measured on the screen: capitals have 0.6 of the scale, and 0.69 of the size of Liberation
   // Sans.
   constexpr double kFontSize = 0.6 / 0.69;
@@ -382,14 +382,14 @@ TEST(ValueLegend, HasTheRangeTheColoursAndTheSymbolsWithinTheViewOfTheFarm) {
   for (const auto& marker : draw().markers) {
     words += marker.text + "|";
     const double side_m = 25.0 * spec.cell_size_m;
-    EXPECT_GT(marker.pose.position.y - 0.5 * marker.scale.z, -0.165 * side_m - 500.0)
+    EXPECT_GT(marker.pose.position.y - 0.5 * marker.scale.z, -0.165 * 1.2 * side_m - 500.0)
         << marker.text;
     EXPECT_LT(marker.pose.position.x + 0.3 * marker.scale.z * double(marker.text.size()), side_m);
     if (marker.colors.empty()) continue;
     EXPECT_LT(marker.colors.front().g, 0.15F) << "viridis begins with dark violet";
     EXPECT_GT(marker.colors.back().g, 0.75F) << "and ends with green";
   }
-  EXPECT_EQ(words, "discounted return -3.9||157.7||best move||pickup||drop-off|");
+  EXPECT_EQ(words, "value -3.9||157.7||best move||pickup||drop-off|");
   const auto keys = Keys(draw());
   values.highest = values.lowest;
   EXPECT_EQ(Keys(draw()), keys) << "a policy without values deletes the range";

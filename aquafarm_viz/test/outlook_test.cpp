@@ -11,41 +11,16 @@
 #include "draw/legend.h"
 #include "draw/map_labels.h"
 #include "draw/symbols.h"
-#include "fixture.h"
+#include "outlooks.h"
 #include "scene/nautical.h"
+#include "scene/outlook_text.h"
 
 namespace aquafarm_viz {
 namespace {
 
-// A ranch with one device at (10, 12) and a storm that moves west by one cell a step from (40, 12).
-struct Outlooks {
-  aquafarm_msgs::FarmSpec spec = test::MakeSpec();
-  aquafarm_msgs::FarmState state = test::MakeState();
-  StormTracks storms;
-
-  Outlooks() {
-    state.step = 0;
-    state.devices = {test::MakeDevice(3, 0, 10, 12, 1.0F)};
-    state.disasters = {test::MakeDisaster(0, 40.0F, 12.0F)};
-    state.disasters[0].heading_deg = 270;
-    state.disasters[0].speed = 1.0F;
-    state.disasters[0].radii = {5.0F, 10.0F};
-    state.disasters[0].risks = {-20.0F, -5.0F};
-  }
-  Course course() const { return CourseOf(spec, state, 0, storms); }
-  Outlook outlook() const { return ComputeOutlook(spec, state, {course()}); }
-};
-
-constexpr const char* kRecorded = R"(
-disasters:
-  - kind: typhoon
-    risks: [-20, -5]
-    track:
-      - {step: -10, x: 60, y: 12, radii: [5, 10], grade: 3, risks: [-20, -5]}
-      - {step: 0, x: 40, y: 12, radii: [5, 10], grade: 3, risks: [-20, -5]}
-      - {step: 10, x: 20, y: 12, radii: [5, 10], grade: 3, risks: [-20, -5]}
-      - {step: 30, x: 20, y: 40, radii: [0, 0], grade: 1, risks: [-20, -5]}
-)";
+using test::kRecorded;
+using test::Outlooks;
+using test::WithWinds;
 
 TEST(Outlook, OfAPresentCourseNamesEachRingAndItsTime) {
   const Outlooks scene;
@@ -82,102 +57,6 @@ TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
             "typhoon, risk -5, reaches F3 in 10 steps");
 }
 
-// Returns kRecorded with the winds of its rings.
-std::string WithWinds(const std::string& winds) {
-  return std::string(kRecorded).replace(std::string(kRecorded).find("    track:"), 0,
-                                        "    ring_winds_kt: " + winds + "\n");
-}
-
-TEST(Outlook, NamesTheWindsOfRingsThatTheScenarioGives) {
-  Outlooks scene;
-  scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "typhoon, gale, reaches F3 in 30 min");
-  EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "gale in 30 min");
-  EXPECT_EQ(RiskText(scene.spec, scene.outlook().devices[0]), "-5 in 30 min");
-  scene.state.step = 8;
-  scene.state.disasters[0].x = 24.0F;
-  scene.state.devices[0].x = 17;
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "typhoon: gale over F3 now, storm in 3 min");
-  EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()), "F3: gale now, storm in 3 min");
-  scene.state.devices[0].x = 22;
-  EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "storm now");
-}
-
-TEST(Outlook, HasTheNameOfAStormThatIsOnItsTrack) {
-  Outlooks scene;
-  scene.storms =
-      ReadStormTracks(std::string(kRecorded).replace(std::string(kRecorded).find("    track:"), 0,
-                                                     "    name: In-Fa\n"),
-                      1000.0);
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "typhoon In-Fa, risk -5, reaches F3 in 30 min");
-  scene.state.disasters[0].kind = aquafarm_msgs::DisasterState::RED_TIDE;
-  EXPECT_EQ(scene.course().name, "") << "a bulletin put another disaster in its place";
-  scene.state.disasters[0].kind = aquafarm_msgs::DisasterState::TYPHOON;
-  scene.state.disasters[0].x += 3.0F;  // a bulletin has moved it, or it is another storm
-  EXPECT_EQ(NameNow(scene.state.disasters[0], scene.course()), "typhoon");
-}
-
-TEST(Outlook, NamesTheWorstRingToComeAfterTheNext) {
-  Outlooks scene;
-  DeviceOutlook device{3, 0.0, 0U, 0, {}};
-  device.arrivals = {{10.0, -5.0, 0U, 34}, {40.0, -10.0, 0U, 50}, {60.0, -20.0, 0U, 64}};
-  Outlook outlook;
-  outlook.devices = {device};
-  outlook.names = {"typhoon"};
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, gale, reaches F3 in 30 min, hurricane force in 3.0 h");
-  EXPECT_EQ(DangerText(scene.spec, device), "gale in 30 min, hurricane force in 3.0 h");
-  EXPECT_EQ(WorstText(scene.spec, device), "hurricane force in 3.0 h");
-}
-
-TEST(Outlook, NamesTheNextAndTheWorstArrivalOfAllDevices) {
-  const Outlooks scene;
-  Outlook outlook;
-  outlook.is_known = true;
-  outlook.names = {"typhoon", "red tide"};
-  outlook.devices = {{1, -5.0, 0U, 34, {{30.0, -10.0, 0U, 50}}},
-                     {2, -5.0, 0U, 34, {{40.0, -10.0, 0U, 50}, {60.0, -20.0, 0U, 64}}},
-                     {5, 0.0, 0U, 0, {{3.0, -5.0, 0U, 34}, {50.0, -10.0, 0U, 50}}}};
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon: gale over F1 and F2 now, gale reaches F5 in 9 min, "
-            "hurricane force reaches F2 in 3.0 h");
-  outlook.devices[2].arrivals = {{3.0, -8.0, 1U, 0}};
-  EXPECT_NE(OutlookText(scene.spec, scene.state, outlook).find("now, red tide risk -8 reaches F5"),
-            std::string::npos);
-  outlook.devices.clear();
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "no device is deployed");
-  EXPECT_EQ(NowAndWorstText(scene.spec, {2, -5.0, 0U, 34, {{60.0, -20.0, 0U, 64}}}),
-            "gale now, hurricane in 3.0 h");
-}
-
-TEST(Outlook, ShortensTheNameAndTheDangerOfADeviceUntilTheyFit) {
-  Outlooks scene;
-  DeviceOutlook device{3, 0.0, 0U, 0, {}};
-  device.arrivals = {{10.0, -5.0, 0U, 34}, {60.0, -20.0, 0U, 64}};
-  const auto words = [&](std::size_t letters) {
-    const auto [name, danger] = NameAndDanger(scene.spec, "release", device,
-                                              [letters](const auto& left, const auto& right) {
-                                                return left.size() + right.size() <= letters;
-                                              });
-    return name + "|" + danger;
-  };
-  EXPECT_EQ(words(60), "F3 release|gale in 30 min, hurricane force in 3.0 h");
-  EXPECT_EQ(words(43), "F3|gale in 30 min, hurricane force in 3.0 h");
-  EXPECT_EQ(words(30), "F3 release|hurricane in 3.0 h") << "the kind rather than the second word";
-  EXPECT_EQ(words(27), "F3|hurricane force in 3.0 h");
-  EXPECT_EQ(words(0), "F3|" + RiskText(scene.spec, device, ", ")) << "the shortest if nothing fits";
-}
-
-TEST(Outlook, StrengthHasMetresPerSecondAndKnots) {
-  TrackPoint point;
-  EXPECT_EQ(StrengthText(point), "");
-  point.wind_mps = 37.0;
-  EXPECT_EQ(StrengthText(point), " 37 m/s (72 kt)");
-}
-
 TEST(Outlook, NamesNoWindThatIsNotGiven) {
   Outlooks scene;
   scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
@@ -212,25 +91,6 @@ TEST(RiskKey, LeavesOutARingThatTheDisasterNeverHas) {
   const RiskKey key = MakeRiskKey(scene.state, {course});
   ASSERT_EQ(key.size(), 1U);
   EXPECT_EQ(key[0].wind_kt, 34);
-}
-
-TEST(Outlook, NamesATyphoonByTheClassOfItsWind) {
-  Outlooks scene;
-  Course course = scene.course();
-  const auto text = [&](double wind_mps) {
-    course.ahead.front().wind_mps = wind_mps;
-    const Outlook outlook = ComputeOutlook(scene.spec, scene.state, {course});
-    EXPECT_EQ(CentreText(scene.spec, scene.state.disasters[0], course).rfind(outlook.names[0], 0),
-              0U);
-    const std::string sentence = OutlookText(scene.spec, scene.state, outlook);
-    return sentence.substr(0, sentence.find(','));
-  };
-  EXPECT_EQ(text(17.1), "tropical depression");
-  EXPECT_EQ(text(17.2), "tropical storm");
-  EXPECT_EQ(text(24.5), "severe tropical storm");
-  EXPECT_EQ(text(32.7), "typhoon");
-  scene.state.disasters[0].kind = aquafarm_msgs::DisasterState::WAVE;
-  EXPECT_EQ(text(17.2), "wave");
 }
 
 TEST(Outlook, OfADeviceInARingIsNow) {
@@ -295,28 +155,39 @@ TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
   EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "risk -5 now, -20 in 9 min");
 }
 
-TEST(Outlook, HasHeadlinesWithAndWithoutDirectionsAndAShortOne) {
-  Outlooks scene;
-  const std::vector<std::string> expected{
-      "Typhoon in the E, risk -5, reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
-      "Typhoon, risk -5, reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
-      "F3: risk -5 in 1.0 h, -20 in 1.2 h"};
-  EXPECT_EQ(Headlines(scene.spec, scene.state, scene.outlook()), expected);
-  scene.state.disasters[0].x = 212.0F;
-  EXPECT_EQ(Headlines(scene.spec, scene.state, scene.outlook())[0],
-            "No known danger to devices until +3.0 h");
-  scene.state.disasters[0].steps_left = 0;
-  EXPECT_TRUE(Headlines(scene.spec, scene.state, scene.outlook()).empty());
+// Returns the distance of a point from the area of the rings, from points on a grid of 0.02 cells.
+double SlowDistance(const TrackPoint& storm, double x, double y) {
+  double nearest = 1e9;
+  for (double east = -12.0; east <= 12.0; east += 0.02) {
+    for (double north = -12.0; north <= 12.0; north += 0.02) {
+      const std::size_t quadrant = north >= 0.0 ? (east >= 0.0 ? 0U : 3U) : (east >= 0.0 ? 1U : 2U);
+      if (std::hypot(east, north) > storm.radii[0][quadrant]) continue;
+      nearest = std::min(nearest, std::hypot(storm.x + east - x, storm.y + north - y));
+    }
+  }
+  return nearest;
 }
 
-TEST(Outlook, SaysUntilWhenItIsKnown) {
+TEST(Outlook, MeasuresTheDistanceToTheNearestPartOfARing) {
   Outlooks scene;
-  scene.state.disasters[0].x = 212.0F;  // it arrives after the 60 steps of an extrapolated course
-  EXPECT_FALSE(IsInDanger(scene.outlook()));
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "no known danger to devices until +3.0 h");
-  scene.state.disasters[0].steps_left = 60;
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "");
+  scene.state.disasters[0].radii = {10.0F};
+  scene.state.disasters[0].risks = {-5.0F};
+  scene.state.disasters[0].quadrants = {10.0F, 3.0F, 1.0F, 6.0F};
+  scene.state.disasters[0].speed = 0.0F;
+  for (const auto& [x, y] :
+       {std::pair(24.0F, 15.0F), std::pair(6.0F, 22.0F), std::pair(7.0F, 14.0F),
+        std::pair(12.0F, 16.5F), std::pair(-1.0F, 3.0F)}) {
+    scene.state.disasters[0].x = x;
+    scene.state.disasters[0].y = y;
+    const Outlook outlook = scene.outlook();
+    ASSERT_FALSE(IsInDanger(outlook)) << x;
+    EXPECT_NEAR(outlook.miss.cells, SlowDistance(scene.course().ahead.front(), 10.0, 12.0), 0.03)
+        << x;
+    EXPECT_EQ(outlook.miss.steps, 0.0);
+    EXPECT_EQ(outlook.miss.device, 3);
+  }
+  scene.state.disasters[0].x = 90.0F;
+  EXPECT_TRUE(std::isinf(scene.outlook().miss.cells)) << "farther than a diagonal of the farm";
 }
 
 TEST(Outlook, UsesTheRadiusOfTheQuadrant) {

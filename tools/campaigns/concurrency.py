@@ -92,7 +92,7 @@ def together(campaign, folder, expected):
 
 
 def run(campaign):
-    """Runs pairs of trainings; campaign.count is the number of pairs."""
+    """Runs pairs of trainings: campaign.count pairs, or for campaign.seconds if it is 0."""
     with tempfile.TemporaryDirectory(prefix="aquafarm_concurrency_") as place:
         place = pathlib.Path(place)
         expected = alone(campaign, place / "alone")

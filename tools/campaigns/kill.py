@@ -286,7 +286,8 @@ KINDS = {
 
 
 def run(campaign):
-    """Runs the kinds in turn until a failure; campaign.count is the number of runs."""
+    """Runs the kinds in turn until a failure: at most campaign.count runs, or for campaign.seconds if
+    it is 0."""
     from campaigns import kill_cluster  # imports this module
     made, all_kinds = {}, {**KINDS, "ranks": kill_cluster.Ranks, "workers": kill_cluster.Workers}
     with tempfile.TemporaryDirectory(prefix="aquafarm_kill_") as place:

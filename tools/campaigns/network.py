@@ -193,7 +193,7 @@ def train(campaign, folder, kind):
 
 
 def run(campaign):
-    """Runs the kinds in turn; campaign.count is the number of disturbed trainings."""
+    """Runs the kinds in turn: campaign.count disturbed trainings, or for campaign.seconds if it is 0."""
     kinds = campaign.kinds(DISTURBANCES)
     with tempfile.TemporaryDirectory(prefix="aquafarm_network_") as place:
         place = pathlib.Path(place)

@@ -92,7 +92,8 @@ def judge(campaign, what, folder, code, words):
     """Records failures of a program under a limit: it hung, crashed, printed raw text or no text,
     or left temporary files."""
     campaign.attempt("programs under a limit")
-    campaign.attempt("refusals" if code else "successes")
+    campaign.attempt("hung or crashed" if code is None or code < 0 else
+                     "refusals" if code else "successes")
     lines = [line for line in words.splitlines() if line.strip()]
     shown = " | ".join(lines[-3:])
     campaign.check(code is not None, f"{what}: still running after {LIMIT_S} s")
@@ -133,12 +134,12 @@ def disk_full(campaign, place):
             campaign.attempt("full disks left out: no right to mount")
         else:
             train(campaign, f"training on a disk of {kilobytes} kB", disk / "run")
-            # The free space is now less than a scenario takes.
             free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
-            (disk / "filler").write_bytes(bytes(max(0, free - 4096)))
+            (disk / "filler").write_bytes(bytes(free))
             output = disk / "ranch.yaml"
-            if build_ranch(campaign, "aquafarm scenario on a full disk", disk, output) != 0:
-                campaign.check(not output.exists(), "aquafarm scenario: half a file on a full disk")
+            code = build_ranch(campaign, "aquafarm scenario on a full disk", disk, output)
+            campaign.check(code != 0, "aquafarm scenario: succeeded on a full disk")
+            campaign.check(not output.exists(), "aquafarm scenario: half a file on a full disk")
 
 
 def file_size(campaign, place):
@@ -188,12 +189,12 @@ def control_group(campaign, place):
         campaign.attempt("programs that the kernel killed in their control group")
         resume = ["--resume"] if (folder / "run.json").exists() else []
         code, output = common.execute(*words, *resume, seconds=LIMIT_S)
-        campaign.check(code == 0, f"{what}: not to be started again: {output[-300:]}")
+        campaign.check(code == 0, f"{what}: the start after the kill failed: {output[-300:]}")
     judge(campaign, what, folder, code, output)
 
 
 def run(campaign):
-    """Tries the kinds of limits in turn; campaign.count is the number of tries."""
+    """Tries the kinds of limits in turn: campaign.count times, or for campaign.seconds if it is 0."""
     kinds = [disk_full, read_only, descriptors, file_size, memory, control_group]
     number = 0
     while campaign.more(number):

@@ -48,8 +48,8 @@ def _shading(contestants, runs):
 
 
 def _smooth(values):
-    """Returns (episodes, means): the moving means over 50 episodes, and the last episode of each,
-    counted from 1."""
+    """Returns (episodes, means). means: moving means over 50 episodes; episodes: the last episode of
+    each mean, counted from 1."""
     window = min(measures.WINDOW, len(values))
     return np.arange(window, len(values) + 1), measures.moving_mean(values, window)
 
@@ -61,15 +61,16 @@ def _range_of(axes):
 
 
 def _scale_returns(axes):
-    """Sets a scale that is linear above 0 and logarithmic below, or only linear if all values have
-    the same sign. Returns of the first episodes are very low; on a linear scale they would hide the
-    differences between learners. Returns what the label of the axis says about the scale."""
+    """Sets a scale that is linear above 0 and logarithmic below, or only linear if both values of
+    _range_of have the same sign. The first episodes have very low returns, which on a linear scale
+    would hide the differences between learners. Returns a note on the scale for the label of the
+    axis."""
     low, top = _range_of(axes)
     if top <= 0.0 or low >= 0.0:
         margin = 0.05 * (top - low)
         axes.set_ylim(low - margin, top + margin)
         return ""
-    unit = top / 3.0  # where the logarithmic part bends
+    unit = top / 3.0  # the scale is nearly linear down to -unit, logarithmic below
     axes.set_yscale("function", functions=(
         lambda y: np.where(y < 0.0, -unit * np.log1p(np.maximum(-y, 0.0) / unit), y),
         lambda y: np.where(y < 0.0, unit * (1.0 - np.exp(np.maximum(-y, 0.0) / unit)), y)))
@@ -83,13 +84,13 @@ def _scale_returns(axes):
 
 
 def _draw_returns(path, contestants, find, note, ylabel, plots):
-    """Draws charts of returns, one below the other, on the scale of _scale_returns. Lines are named
-    at their right end.
+    """Draws charts of returns, one below the other, on the scale of _scale_returns. Lines
+    that their function has not named are named at their right end.
 
     find: function that returns the headline, given the ends of the lines of the last chart
     note: how the data were computed
     plots: for each chart, from top to bottom: (function, xlabel, has_values). The function plots on
-        axes and returns the ends of the lines, as name_ends expects them; has_values: names are
+        axes and returns the ends of the lines without a name, for name_ends; has_values: names are
         followed by the last values
     """
     figure, rows = plt.subplots(len(plots), 1, figsize=(8.7, 1.0 + 4.4 * len(plots)),
@@ -105,12 +106,13 @@ def _draw_returns(path, contestants, find, note, ylabel, plots):
 
 
 _LOGARITHMIC = "#eef1f4"  # background of the logarithmic part of a scale
-_ALIKE = 0.02  # references whose relative difference is less share one line
+_LETTER = 0.013  # mean width of a letter of a name [widths of the axes]
+_ALIKE = 0.02  # references share one line if their relative difference is below this
 
 
 def _plot_references(axes, references, end, digits=0):
-    """Draws a horizontal line for each reference value {name: value}. Returns the ends of the
-    lines."""
+    """Draws horizontal lines for reference values {name: value}. Similar values share one line, see
+    _ALIKE. Returns the ends of the lines."""
     ends = []
     for name, value in sorted(references.items(), key=lambda pair: -pair[1]):
         words = f"{name} {value:.{digits}f}"
@@ -140,35 +142,41 @@ def _plot_one_run(axes, one, curve, x):
 
 def _mark_reached(axes, references):
     """Draws a dotted line at the return to which the headline of Fig. 12a refers. Returns this
-    return; infinite without a positive reference."""
+    return, and the end of the line in a list. Without a positive reference, returns infinity and an
+    empty list."""
     target = _REACHED * max(references.values(), default=0.0)
     if target <= 0.0:
-        return np.inf
+        return np.inf, []
     axes.axhline(target, color="black", linestyle=":", linewidth=1.2, label="_reached")
-    axes.text(0.99, target, f"{100 * _REACHED:.0f} %", fontsize=9.5,
-              transform=axes.get_yaxis_transform(), va="top", ha="right")
-    return target
+    return target, [(axes.get_xlim()[1], target, "black",
+                     f"{100 * _REACHED:.0f} % of {target / _REACHED:.0f}")]
 
 
-def _name_rises(axes, ends, target):
-    """Marks where lines reach a return, and writes each name along its rise, with the number of
-    steps. Returns the ends of the other lines, which have no name yet."""
+def _name_reached(axes, ends, target):
+    """Marks where lines reach a return. Writes their names and numbers of steps above the axes, in
+    two rows if they are close. Returns the ends of the other lines, which have no name yet."""
     others = []
+    reached = []
     for end in ends:
         line, = (one for one in axes.lines if one.get_label() == end[3])
         x, y = line.get_data()
-        if not (y >= target).any():
+        if (y >= target).any():
+            reached.append((x[np.argmax(y >= target)], end[2], end[3]))
+        else:
             others.append(end)
-            continue
-        reached = np.argmax(y >= target)
-        steps, low = x[reached], 0.4 * target
-        # The name is to the right of the last point of the rise that is lower than the name.
-        start = x[np.flatnonzero(np.append(True, y[:reached] < low))[-1]]
-        axes.plot(steps, target, "o", color=end[2], markersize=5, zorder=5, label="_reached")
-        axes.annotate(f"{end[3]} {_steps_text(float(f'{steps:.2g}'))}",
-                      (start, low), xytext=(5, 0),
-                      textcoords="offset points", rotation=90, va="center", ha="left",
-                      color=legible(end[2]), fontsize=10)
+    to_axes = axes.transData + axes.transAxes.inverted()
+    row_ends = [-np.inf, -np.inf]  # where the last names of the two rows end [widths of the axes]
+    for steps, colour, name in sorted(reached):
+        words = f"{name} {_steps_text(float(f'{steps:.2g}'))}"
+        place = float(to_axes.transform((steps, target))[0])
+        row = 0 if place - _LETTER * len(words) > row_ends[0] else 1
+        row_ends[row] = place
+        axes.plot(steps, target, "o", color=colour, markersize=5, zorder=5, label="_reached")
+        axes.annotate(words, (steps, target), xytext=(place, 1.025 + 0.05 * row),
+                      textcoords=axes.transAxes, ha="right", va="bottom", color=legible(colour),
+                      fontsize=10, annotation_clip=False,
+                      arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8,
+                                  "relpos": (1.0, 0.0), "shrinkA": 0.0, "shrinkB": 2.0})
     return others
 
 
@@ -188,9 +196,11 @@ def plot_rewards_by_steps(axes, contestants, runs, references):
     last = max((x for x, _, _, name in ends if name in learners), default=np.inf)
     ends = [end for end in (_cut(axes, end, last) for end in ends) if end]
     axes.relim()
+    axes.margins(x=0.0)
     axes.autoscale_view()
-    ends = _name_rises(axes, ends, _mark_reached(axes, references))
-    return ends + _plot_references(axes, references, axes.get_xlim()[1])
+    target, reference = _mark_reached(axes, references)
+    ends = _name_reached(axes, ends, target)
+    return ends + reference + _plot_references(axes, references, axes.get_xlim()[1])
 
 
 def _cut(axes, end, last):
@@ -357,7 +367,7 @@ def plot_square_error(axes, contestants, runs):
 
 def draw_mean_score(path, contestants, runs, references):
     """Draws Fig. 13: the mean return per step by episode: (a) LSTM-DQN, (b) SARSA, (c) all
-    learners.
+    contestants.
 
     references: {name: return per step}, drawn for comparison
     """
@@ -368,7 +378,7 @@ def draw_mean_score(path, contestants, runs, references):
     places = [[letter for letter, _ in panels], ["c"] * len(panels)] if panels else [["c"]]
     all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)
     for letter, panel in [("c", contestants), *panels]:
-        whose = panel[0].label if len(panel) == 1 else "All learners"
+        whose = panel[0].label if len(panel) == 1 else "Learners and RANDOM"
         label_axes(all_axes[letter], f"{whose} (Fig. 13{letter})", "return per step")
         limits = None if letter == "c" else all_axes["c"].get_ylim()
         ends = plot_mean_score(all_axes[letter], panel, runs, references, limits)

@@ -15,6 +15,7 @@
 #include "aquafarm_viz/scene/rings.h"
 #include "draw/symbols.h"
 #include "scene/nautical.h"
+#include "scene/outlook_text.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -350,20 +351,38 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
   }
 }
 
+namespace {
+
+constexpr double kTextMargin = 2.5;  // around a text without a plate [design units]
+
+// Returns the size of a text without a plate, with its margin.
+cv::Size TextSize(const Font& font, const std::string& text, const Layout& layout) {
+  const int margin = layout.Px(kTextMargin);
+  return {font.Width(text) + 2 * margin, font.cap_height() + 2 * margin};
+}
+
+// Returns the upper left corner of a text in a place of TextSize.
+cv::Point TextAt(cv::Rect place, const Layout& layout) {
+  const int margin = layout.Px(kTextMargin);
+  return place.tl() + cv::Point(margin, margin);
+}
+
+}  // namespace
+
 void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
                   const std::set<std::int32_t>& labelled, LabelSpace& space, const Layout& layout,
                   const Fonts& fonts) {
   for (const auto& device : state.devices) {
     if (!IsLabelled(spec, device) || labelled.count(device.id) > 0) continue;
     const std::string text = DeviceLabel(device.id);
-    const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
+    const cv::Size size = TextSize(fonts.bold, text, layout);
     const double radius = layout.device_radius_px();
     // Takes the free place that is nearest to the right side of the symbol.
     const cv::Point2d east = layout.view.ToPixel(device.x, device.y) + cv::Point2d(radius, 0.0);
     const double farthest = 3.0 * radius + 20.0 * layout.unit;
     const auto place = space.Take(size, east, farthest);
     if (!place) continue;
-    DrawLabel(map, fonts.bold, text, place->tl(), layout);
+    DrawLabel(map, fonts.bold, text, TextAt(*place, layout), layout);
   }
 }
 
@@ -392,7 +411,7 @@ void LabelFetched(cv::Mat& map, const FarmSpec& spec, const FarmState& state, co
     const std::string text = at_s ? OrderText(spec, state, *trail, *at_s) + DeviceLabel(device.id) +
                                         " " + TimeOfDay(spec, *at_s)
                                   : DeviceLabel(device.id);
-    const cv::Size size(fonts.small.Width(text), fonts.small.cap_height());
+    const cv::Size size = TextSize(fonts.small, text, layout);
     const double radius = layout.device_radius_px();
     const cv::Point2d at = layout.view.ToPixel(device.x, device.y);
     const cv::Point2d aside(1.2 * radius + size.width / 2.0, 0.0);
@@ -401,8 +420,9 @@ void LabelFetched(cv::Mat& map, const FarmSpec& spec, const FarmState& state, co
     for (const cv::Point2d& offset : {aside, -aside, above, -above}) {
       if (!place) place = space.Take(Cover::kNothing, size, at + offset, 12.0 * layout.unit);
     }
+    if (!place) place = space.Take(Cover::kPaths, size, at, size.width / 2.0 + 3.0 * radius);
     if (!place) continue;
-    DrawLabel(map, fonts.small, text, place->tl(), layout,
+    DrawLabel(map, fonts.small, text, TextAt(*place, layout), layout,
               Mix(layout.style->label, layout.style->sea_south, 0.25));
   }
 }
@@ -414,12 +434,12 @@ void LabelShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, Labe
     if (!ship.visible || !ship.active || ship.own_device >= 0) continue;
     if (!InGrid(spec, ship.x, ship.y)) continue;
     const std::string text = "ship " + std::to_string(ship.id);
-    const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
+    const cv::Size size = TextSize(fonts.bold, text, layout);
     const cv::Point2d at = ShipPlace(spec, state, ship, layout);
     const double farthest = 2.0 * layout.ship_radius_px() + size.width / 2.0 + 10.0 * layout.unit;
     const auto place = space.Take(size, at, farthest);
     if (!place) continue;
-    DrawLabel(map, fonts.bold, text, place->tl(), layout,
+    DrawLabel(map, fonts.bold, text, TextAt(*place, layout), layout,
               Mix(ShipColor(ship.id), layout.style->label, 0.7));
   }
 }

@@ -10,6 +10,7 @@
 #include "draw/region.h"
 #include "draw/symbols.h"
 #include "scene/nautical.h"
+#include "scene/outlook_text.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -18,6 +19,11 @@ using aquafarm_msgs::DeviceState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 using aquafarm_msgs::ShipState;
+
+struct ColoredText {
+  std::string text;
+  Rgb color;
+};
 
 // Draws the lists of the panel from its top down to the legend.
 class Panel {
@@ -59,11 +65,19 @@ class Panel {
   }
 
   /// Draws two texts with space for a symbol before each (SymbolAt, SecondSymbolAt).
-  void Pair(const std::string& first, const std::string& second) {
+  void Pair(const ColoredText& first, const ColoredText& second) {
     const int base = y_ + (RowPx() + fonts_.small.cap_height()) / 2;
-    fonts_.small.Draw(image_, first, {left_ + layout_.Px(21), base}, Bgr(layout_.style->words));
-    fonts_.small.Draw(image_, second, {Middle() + layout_.Px(21), base}, Bgr(layout_.style->words));
+    const auto draw = [&](const ColoredText& one, int left) {
+      fonts_.small.Draw(image_, one.text, {left + layout_.Px(21), base}, Bgr(one.color));
+    };
+    draw(first, left_);
+    draw(second, Middle());
     y_ += RowPx();
+  }
+
+  /// Returns whether a text fits in a half of Pair.
+  bool FitsInHalf(const std::string& text) const {
+    return fonts_.small.Width(text) <= Middle() - left_ - layout_.Px(21 + 4);
   }
 
   /// Draws the colour scale of values, with the lowest value on the left.
@@ -139,6 +153,46 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
   }
 }
 
+// Returns the label of a device with its danger or status, as long as half a row allows.
+ColoredText DeviceInHalf(const Panel& panel, const FarmSpec& spec, const DeviceState& device,
+                         const Trail* trail, const Outlook& outlook, const Layout& layout) {
+  const bool done = device.status == DeviceState::DELIVERED;
+  const std::string status = done ? "safe" : StatusName(device.status);
+  const auto at = trail == nullptr ? std::nullopt : trail->ChangedAt(device.id);
+  std::vector<std::string> texts{at ? status + " " + TimeOfDay(spec, *at) : status, status};
+  Rgb color = done ? layout.style->good : layout.style->faint;
+  for (const DeviceOutlook& one : outlook.devices) {
+    if (one.id != device.id || DangerText(spec, one).empty()) continue;
+    color = layout.style->alarm;
+    const std::string when =
+        one.risk_now < 0.0 ? "at risk now" : "in " + AheadText(spec, one.arrivals.front().steps);
+    texts = {DangerText(spec, one), RiskText(spec, one), when};
+  }
+  const std::string label = DeviceLabel(device.id) + " ";
+  const auto fitting = std::find_if(texts.begin(), texts.end() - 1, [&](const std::string& text) {
+    return panel.FitsInHalf(label + text);
+  });
+  return {label + *fitting, color};
+}
+
+// Draws one device in each half of a row. The left halves contain the first devices.
+void ListInHalves(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
+                  const Outlook& outlook, const Layout& layout) {
+  const std::size_t rows = (state.devices.size() + 1) / 2;
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::array<ColoredText, 2> halves;
+    const std::array<cv::Point2d, 2> symbols{panel.SymbolAt(), panel.SecondSymbolAt()};
+    for (std::size_t half = 0; half < 2; ++half) {
+      if (row + half * rows >= state.devices.size()) continue;
+      const DeviceState& device = state.devices[row + half * rows];
+      DrawDeviceSymbol(panel.image(), device.kind, {symbols[half], 6.0 * layout.unit, 0.0},
+                       device.status == DeviceState::DELIVERED ? 0.5 : 0.0);
+      halves[half] = DeviceInHalf(panel, spec, device, trail, outlook, layout);
+    }
+    panel.Pair(halves[0], halves[1]);
+  }
+}
+
 void ListKinds(Panel& panel, const FarmState& state, const Layout& layout) {
   constexpr std::size_t kKinds = 4;
   std::array<int, kKinds> total{};
@@ -160,14 +214,21 @@ void ListKinds(Panel& panel, const FarmState& state, const Layout& layout) {
 void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                  const Outlook& outlook, const Layout& layout) {
   constexpr std::size_t kMaxRows = 6;
+  constexpr int kRowsBelow = 8;  // kept free for disasters and ships
   const auto delivered = std::count_if(
       state.devices.begin(), state.devices.end(),
       [](const DeviceState& device) { return device.status == DeviceState::DELIVERED; });
   const std::string zone = spec.has_start_time && trail != nullptr ? ", " + ZoneText(spec) : "";
   panel.Heading("DEVICES" + zone,
                 std::to_string(delivered) + " / " + std::to_string(state.devices.size()) + " safe");
-  if (state.devices.size() > kMaxRows) return ListKinds(panel, state, layout);
-  ListEachDevice(panel, spec, state, trail, outlook, layout);
+  if (state.devices.size() <= kMaxRows) {
+    ListEachDevice(panel, spec, state, trail, outlook, layout);
+  } else if (state.devices.size() <= 2 * kMaxRows &&
+             panel.RowsLeft() >= int(kMaxRows) + kRowsBelow) {
+    ListInHalves(panel, spec, state, trail, outlook, layout);
+  } else {
+    ListKinds(panel, state, layout);
+  }
 }
 
 void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
@@ -325,7 +386,7 @@ bool ListPolicy(Panel& panel, const FarmSpec& spec, const FarmState& state,
   if (has_signs) {
     DrawMove(panel.image(), panel.SymbolAt(), 8, 15.0 * layout.unit, layout);
     DrawMove(panel.image(), panel.SecondSymbolAt(), 9, 15.0 * layout.unit, layout);
-    panel.Pair("pickup", "drop-off");
+    panel.Pair({"pickup", layout.style->words}, {"drop-off", layout.style->words});
   }
   for (const std::string& line : choices) {
     DrawArrow(panel.image(), panel.SymbolAt(), 90, 15.0 * layout.unit, Bgr(kChoiceColor),

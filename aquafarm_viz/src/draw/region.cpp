@@ -18,7 +18,7 @@
 #include "draw/free_space.h"
 #include "draw/symbols.h"
 #include "scene/nautical.h"
-#include "scene/outlook.h"
+#include "scene/outlook_text.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -262,12 +262,12 @@ void DrawScale(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layou
   const std::string text = DistanceText(length_m);
   const cv::Size size(std::max(length, fonts.small.Width(text)),
                       fonts.small.cap_height() + layout.Px(6));
-  const cv::Point2d corner(size.width / 2.0 + 6.0 * layout.unit,
+  const cv::Point2d corner(size.width / 2.0 + 8.0 * layout.unit,
                            inset.image.rows - size.height / 2.0 - 6.0 * layout.unit);
   const auto place = space.Take(size, corner, inset.image.cols);
   if (!place) return;
   const Rgb color = layout.style->words;
-  fonts.small.Draw(inset.image, text, {place->x, place->y + fonts.small.cap_height()}, Bgr(color));
+  DrawLabel(inset.image, fonts.small, text, place->tl(), layout);
   const int y = place->br().y - layout.Px(2);
   cv::rectangle(inset.image, cv::Rect(place->x, y, length, layout.Px(2)), Bgr(color), cv::FILLED);
 }

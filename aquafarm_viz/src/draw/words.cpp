@@ -11,6 +11,7 @@
 #include "aquafarm_viz/scene/labels.h"
 #include "draw/symbols.h"
 #include "scene/nautical.h"
+#include "scene/outlook_text.h"
 
 namespace aquafarm_viz {
 namespace {

@@ -81,7 +81,7 @@ void AddAxes(MarkerArray& array, const Maker& maker, const FarmSpec& spec) {
     }
     return;
   }
-  const int step = CellTickStep(2.5 * letter);
+  const int step = CellTickStep(2.2 * letter);
   for (int x = 0; x < spec.width; x += step) axes.Below(x + 0.5, std::to_string(x));
   for (int y = 0; y < spec.height; y += step) axes.Left(y + 0.5, std::to_string(y));
 }

@@ -16,7 +16,7 @@
 #include "markers/legend.h"
 #include "markers/maker.h"
 #include "scene/nautical.h"
-#include "scene/outlook.h"
+#include "scene/outlook_text.h"
 #include "scene/ship_place.h"
 #include "scene/storm_track.h"
 
@@ -214,13 +214,25 @@ std::string InLines(std::string text, double max_width) {
   return text;
 }
 
-void AddCircle(MarkerArray& array, const Maker& maker, const DeviceState& device, double risk) {
+// Radii of the circles around a device in danger [thing_m()].
+constexpr double kInner = 0.72;
+constexpr double kOuter = 0.86;
+constexpr double kSecondInner = 0.96;  // of a device that is hit first
+constexpr double kSecondOuter = 1.06;
+
+// Adds the circle around a device in danger, or two circles if it is hit first.
+void AddCircle(MarkerArray& array, const Maker& maker, const DeviceState& device, double risk,
+               bool is_first) {
   Marker circle =
       maker.Make("danger", device.id, Marker::TRIANGLE_LIST, kPortLayer, device.x, device.y);
   circle.color = Color(SeverityColor(Severity(risk)));
-  const double inner_m = 0.72 * maker.thing_m();
-  const double outer_m = 0.86 * maker.thing_m();
-  AddBand(circle, {inner_m, inner_m, inner_m, inner_m}, {outer_m, outer_m, outer_m, outer_m});
+  const auto band = [&](double inner, double outer) {
+    const double inner_m = inner * maker.thing_m();
+    const double outer_m = outer * maker.thing_m();
+    AddBand(circle, {inner_m, inner_m, inner_m, inner_m}, {outer_m, outer_m, outer_m, outer_m});
+  };
+  band(kInner, kOuter);
+  if (is_first) band(kSecondInner, kSecondOuter);
   array.markers.push_back(circle);
 }
 
@@ -228,7 +240,8 @@ void AddCircle(MarkerArray& array, const Maker& maker, const DeviceState& device
 // urgent devices first. Deletes the circles and labels of all other devices.
 void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                 const FarmState& state, const Outlook& outlook, Labels& labels) {
-  const double radius = 0.86 * maker.thing_m() / maker.cell_m();
+  const std::string first =
+      outlook.devices.empty() ? "" : DangerText(spec, outlook.devices.front());
   std::set<std::int32_t> circled;
   std::set<std::int32_t> labelled;
   for (const DeviceOutlook& one : outlook.devices) {
@@ -236,7 +249,9 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     const DeviceState& device =
         *std::find_if(state.devices.begin(), state.devices.end(),
                       [&one](const DeviceState& other) { return other.id == one.id; });
-    AddCircle(array, maker, device, WorstRisk(one));
+    const bool is_first = DangerText(spec, one) == first;
+    const double radius = (is_first ? kSecondOuter : kOuter) * maker.thing_m() / maker.cell_m();
+    AddCircle(array, maker, device, WorstRisk(one), is_first);
     circled.insert(one.id);
     if (labelled.size() == kMaxLabels) continue;
     const std::string text = DeviceLabel(one.id) + ": " + NowAndWorstText(spec, one);

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/names.h"
 #include "base/marker_color.h"
+#include "base/text_scale.h"
 #include "markers/maker.h"
 #include "scene/arrow.h"
 #include "scene/nautical.h"
@@ -31,7 +33,7 @@ class Row {
       : array_(array),
         header_(spec.header),
         space_(std::move(space)),
-        size_m_(0.03 * std::max(spec.width, spec.height) * spec.cell_size_m),
+        size_m_(0.03 * TextScale(spec) * std::max(spec.width, spec.height) * spec.cell_size_m),
         x_m_(-0.5 * spec.cell_size_m),
         y_m_(-0.5 * spec.cell_size_m - (2.1 + 1.3 * line) * size_m_) {
     header_.frame_id = names::kMapFrame;
@@ -78,14 +80,9 @@ class Row {
   }
 
   // Adds the circle around a device in danger.
-  void Ring() {
-    Marker ring = MakeList();
-    const double outer_m = 0.45 * size_m_;
-    const double inner_m = 0.32 * size_m_;
-    AddBand(ring, {inner_m, inner_m, inner_m, inner_m}, {outer_m, outer_m, outer_m, outer_m});
-    ring.color = Color(SeverityColor(0.0));
-    Put(ring);
-  }
+  void Circle() { Circles({0.45}); }
+  // Adds the circles around a device that is hit first.
+  void TwoCircles() { Circles({0.26, 0.5}); }
 
   // Adds the pointer towards a centre outside the farm.
   void Pointer() {
@@ -129,6 +126,18 @@ class Row {
   }
 
  private:
+  // @param radii  outer radii of the circles [size_m()]
+  void Circles(const std::vector<double>& radii) {
+    Marker list = MakeList();
+    for (const double radius : radii) {
+      const double outer_m = radius * size_m_;
+      const double inner_m = outer_m - 0.12 * size_m_;
+      AddBand(list, {inner_m, inner_m, inner_m, inner_m}, {outer_m, outer_m, outer_m, outer_m});
+    }
+    list.color = Color(SeverityColor(0.0));
+    Put(list);
+  }
+
   Marker MakeList() {
     Marker list = Make(space_, Marker::TRIANGLE_LIST, x_m_ + 0.5 * size_m_);
     list.scale.x = list.scale.y = list.scale.z = 1.0;
@@ -184,17 +193,15 @@ void AddSignLegend(MarkerArray& array, const FarmSpec& spec, const MapSigns& sig
     if (is_shown) return row.Text(words);
     row.Remove("sign_legend_text");
   };
-  if (signs.circle) {
-    row.Ring();
-  } else {
+  const auto symbol = [&row](bool is_shown, void (Row::*add)()) {
+    if (is_shown) return (row.*add)();
     row.Remove("sign_legend");
-  }
-  text(signs.circle, "danger: worst ring");
-  if (signs.pointer) {
-    row.Pointer();
-  } else {
-    row.Remove("sign_legend");
-  }
+  };
+  symbol(signs.circle, &Row::Circle);
+  text(signs.circle, "danger");
+  symbol(signs.circle, &Row::TwoCircles);
+  text(signs.circle, "hit first");
+  symbol(signs.pointer, &Row::Pointer);
   text(signs.pointer, "to the centre");
   text(signs.pattern, "pattern: at risk");
   text(signs.dashes, "dashed: empty ship");
@@ -203,7 +210,7 @@ void AddSignLegend(MarkerArray& array, const FarmSpec& spec, const MapSigns& sig
 void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& values) {
   Row row(array, spec, 2, "value_legend");
   if (values.highest > values.lowest) {
-    row.Text("discounted return " + Number(double(values.lowest), 1));
+    row.Text("value " + Number(double(values.lowest), 1));
     row.ValueBar(3.0 * row.size_m());
     row.Text(Number(double(values.highest), 1));
     row.Skip(0.6 * row.size_m());

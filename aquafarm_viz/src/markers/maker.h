@@ -18,6 +18,7 @@
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/names.h"
 #include "base/marker_color.h"
+#include "base/text_scale.h"
 
 namespace aquafarm_viz {
 
@@ -66,10 +67,10 @@ class Maker {
         // On large farms objects are drawn larger than a cell to stay visible.
         thing_m_(spec.cell_size_m * std::max(1.0, std::max(spec.width, spec.height) / 40.0)),
         // With the whole farm in a view of 600 pixels, rviz's letters have about 11 pixels.
-        word_m_(
-            std::max(0.6 * thing_m_, 0.028 * std::max(spec.width, spec.height) * spec.cell_size_m)),
+        word_m_(std::max(0.6 * thing_m_, 0.028 * TextScale(spec) *
+                                             std::max(spec.width, spec.height) * spec.cell_size_m)),
         layer_m_(std::min(0.03 * spec.cell_size_m, 8.0)),
-        line_m_(0.029 * std::max(spec.width, spec.height) * spec.cell_size_m),
+        line_m_(0.029 * TextScale(spec) * std::max(spec.width, spec.height) * spec.cell_size_m),
         height_(spec.height),
         header_(header) {
     header_.frame_id = names::kMapFrame;

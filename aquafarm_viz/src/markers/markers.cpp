@@ -37,6 +37,7 @@ using visualization_msgs::MarkerArray;
 
 constexpr double kShapeNorthDeg = 0.0;   // outlines point north
 constexpr double kArrowNorthDeg = 90.0;  // rviz arrows point along x
+constexpr double kShipSize = 0.74;       // half the length of a rescue ship [thing_m()]
 constexpr double kBetweenHeads = 2.5;    // min distance of two arrowheads on a path [thing_m()]
 
 Marker Sea(const Maker& maker, const FarmSpec& spec) {
@@ -251,12 +252,12 @@ void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, cv::
   const auto turned = Turned(ShipBearingDeg(ship, trail), kShapeNorthDeg);
   const bool own = ship.own_device >= 0;
   Marker hull = maker.Shape("ship", ship.id, kShipLayer, at.x, at.y, own ? kBow : HullOutline(),
-                            (own ? 0.42 : 0.62) * maker.thing_m(), kPaper);
+                            (own ? 0.42 : kShipSize) * maker.thing_m(), kPaper);
   hull.pose.orientation = turned;
   array.markers.push_back(hull);
   if (own) return;
   Marker deck = maker.Shape("ship_deck", ship.id, kDeckLayer, at.x, at.y, kDeck,
-                            0.62 * maker.thing_m(), ShipColor(ship.id));
+                            kShipSize * maker.thing_m(), ShipColor(ship.id));
   deck.pose.orientation = turned;
   array.markers.push_back(deck);
   if (!is_named) return array.markers.push_back(maker.Delete("ship_name", ship.id));
@@ -348,16 +349,20 @@ bool CoversSymbol(const FarmSpec& spec, const FarmState& state, double x, double
 }
 
 // Returns how far north of the centre the name of a disaster is [cells]: on the side without the
-// arrow of the motion, outside the rings. A name that would be off the map or cover a symbol is
-// next to the centre instead, or on the other side.
+// arrow of the motion, outside small rings, but next to the centre of large ones. A name that would
+// be off the map or cover a symbol is at another place on this side, or on the other side.
 double NameOffset(const Maker& maker, const FarmSpec& spec, const FarmState& state,
                   const DisasterState& disaster, double name_width) {
-  const double near = 0.9 * maker.thing_m() / maker.cell_m();
+  const double near =
+      std::max(0.9 * maker.thing_m(), 0.4 * maker.thing_m() + 0.75 * maker.word_m()) /
+      maker.cell_m();
   const double side =
       disaster.speed > 0.0F && std::cos(disaster.heading_deg * CV_PI / 180.0) < -0.1 ? 1.0 : -1.0;
-  const std::array<double, 4> offsets{side * (near + RadiusTowards(disaster, side)), side * near,
-                                      -side * (near + RadiusTowards(disaster, -side)),
-                                      -side * near};
+  const double outside = near + RadiusTowards(disaster, side);
+  const bool is_small = outside < 5.0 * near;
+  const std::array<double, 4> offsets{
+      side * (is_small ? outside : near), side * (is_small ? near : outside),
+      -side * (near + RadiusTowards(disaster, -side)), -side * near};
   const auto is_on_map = [&](double offset) {
     const double y = disaster.y + offset;
     return y >= 0.0 && y <= spec.height - 1.0;

@@ -8,10 +8,12 @@
 
 #include <algorithm>
 
+#include "base/text_scale.h"
+
 namespace aquafarm_viz {
 
-// Space for the texts around the farm, as fractions of its longer side: latitudes on the left, five
-// lines above, longitudes and three lines of the legend below.
+// Space for the texts around the farm, in longer sides of a farm with TextScale 1: latitudes on the
+// left, five lines above, longitudes and three lines of the legend below.
 constexpr double kLeft = 0.115;
 constexpr double kRight = 0.035;
 constexpr double kAbove = 0.18;
@@ -45,12 +47,12 @@ void WholeView::Follow(rviz::VisualizationManager& rviz, const aquafarm_msgs::Fa
   const double width_m = spec.width * spec.cell_size_m;
   const double height_m = spec.height * spec.cell_size_m;
   const bool is_new = width_m != width_m_ || height_m != height_m_;
-  const double side_m = std::max(width_m, height_m);
-  const double scale = std::min(window->width() / (width_m + (kLeft + kRight) * side_m),
-                                window->height() / (height_m + (kAbove + kBelow) * side_m)) *
+  const double unit_m = TextScale(spec) * std::max(width_m, height_m);
+  const double scale = std::min(window->width() / (width_m + (kLeft + kRight) * unit_m),
+                                window->height() / (height_m + (kAbove + kBelow) * unit_m)) *
                        window->devicePixelRatioF();
-  const double x_m = 0.5 * (width_m - spec.cell_size_m + (kRight - kLeft) * side_m);
-  const double y_m = 0.5 * (height_m - spec.cell_size_m + (kAbove - kBelow) * side_m);
+  const double x_m = 0.5 * (width_m - spec.cell_size_m + (kRight - kLeft) * unit_m);
+  const double y_m = 0.5 * (height_m - spec.cell_size_m + (kAbove - kBelow) * unit_m);
   const Place wanted_place{static_cast<float>(x_m), static_cast<float>(y_m),
                            static_cast<float>(scale), now.angle};
   if (!is_new && wanted_place == place_) return;

@@ -55,10 +55,35 @@ std::int32_t WindOf(const Course& course, std::size_t ring) {
   return ring < course.ring_winds_kt.size() ? course.ring_winds_kt[ring] : 0;
 }
 
-// Returns the name of the wind of a ring; empty if it is not given.
-const char* NameOf(std::int32_t wind_kt) { return wind_kt > 0 ? aquafarm::WindName(wind_kt) : ""; }
+// Returns the distance of a point from the part of a ring in one quadrant [cells]; 0 inside.
+// @param east, north  the point, seen from the centre of the ring
+// @param quadrant     0: NE, 1: SE, 2: SW, 3: NW
+double DistanceToQuadrant(double east, double north, std::size_t quadrant, double radius) {
+  const double a = quadrant < 2 ? east : -east;
+  const double b = quadrant == 0 || quadrant == 3 ? north : -north;
+  if (a >= 0.0 && b >= 0.0) return std::max(0.0, std::hypot(a, b) - radius);
+  return std::hypot(a - std::clamp(a, 0.0, radius), b - std::clamp(b, 0.0, radius));
+}
 
-// Adds to the outlook the rings that cover devices in one step. Step 0 is now.
+// Keeps the ring of a disaster that is nearest to a device, if it is nearer than the one so far.
+void AddMiss(const TrackPoint& storm, const Course& course, const DeviceState& device,
+             RingMiss candidate, RingMiss& nearest) {
+  for (std::size_t ring = 0; ring < std::min(storm.radii.size(), storm.risks.size()); ++ring) {
+    for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
+      const double radius = storm.radii[ring][quadrant];
+      if (!(radius > 0.0) || !(storm.risks[ring] < -kWorse)) continue;
+      candidate.cells =
+          DistanceToQuadrant(device.x - storm.x, device.y - storm.y, quadrant, radius);
+      if (!(candidate.cells < nearest.cells)) continue;
+      candidate.risk = storm.risks[ring];
+      candidate.wind_kt = WindOf(course, ring);
+      nearest = candidate;
+    }
+  }
+}
+
+// Adds one step to the outlook: the rings that cover devices, and the nearest ring to a device.
+// Step 0 is now.
 void AddStep(const FarmState& state, const std::vector<Course>& courses, int step,
              const std::vector<const DeviceState*>& devices, Outlook& outlook) {
   for (std::size_t i = 0; i < courses.size(); ++i) {
@@ -69,7 +94,10 @@ void AddStep(const FarmState& state, const std::vector<Course>& courses, int ste
     for (std::size_t d = 0; d < devices.size(); ++d) {
       const double east = devices[d]->x - storm.x;
       const double north = devices[d]->y - storm.y;
-      if (east * east + north * north > reach * reach) continue;  // a fast test, usually true
+      const double close = reach + outlook.miss.cells;
+      if (east * east + north * north > close * close) continue;  // a fast test, usually true
+      AddMiss(storm, courses[i], *devices[d], {0.0, double(step), 0.0, devices[d]->id, i, 0},
+              outlook.miss);
       DeviceOutlook& device = outlook.devices[d];
       const auto [risk, ring] = RiskAt(storm, devices[d]->x, devices[d]->y);
       if (step == 0) {
@@ -203,13 +231,17 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
     }
   }
   for (std::size_t i = 0; i < courses.size(); ++i) {
-    outlook.names.push_back(NameNow(state.disasters[i], courses[i]));
+    const auto& disaster = state.disasters[i];
+    outlook.names.push_back(NameNow(disaster, courses[i]));
+    outlook.directions.push_back(
+        IsCentreInFarm(spec, disaster) ? "" : PointFromFarm(spec, disaster.x, disaster.y));
   }
   outlook.is_known = devices.size() <= kMaxOutlookDevices;
   if (!outlook.is_known) {
     outlook.devices.clear();
     return outlook;
   }
+  outlook.miss.cells = std::hypot(spec.width, spec.height);
   int last = 0;
   for (std::size_t i = 0; i < courses.size(); ++i) {
     const auto& disaster = state.disasters[i];
@@ -222,97 +254,10 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
     last = std::max(last, int(std::min(end, double(kMaxSteps))));
   }
   for (int step = 0; step <= last; ++step) AddStep(state, courses, step, devices, outlook);
+  if (!(outlook.miss.risk < 0.0)) outlook.miss = {};
   std::stable_sort(outlook.devices.begin(), outlook.devices.end(), IsMoreUrgent);
   return outlook;
 }
-
-std::string AheadText(const FarmSpec& spec, double steps) {
-  if (!(spec.step_duration_s > 0.0)) {
-    return Number(steps, 0) + (steps == 1.0 ? " step" : " steps");
-  }
-  const double hours = steps * spec.step_duration_s / 3600.0;
-  if (hours < 1.0) return Number(60.0 * hours, 0) + " min";
-  return Number(hours, hours < 10.0 ? 1 : 0) + " h";
-}
-
-namespace {
-
-// Returns "risk -10", or the name of the wind, such as "storm", if it is given.
-std::string RingText(double risk, std::int32_t wind_kt) {
-  return wind_kt > 0 ? aquafarm::WindName(wind_kt) : "risk " + Number(risk, 0);
-}
-
-// Returns the labels of the devices for which `applies` is true, by id: "F0", "F0 and F1" or "3
-// devices". It must be true for at least one.
-std::string Names(const Outlook& outlook,
-                  const std::function<bool(const DeviceOutlook& device)>& applies) {
-  constexpr std::size_t kMaxNames = 2;
-  std::vector<std::int32_t> ids;
-  for (const DeviceOutlook& one : outlook.devices) {
-    if (applies(one)) ids.push_back(one.id);
-  }
-  std::sort(ids.begin(), ids.end());
-  std::vector<std::string> names;
-  names.reserve(ids.size());
-  for (const std::int32_t id : ids) names.push_back(DeviceLabel(id));
-  return names.size() > kMaxNames    ? std::to_string(names.size()) + " devices"
-         : names.size() == kMaxNames ? names[0] + " and " + names[1]
-                                     : names[0];
-}
-
-// Returns the first arrival at any device in the order `is_before`; null if no ring arrives.
-const RingArrival* Extreme(
-    const Outlook& outlook,
-    const std::function<bool(const RingArrival&, const RingArrival&)>& is_before) {
-  const RingArrival* best = nullptr;
-  for (const DeviceOutlook& one : outlook.devices) {
-    for (const RingArrival& ring : one.arrivals) {
-      if (best == nullptr || is_before(ring, *best)) best = &ring;
-    }
-  }
-  return best;
-}
-
-// Returns the labels of the devices that the same ring reaches at the same time: "F0 and F1". Times
-// are the same if AheadText displays them equally.
-std::string WhomText(const FarmSpec& spec, const Outlook& outlook, const RingArrival& ring) {
-  return Names(outlook, [&](const DeviceOutlook& one) {
-    return std::any_of(one.arrivals.begin(), one.arrivals.end(), [&](const RingArrival& other) {
-      return other.disaster == ring.disaster && other.risk == ring.risk &&
-             AheadText(spec, other.steps) == AheadText(spec, ring.steps);
-    });
-  });
-}
-
-// Returns "gale in 2 h"; the wind must be given.
-std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
-  return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
-}
-
-// Returns the local time `steps` steps from now, " (Sun 06:24 UTC+8)" or without its zone; empty if
-// that is less than an hour away or if the scenario has no start time.
-std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double steps, bool has_zone) {
-  if (!spec.has_start_time || steps * spec.step_duration_s < 3600.0) return "";
-  const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
-  const std::string time = LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
-  return " (" + (has_zone ? time : time.substr(0, time.rfind(' '))) + ")";
-}
-
-const std::string kInThe = " in the ";  // between a name and its direction, see Headlines
-
-// Shortens "hurricane force in 9 h" to "hurricane in 9 h".
-std::string WithoutForce(std::string text) {
-  const std::string word = " force";
-  const std::size_t at = text.find(word);
-  return at == std::string::npos ? text : text.erase(at, word.size());
-}
-
-std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
-  if (!std::isfinite(outlook.known_until)) return "";
-  return "no known danger to devices until +" + AheadText(spec, outlook.known_until);
-}
-
-}  // namespace
 
 bool IsInDanger(const Outlook& outlook) {
   return !outlook.devices.empty() && std::isfinite(FirstStep(outlook.devices.front()));
@@ -322,165 +267,6 @@ std::size_t CountInDanger(const Outlook& outlook) {
   return static_cast<std::size_t>(
       std::count_if(outlook.devices.begin(), outlook.devices.end(),
                     [](const DeviceOutlook& one) { return std::isfinite(FirstStep(one)); }));
-}
-
-std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outlook& outlook) {
-  if (outlook.devices.empty()) {
-    return outlook.is_known && !state.devices.empty() ? "no device is deployed" : "";
-  }
-  const DeviceOutlook& first = outlook.devices.front();
-  const bool is_now = first.risk_now < 0.0;
-  std::string text;
-  std::string whom;  // devices of the previous part
-  std::size_t disaster = first.disaster_now;
-  if (is_now) {
-    whom = Names(outlook, [&first](const DeviceOutlook& one) {
-      return one.disaster_now == first.disaster_now && one.risk_now == first.risk_now;
-    });
-    text = outlook.names[disaster] + ": " + RingText(first.risk_now, first.wind_now_kt) + " over " +
-           whom + " now";
-  }
-  const RingArrival* next =
-      Extreme(outlook, [](const auto& a, const auto& b) { return a.steps < b.steps; });
-  if (next == nullptr) return is_now ? text : KnownText(spec, outlook);
-  const RingArrival* worst = Extreme(outlook, [](const auto& a, const auto& b) {
-    return a.risk < b.risk || (a.risk == b.risk && a.steps < b.steps);
-  });
-  // A part names the disaster and the devices only if they differ from those of the previous part.
-  const auto add = [&](const RingArrival& ring, const std::string& when) {
-    const std::string these = WhomText(spec, outlook, ring);
-    if (text.empty()) {
-      text = outlook.names[ring.disaster] + ", " + RingText(ring.risk, ring.wind_kt) +
-             ", reaches " + these;
-    } else {
-      const std::string& name = outlook.names[ring.disaster];
-      const bool has_direction = name.find(kInThe) != std::string::npos;
-      text += ", " + (ring.disaster == disaster ? "" : name + (has_direction ? ", " : " ")) +
-              RingText(ring.risk, ring.wind_kt) + (these == whom ? "" : " reaches " + these);
-    }
-    text += " in " + when;
-    whom = these;
-    disaster = ring.disaster;
-  };
-  const std::string about = outlook.is_extrapolated ? "about " : "";
-  const std::string clock = ClockAhead(spec, state, next->steps, /*has_zone=*/true);
-  add(*next, about + AheadText(spec, next->steps) + clock);
-  if (worst->risk < next->risk) {
-    add(*worst, about + AheadText(spec, worst->steps) +
-                    ClockAhead(spec, state, worst->steps, /*has_zone=*/clock.empty()));
-  }
-  return text;
-}
-
-std::vector<std::string> Headlines(const FarmSpec& spec, const FarmState& state,
-                                   const Outlook& outlook) {
-  const std::string brief = ShortOutlookText(spec, outlook);
-  if (brief.empty()) return {};
-  Outlook directed = outlook;
-  for (std::size_t i = 0; i < directed.names.size(); ++i) {
-    const auto& disaster = state.disasters[i];
-    if (IsCentreInFarm(spec, disaster)) continue;
-    directed.names[i] += kInThe + PointFromFarm(spec, disaster.x, disaster.y);
-  }
-  std::vector<std::string> lines{OutlookText(spec, state, directed),
-                                 OutlookText(spec, state, outlook), brief};
-  for (std::string& line : lines) {
-    line[0] = char(std::toupper(static_cast<unsigned char>(line[0])));
-  }
-  return lines;
-}
-
-std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
-  if (outlook.devices.empty()) return "";
-  if (!IsInDanger(outlook)) return KnownText(spec, outlook);
-  const DeviceOutlook& first = outlook.devices.front();
-  return DeviceLabel(first.id) + ": " + DangerText(spec, first);
-}
-
-std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
-  const std::string before = device.risk_now < 0.0 ? NameOf(device.wind_now_kt) : "";
-  const std::string after = device.arrivals.empty() ? "" : NameOf(device.arrivals.front().wind_kt);
-  // If both rings have the same name, only their risks distinguish them.
-  const bool has_names = (device.risk_now == 0.0 || !before.empty()) &&
-                         (device.arrivals.empty() || !after.empty()) && before != after;
-  if (!has_names) {
-    const std::string risk = RiskText(spec, device);
-    return risk.empty() ? "" : "risk " + risk;
-  }
-  const std::string now = before.empty() ? "" : before + " now";
-  if (after.empty()) return now;
-  const std::string next =
-      now + (now.empty() ? "" : ", ") + NamedArrival(spec, device.arrivals.front());
-  const RingArrival& worst = device.arrivals.back();
-  const std::string last = NameOf(worst.wind_kt);
-  return last.empty() || last == after ? next : next + ", " + NamedArrival(spec, worst);
-}
-
-std::string WorstText(const FarmSpec& spec, const DeviceOutlook& device) {
-  const bool is_named = !device.arrivals.empty() && device.arrivals.back().wind_kt > 0;
-  return is_named ? NamedArrival(spec, device.arrivals.back()) : DangerText(spec, device);
-}
-
-std::string NowAndWorstText(const FarmSpec& spec, const DeviceOutlook& device) {
-  const std::string worst = WorstText(spec, device);
-  const bool is_named = device.risk_now < 0.0 && device.wind_now_kt > 0 &&
-                        !device.arrivals.empty() && device.arrivals.back().wind_kt > 0;
-  return is_named ? NameOf(device.wind_now_kt) + (" now, " + WithoutForce(worst)) : worst;
-}
-
-std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {
-  const std::string now = device.risk_now < 0.0 ? Number(device.risk_now, 0) + " now" : "";
-  if (device.arrivals.empty()) return now;
-  const RingArrival& next = device.arrivals.front();
-  const RingArrival& worst = device.arrivals.back();
-  const std::string then = device.arrivals.size() < 2 ? ""
-                                                      : ", " + Number(worst.risk, 0) + between +
-                                                            AheadText(spec, worst.steps);
-  return now + (now.empty() ? "" : ", ") + Number(next.risk, 0) + between +
-         AheadText(spec, next.steps) + then;
-}
-
-std::pair<std::string, std::string> NameAndDanger(
-    const FarmSpec& spec, const std::string& kind, const DeviceOutlook& device,
-    const std::function<bool(const std::string& name, const std::string& danger)>& fits) {
-  const std::string label = DeviceLabel(device.id);
-  const std::string full = label + " " + kind;
-  std::string danger = DangerText(spec, device);
-  if (fits(full, danger)) return {full, danger};
-  // The kind can be left out, because the symbol next to the name shows it.
-  for (const std::string& shorter :
-       {WorstText(spec, device), RiskText(spec, device), RiskText(spec, device, ", ")}) {
-    if (fits(label, danger)) break;
-    danger = shorter;
-  }
-  const std::string brief = WithoutForce(danger);
-  return fits(full, brief) ? std::pair(full, brief) : std::pair(label, danger);
-}
-
-std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
-                       const Course& course) {
-  return NameNow(disaster, course) + StrengthText(course.ahead.front()) + ", centre " +
-         WhereText(spec, disaster.x, disaster.y);
-}
-
-std::string MotionNow(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster) {
-  const std::string motion = MotionText(spec, disaster.heading_deg, double(disaster.speed));
-  return disaster.speed > 0.0F ? "now moving " + motion : motion;
-}
-
-std::string ClosestText(const FarmSpec& spec, const Course& course) {
-  if (course.kind == Course::Kind::kExtrapolated) return "";
-  const double now = course.ahead.front().step;
-  const TrackPoint nearest = ClosestApproach(spec, course.ahead, now);
-  if (!(nearest.step > now)) return "";
-  return WhereText(spec, nearest.x, nearest.y) + " in " + AheadText(spec, nearest.step - now);
-}
-
-std::string ApproachText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
-                         const Course& course) {
-  const std::string motion = MotionText(spec, disaster.heading_deg, double(disaster.speed));
-  const std::string closest = ClosestText(spec, course);
-  return closest.empty() ? motion : motion + ", closest " + closest;
 }
 
 }  // namespace aquafarm_viz

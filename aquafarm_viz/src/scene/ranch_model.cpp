@@ -9,7 +9,7 @@
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "scene/nautical.h"
-#include "scene/outlook.h"
+#include "scene/outlook_text.h"
 
 namespace aquafarm_viz {
 namespace {

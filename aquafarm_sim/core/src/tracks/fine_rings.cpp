@@ -107,18 +107,18 @@ bool IsReported(const StormFix& fix, const StormWaypoint& at, std::int32_t wind_
 }
 
 // Sets each estimated ring of a point to its estimate times size^kept, where `size` is the ring's
-// ratio to its estimate at the last report. Rings of winds that the storm did not reach at the
-// report use at.size, the ratio of the outermost ring, which is set here. Reported rings do not
-// change. An estimated ring is never smaller than a reported ring of a stronger wind, and never
-// larger than the ring outside it.
+// ratio to its estimate at the last report. If the storm did not reach the wind of a ring at the
+// report, the factor is at.size instead, which is first set to the factor of the outermost ring.
+// Reported rings do not change. An estimated ring is never smaller than a reported ring of a
+// stronger wind, and never larger than the ring outside it.
 void Resize(const StormWaypoint& report, double kept, const StormFix& fix, StormRings& storm,
             StormWaypoint& at) {
   const std::size_t rings = storm.wind_kt.size();
   const bool has_own = IsReported(fix, at, storm.wind_kt.back());
   const double outermost = SizeOf(storm, has_own ? at : report, rings - 1);
   at.size = outermost > 0.0 ? std::pow(outermost, has_own ? 1.0 : kept) : 1.0;
-  std::vector<Quadrants> reported(rings,
-                                  Quadrants{});  // largest reported radii of this and inner rings
+  // For each ring, the largest reported radii of it and the rings inside it.
+  std::vector<Quadrants> reported(rings, Quadrants{});
   for (std::size_t ring = 0; ring < rings; ++ring) {
     if (ring > 0) reported[ring] = reported[ring - 1];
     if (!IsReported(fix, at, storm.wind_kt[ring])) continue;

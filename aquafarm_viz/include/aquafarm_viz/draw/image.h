@@ -4,8 +4,8 @@
 /// Draws the farm as a picture, without an X server.
 ///
 ///     .-----------------------------------------.
-///     | scenario                     world time |
-///     | episode  step  return       next danger |
+///     | next danger, or how the episode ended   |
+///     | scenario episode step return world time |
 ///     |-----------------------------.-----------|
 ///     |                             | devices   |
 ///     |                             | disasters |

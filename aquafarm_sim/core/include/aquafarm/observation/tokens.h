@@ -4,7 +4,7 @@
 /// Features as entity tokens (view.tokens). Their number depends neither on the size of the map nor
 /// on the number of entities, so one network can play every ranch:
 ///
-///   ship       1 token    the observing ship, its near surroundings and the risk on its courses
+///   ship       1 token    the observing ship, its surroundings, the risk in each direction
 ///   device    10 tokens   fetchable devices that are deployed or aboard the observing ship
 ///   port       6 tokens
 ///   disaster   4 tokens   known disasters that have not ended
@@ -18,8 +18,8 @@
 ///
 /// Lengths are in units of kTokenLength cells and clamped to [-4, 4]. Risks are divided by the
 /// worst risk of §2.1 of the paper (see docs/model.md). Forecast risks assume that each known
-/// disaster keeps its motion and its size until it ends. The features ship.risk.<move> and
-/// ship.course.<move> ignore the ends of disasters. docs/generalist.md lists every feature.
+/// disaster keeps its motion and its size until it ends. The features ship.risk.* and
+/// ship.course.* ignore the ends of disasters. docs/generalist.md lists every feature.
 
 #include <array>
 #include <cstdint>

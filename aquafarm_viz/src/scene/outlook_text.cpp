@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/outlook_text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <ctime>
+
+#include "aquafarm/tracks/wind_name.h"
+#include "aquafarm_viz/base/text.h"
+#include "aquafarm_viz/scene/labels.h"
+#include "scene/nautical.h"
+
+namespace aquafarm_viz {
+
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+
+std::string AheadText(const FarmSpec& spec, double steps) {
+  if (!(spec.step_duration_s > 0.0)) {
+    return Number(steps, 0) + (steps == 1.0 ? " step" : " steps");
+  }
+  const double hours = steps * spec.step_duration_s / 3600.0;
+  if (hours < 1.0) return Number(60.0 * hours, 0) + " min";
+  return Number(hours, hours < 10.0 ? 1 : 0) + " h";
+}
+
+namespace {
+
+// Returns the name of the wind of a ring; empty if it is not given.
+const char* NameOf(std::int32_t wind_kt) { return wind_kt > 0 ? aquafarm::WindName(wind_kt) : ""; }
+
+// Returns "risk -10", or the name of the wind, such as "storm", if it is given.
+std::string RingText(double risk, std::int32_t wind_kt) {
+  return wind_kt > 0 ? aquafarm::WindName(wind_kt) : "risk " + Number(risk, 0);
+}
+
+// Returns the labels of the devices for which `applies` is true, by id: "F0", "F0 and F1" or "3
+// devices". It must be true for at least one.
+std::string Names(const Outlook& outlook,
+                  const std::function<bool(const DeviceOutlook& device)>& applies) {
+  constexpr std::size_t kMaxNames = 2;
+  std::vector<std::int32_t> ids;
+  for (const DeviceOutlook& one : outlook.devices) {
+    if (applies(one)) ids.push_back(one.id);
+  }
+  std::sort(ids.begin(), ids.end());
+  std::vector<std::string> names;
+  names.reserve(ids.size());
+  for (const std::int32_t id : ids) names.push_back(DeviceLabel(id));
+  return names.size() > kMaxNames    ? std::to_string(names.size()) + " devices"
+         : names.size() == kMaxNames ? names[0] + " and " + names[1]
+                                     : names[0];
+}
+
+// Returns the first arrival at any device in the order `is_before`; null if no ring arrives.
+const RingArrival* Extreme(
+    const Outlook& outlook,
+    const std::function<bool(const RingArrival&, const RingArrival&)>& is_before) {
+  const RingArrival* best = nullptr;
+  for (const DeviceOutlook& one : outlook.devices) {
+    for (const RingArrival& ring : one.arrivals) {
+      if (best == nullptr || is_before(ring, *best)) best = &ring;
+    }
+  }
+  return best;
+}
+
+// Returns the labels of the devices that the same ring reaches at the same time: "F0 and F1". Times
+// are the same if AheadText displays them equally.
+std::string WhomText(const FarmSpec& spec, const Outlook& outlook, const RingArrival& ring) {
+  return Names(outlook, [&](const DeviceOutlook& one) {
+    return std::any_of(one.arrivals.begin(), one.arrivals.end(), [&](const RingArrival& other) {
+      return other.disaster == ring.disaster && other.risk == ring.risk &&
+             AheadText(spec, other.steps) == AheadText(spec, ring.steps);
+    });
+  });
+}
+
+// Returns "gale in 2 h"; the wind must be given.
+std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
+  return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
+}
+
+// Returns the local time `steps` steps from now, " (Sun 06:24 UTC+8)" or without its zone; empty if
+// that is less than an hour away or if the scenario has no start time.
+std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double steps, bool has_zone) {
+  if (!spec.has_start_time || steps * spec.step_duration_s < 3600.0) return "";
+  const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
+  const std::string time = LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
+  return " (" + (has_zone ? time : time.substr(0, time.rfind(' '))) + ")";
+}
+
+// Shortens "hurricane force in 9 h" to "hurricane in 9 h".
+std::string WithoutForce(std::string text) {
+  const std::string word = " force";
+  const std::size_t at = text.find(word);
+  return at == std::string::npos ? text : text.erase(at, word.size());
+}
+
+// Returns "no known danger to devices until +12 h"; empty if all courses are known to their ends.
+std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
+  if (!std::isfinite(outlook.known_until)) return "";
+  return "no known danger to devices until +" + AheadText(spec, outlook.known_until);
+}
+
+// Returns the ring that comes nearest to a device: "risk -5 is 900 m from F2 now" or "gale passes
+// 12 km from F2 in 9.0 h".
+std::string MissText(const FarmSpec& spec, const Outlook& outlook) {
+  const RingMiss& miss = outlook.miss;
+  const std::string ring = RingText(miss.risk, miss.wind_kt);
+  const std::string where =
+      DistanceText(miss.cells * double(spec.cell_size_m)) + " from " + DeviceLabel(miss.device);
+  if (!(miss.steps > 0.0)) return ring + " is " + where + " now";
+  const std::string about = outlook.is_extrapolated ? "about " : "";
+  return ring + " passes " + about + where + " in " + about + AheadText(spec, miss.steps);
+}
+
+// Writes an outlook as one sentence, see OutlookText.
+class Sentence {
+ public:
+  /// @param has_directions  true: the direction follows the name of a disaster outside the farm
+  Sentence(const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
+           bool has_directions)
+      : spec_(spec), state_(state), outlook_(outlook), has_directions_(has_directions) {}
+
+  std::string Write() {
+    if (outlook_.devices.empty()) {
+      return outlook_.is_known && !state_.devices.empty() ? "no device is deployed" : "";
+    }
+    if (!IsInDanger(outlook_)) return WriteSafe();
+    AddNow();
+    const RingArrival* next =
+        Extreme(outlook_, [](const auto& a, const auto& b) { return a.steps < b.steps; });
+    if (next == nullptr) return text_;
+    const RingArrival* worst = Extreme(outlook_, [](const auto& a, const auto& b) {
+      return a.risk < b.risk || (a.risk == b.risk && a.steps < b.steps);
+    });
+    const std::string clock = ClockAhead(spec_, state_, next->steps, /*has_zone=*/true);
+    Add(*next, clock);
+    if (worst->risk < next->risk) {
+      Add(*worst, ClockAhead(spec_, state_, worst->steps, /*has_zone=*/clock.empty()));
+    } else {
+      AddOthers(*next);
+    }
+    return text_;
+  }
+
+ private:
+  bool HasDirection(std::size_t disaster) const {
+    return has_directions_ && !outlook_.directions.at(disaster).empty();
+  }
+
+  // Returns the name of a disaster, "typhoon" or "typhoon in the SSE".
+  std::string Name(std::size_t disaster) const {
+    const std::string& name = outlook_.names[disaster];
+    return HasDirection(disaster) ? name + " in the " + outlook_.directions[disaster] : name;
+  }
+
+  // Returns a time ahead, with "about" if a course is extrapolated.
+  std::string When(double steps) const {
+    return (outlook_.is_extrapolated ? "about " : "") + AheadText(spec_, steps);
+  }
+
+  // Returns the sentence if no device is in danger.
+  std::string WriteSafe() const {
+    const std::string known = KnownText(spec_, outlook_);
+    if (!std::isfinite(outlook_.miss.cells)) return known;
+    return Name(outlook_.miss.disaster) + ": " + MissText(spec_, outlook_) +
+           (known.empty() ? "" : "; " + known);
+  }
+
+  // Adds the ring that covers the most urgent device now, if there is one.
+  void AddNow() {
+    const DeviceOutlook& first = outlook_.devices.front();
+    if (!(first.risk_now < 0.0)) return;
+    disaster_ = first.disaster_now;
+    whom_ = Names(outlook_, [&first](const DeviceOutlook& one) {
+      return one.disaster_now == first.disaster_now && one.risk_now == first.risk_now;
+    });
+    text_ = Name(disaster_) + ": " + RingText(first.risk_now, first.wind_now_kt) + " over " +
+            whom_ + " now";
+  }
+
+  // Adds the arrival of a ring. Names the disaster and the devices only if they differ from those
+  // of the previous part.
+  void Add(const RingArrival& ring, const std::string& clock) {
+    const std::string these = WhomText(spec_, outlook_, ring);
+    const std::string what = RingText(ring.risk, ring.wind_kt);
+    if (text_.empty()) {
+      text_ = Name(ring.disaster) + ", " + what + ", reaches " + these;
+    } else {
+      const char* between = HasDirection(ring.disaster) ? ", " : " ";
+      text_ += ", " + (ring.disaster == disaster_ ? "" : Name(ring.disaster) + between) + what +
+               (these == whom_ ? "" : " reaches " + these);
+    }
+    text_ += " in " + When(ring.steps) + clock;
+    whom_ = these;
+    disaster_ = ring.disaster;
+  }
+
+  // Adds the devices that the same ring reaches later: "F2 in 2.2 h", "F2 and F3 within 3.0 h" or
+  // "4 more within 3.0 h".
+  void AddOthers(const RingArrival& ring) {
+    double last = ring.steps;
+    const auto is_later = [&](const DeviceOutlook& one) {
+      return std::any_of(one.arrivals.begin(), one.arrivals.end(), [&](const RingArrival& other) {
+        if (other.disaster != ring.disaster || other.risk != ring.risk) return false;
+        if (AheadText(spec_, other.steps) == AheadText(spec_, ring.steps)) return false;
+        last = std::max(last, other.steps);
+        return true;
+      });
+    };
+    const auto count = std::count_if(outlook_.devices.begin(), outlook_.devices.end(), is_later);
+    if (count == 0) return;
+    const std::string whom =
+        count > 2 ? std::to_string(count) + " more" : Names(outlook_, is_later);
+    text_ += ", " + whom + (count > 1 ? " within " : " in ") + When(last);
+  }
+
+  const FarmSpec& spec_;
+  const FarmState& state_;
+  const Outlook& outlook_;
+  bool has_directions_;
+  std::string text_;
+  std::string whom_;          // devices of the previous part
+  std::size_t disaster_ = 0;  // disaster of the previous part
+};
+
+}  // namespace
+
+std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outlook& outlook) {
+  return Sentence(spec, state, outlook, /*has_directions=*/false).Write();
+}
+
+std::vector<std::string> Headlines(const FarmSpec& spec, const FarmState& state,
+                                   const Outlook& outlook) {
+  const std::string brief = ShortOutlookText(spec, outlook);
+  if (brief.empty()) return {};
+  std::vector<std::string> lines{Sentence(spec, state, outlook, /*has_directions=*/true).Write(),
+                                 OutlookText(spec, state, outlook), brief};
+  for (std::string& line : lines) {
+    line[0] = char(std::toupper(static_cast<unsigned char>(line[0])));
+  }
+  return lines;
+}
+
+std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
+  if (outlook.devices.empty()) return "";
+  if (!IsInDanger(outlook)) {
+    return std::isfinite(outlook.miss.cells) ? MissText(spec, outlook) : KnownText(spec, outlook);
+  }
+  const DeviceOutlook& first = outlook.devices.front();
+  return DeviceLabel(first.id) + ": " + DangerText(spec, first);
+}
+
+std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
+  const std::string before = device.risk_now < 0.0 ? NameOf(device.wind_now_kt) : "";
+  const std::string after = device.arrivals.empty() ? "" : NameOf(device.arrivals.front().wind_kt);
+  // If both rings have the same name, only their risks distinguish them.
+  const bool has_names = (device.risk_now == 0.0 || !before.empty()) &&
+                         (device.arrivals.empty() || !after.empty()) && before != after;
+  if (!has_names) {
+    const std::string risk = RiskText(spec, device);
+    return risk.empty() ? "" : "risk " + risk;
+  }
+  const std::string now = before.empty() ? "" : before + " now";
+  if (after.empty()) return now;
+  const std::string next =
+      now + (now.empty() ? "" : ", ") + NamedArrival(spec, device.arrivals.front());
+  const RingArrival& worst = device.arrivals.back();
+  const std::string last = NameOf(worst.wind_kt);
+  return last.empty() || last == after ? next : next + ", " + NamedArrival(spec, worst);
+}
+
+std::string WorstText(const FarmSpec& spec, const DeviceOutlook& device) {
+  const bool is_named = !device.arrivals.empty() && device.arrivals.back().wind_kt > 0;
+  return is_named ? NamedArrival(spec, device.arrivals.back()) : DangerText(spec, device);
+}
+
+std::string NowAndWorstText(const FarmSpec& spec, const DeviceOutlook& device) {
+  const std::string worst = WorstText(spec, device);
+  const bool is_named = device.risk_now < 0.0 && device.wind_now_kt > 0 &&
+                        !device.arrivals.empty() && device.arrivals.back().wind_kt > 0;
+  return is_named ? NameOf(device.wind_now_kt) + (" now, " + WithoutForce(worst)) : worst;
+}
+
+std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {
+  const std::string now = device.risk_now < 0.0 ? Number(device.risk_now, 0) + " now" : "";
+  if (device.arrivals.empty()) return now;
+  const RingArrival& next = device.arrivals.front();
+  const RingArrival& worst = device.arrivals.back();
+  const std::string then = device.arrivals.size() < 2 ? ""
+                                                      : ", " + Number(worst.risk, 0) + between +
+                                                            AheadText(spec, worst.steps);
+  return now + (now.empty() ? "" : ", ") + Number(next.risk, 0) + between +
+         AheadText(spec, next.steps) + then;
+}
+
+std::pair<std::string, std::string> NameAndDanger(
+    const FarmSpec& spec, const std::string& kind, const DeviceOutlook& device,
+    const std::function<bool(const std::string& name, const std::string& danger)>& fits) {
+  const std::string label = DeviceLabel(device.id);
+  const std::string full = label + " " + kind;
+  std::string danger = DangerText(spec, device);
+  if (fits(full, danger)) return {full, danger};
+  // The kind can be left out, because the symbol next to the name shows it.
+  for (const std::string& shorter :
+       {WorstText(spec, device), RiskText(spec, device), RiskText(spec, device, ", ")}) {
+    if (fits(label, danger)) break;
+    danger = shorter;
+  }
+  const std::string brief = WithoutForce(danger);
+  return fits(full, brief) ? std::pair(full, brief) : std::pair(label, danger);
+}
+
+std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
+                       const Course& course) {
+  return NameNow(disaster, course) + StrengthText(course.ahead.front()) + ", centre " +
+         WhereText(spec, disaster.x, disaster.y);
+}
+
+std::string MotionNow(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster) {
+  const std::string motion = MotionText(spec, disaster.heading_deg, double(disaster.speed));
+  return disaster.speed > 0.0F ? "now moving " + motion : motion;
+}
+
+std::string ClosestText(const FarmSpec& spec, const Course& course) {
+  if (course.kind == Course::Kind::kExtrapolated) return "";
+  const double now = course.ahead.front().step;
+  const TrackPoint nearest = ClosestApproach(spec, course.ahead, now);
+  if (!(nearest.step > now)) return "";
+  return WhereText(spec, nearest.x, nearest.y) + " in " + AheadText(spec, nearest.step - now);
+}
+
+std::string ApproachText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
+                         const Course& course) {
+  const std::string motion = MotionText(spec, disaster.heading_deg, double(disaster.speed));
+  const std::string closest = ClosestText(spec, course);
+  return closest.empty() ? motion : motion + ", closest " + closest;
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Formats an outlook and the place of a disaster as text; private to this package.
+
+#include <aquafarm_msgs/DisasterState.h>
+#include <aquafarm_msgs/FarmSpec.h>
+#include <aquafarm_msgs/FarmState.h>
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/outlook.h"
+#include "scene/storm_track.h"
+
+namespace aquafarm_viz {
+
+/// Returns a time ahead: "48 min", "6.5 h" or "12 h"; "12 steps" if the steps of the farm have no
+/// duration.
+std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
+
+/// Returns the outlook in one sentence: the ring that covers the most urgent device now and all
+/// devices in that ring, the next ring that reaches any device, and the worst ring to come.
+/// Examples: "typhoon, risk -10, reaches F3 in 6.5 h" and "typhoon: risk -5 over F2 now, risk -20
+/// in 6.5 h". If the winds of the rings are given: "typhoon In-Fa: gale over F0 and F1 now, gale
+/// reaches F5 in 8 min, storm reaches F0 in 6.5 h". On a farm with a start time, the local time
+/// follows each arrival that is at least an hour away, the first one with its zone.
+///
+/// If no worse ring comes, the devices that the same ring reaches later follow: "typhoon, near
+/// gale, reaches F0 and F1 in 2.0 h, F2 in 2.2 h".
+///
+/// If no ring covers or reaches a device, the text is the nearest ring (Outlook::miss) and the time
+/// until which the courses are known: "typhoon: risk -5 is 900 m from F2 now; no known danger to
+/// devices until +3.0 h". A part that does not apply is left out, so that the text can be empty. If
+/// the farm has devices but none is deployed, the text is "no device is deployed". The text is also
+/// empty if the outlook is not known.
+std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
+                        const Outlook& outlook);
+
+/// Returns the outlook as headlines, the longest first: OutlookText with the direction of each
+/// disaster outside the farm, OutlookText, and the danger to the most urgent device. Empty if the
+/// outlook is not known or if there is nothing to report.
+std::vector<std::string> Headlines(const aquafarm_msgs::FarmSpec& spec,
+                                   const aquafarm_msgs::FarmState& state, const Outlook& outlook);
+
+/// Returns a short form of OutlookText: the danger to the most urgent device, such as "F2: risk -20
+/// now". Without a danger, returns the nearest ring, "risk -5 is 900 m from F2 now", or the text
+/// about the known time, or an empty text.
+std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook);
+
+/// Returns the danger to a device: the ring that covers it now, the next worse ring and the worst
+/// ring to come. Examples: "risk -10 in 6.5 h", "risk -5 now", "risk -5 now, -20 in 6.5 h". If the
+/// winds of the rings are given: "gale now, storm in 6.5 h, hurricane force in 9 h". Returns an
+/// empty text if no ring covers or reaches the device.
+std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
+
+/// Returns the worst ring to come: "hurricane force in 9 h". Returns DangerText if its wind is not
+/// given or no worse ring comes.
+std::string WorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
+
+/// Returns the ring that covers the device now and the worst ring to come: "gale now, hurricane in
+/// 9 h". Returns WorstText if one of the two is missing or has no wind.
+std::string NowAndWorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
+
+/// Returns DangerText with risks instead of names of winds, and without the word "risk": "-5 now,
+/// -20 in 6.5 h".
+/// @param between  text between risk and time
+std::string RiskText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
+                     const char* between = " in ");
+
+/// Returns the two texts of a row about a device: its label, with its kind if there is space, and
+/// its danger. Tries texts from the longest to the shortest until `fits` accepts both. If it
+/// accepts none, returns the shortest.
+/// @param kind  DeviceName of the device
+std::pair<std::string, std::string> NameAndDanger(
+    const aquafarm_msgs::FarmSpec& spec, const std::string& kind, const DeviceOutlook& device,
+    const std::function<bool(const std::string& name, const std::string& danger)>& fits);
+
+/// Returns where the centre of a disaster is, seen from the middle of the farm: "typhoon, centre 89
+/// km SE", or with its wind, if that is given, "typhoon 37 m/s (72 kt), centre 89 km SE".
+std::string CentreText(const aquafarm_msgs::FarmSpec& spec,
+                       const aquafarm_msgs::DisasterState& disaster, const Course& course);
+
+/// Returns the present motion of a disaster: "now moving NW at 13 km/h", or "stands still".
+std::string MotionNow(const aquafarm_msgs::FarmSpec& spec,
+                      const aquafarm_msgs::DisasterState& disaster);
+
+/// Returns the closest approach of a disaster: "29 km S in 11 h". Returns "" if its course is
+/// extrapolated or does not come nearer.
+std::string ClosestText(const aquafarm_msgs::FarmSpec& spec, const Course& course);
+
+/// Returns the present motion of a disaster, "NW at 13 km/h". If its course is not extrapolated and
+/// comes nearer, the closest approach follows: "NW at 13 km/h, closest 29 km S in 11 h".
+std::string ApproachText(const aquafarm_msgs::FarmSpec& spec,
+                         const aquafarm_msgs::DisasterState& disaster, const Course& course);
+
+}  // namespace aquafarm_viz

@@ -97,11 +97,11 @@ TEST(DangerMarkers, ExplainTheSignsThatAreOnTheMap) {
     }
     return result;
   };
-  EXPECT_EQ(words(&trail), "danger|hit first|to the centre|pattern: at risk|dashed: empty ship|");
-  EXPECT_EQ(words(nullptr), "danger|hit first|to the centre|pattern: at risk|");
+  EXPECT_EQ(words(&trail), "danger|hit first|to the centre|at risk|dashed: empty ship|");
+  EXPECT_EQ(words(nullptr), "danger|hit first|to the centre|at risk|");
   scene.state.disasters[0].x = 24.0F;
   scene.state.disasters[0].radii = {1.0F, 2.0F};
-  EXPECT_EQ(words(nullptr), "pattern: at risk|");
+  EXPECT_EQ(words(nullptr), "at risk|");
   scene.state.disasters[0].steps_left = 0;
   EXPECT_EQ(words(nullptr), "");
 }

@@ -131,7 +131,7 @@ TEST(OutlookText, HasHeadlinesWithAndWithoutDirectionsAndAShortOne) {
   EXPECT_EQ(Headlines(scene.spec, scene.state, scene.outlook()), expected);
   scene.state.disasters[0].x = 212.0F;
   EXPECT_EQ(Headlines(scene.spec, scene.state, scene.outlook())[0],
-            "No known danger to devices until +3.0 h");
+            "No known danger to devices for the next 3.0 h");
   scene.state.disasters[0].steps_left = 0;
   EXPECT_TRUE(Headlines(scene.spec, scene.state, scene.outlook()).empty());
 }
@@ -141,7 +141,7 @@ TEST(OutlookText, SaysUntilWhenItIsKnown) {
   scene.state.disasters[0].x = 212.0F;  // it arrives after the 60 steps of an extrapolated course
   EXPECT_FALSE(IsInDanger(scene.outlook()));
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "no known danger to devices until +3.0 h");
+            "no known danger to devices for the next 3.0 h");
   scene.state.disasters[0].steps_left = 60;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "");
 }
@@ -174,7 +174,7 @@ TEST(OutlookText, NamesTheNearestRingIfNoDeviceIsInDanger) {
   scene.state.disasters[0].y = 24.0F;  // passes 2 cells north of the device in 30 steps
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
             "typhoon: risk -5 passes about 2.0 km from F3 in about 1.5 h; "
-            "no known danger to devices until +3.0 h");
+            "no known danger to devices for the next 3.0 h");
   const std::vector<std::string> headlines = Headlines(scene.spec, scene.state, scene.outlook());
   EXPECT_EQ(headlines.front().substr(0, 36), "Typhoon in the ENE: risk -5 passes a");
   EXPECT_EQ(headlines.back(), "Risk -5 passes about 2.0 km from F3 in about 1.5 h")

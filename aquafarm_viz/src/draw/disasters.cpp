@@ -76,7 +76,8 @@ void DrawCentre(cv::Mat& map, const DisasterState& disaster, const SignPlace& si
 // Draws a pointer at the border towards a centre outside the map.
 void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, const SignPlace& sign,
                        const Layout& layout) {
-  const cv::Point2d away = layout.view.ToPixel(disaster.x, disaster.y) - sign.at;
+  const cv::Point2d middle(map.cols / 2.0, map.rows / 2.0);
+  const cv::Point2d away = layout.view.ToPixel(disaster.x, disaster.y) - middle;
   const double bearing = std::atan2(away.x, -away.y) * 180.0 / CV_PI;
   const Pose2 placing{sign.at, 10.0 * layout.unit, bearing};
   StrokeShape(map, PointerOutline(), placing, Bgr(layout.style->halo), layout.Px(5));

@@ -4,6 +4,7 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 #include <utility>
+#include <vector>
 
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/scene/labels.h"
@@ -120,7 +121,7 @@ void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, d
   StrokeShape(image, outline, placing, Bgr(kInk), rim + 1);
   FillShape(image, outline, placing, Bgr(color));
   if (placing.size_px < 7.0) return;
-  // A smaller outline: the net pen inside the frame.
+  // Draws a smaller outline inside, such as the net pen in its frame.
   StrokeShape(image, outline, {placing.at, 0.55 * placing.size_px, placing.bearing_deg},
               Bgr(Mix(color, kInk, 0.55)), rim);
 }
@@ -145,16 +146,55 @@ void DrawMoved(cv::Mat& map, cv::Point2d from, cv::Point2d to, bool is_dashed,
   DrawLine(map, from + gap, to - gap, color, layout.Px((is_dashed ? 1.8 : 3.2) + 2.0 * casing));
 }
 
-// Draws a casing under the path of a ship, so that it is visible on the colours of values and where
-// it crosses other paths.
-void DrawCasing(cv::Mat& map, const ShipTrail& way, const Layout& layout) {
-  const cv::Scalar color = Bgr(Mix(layout.style->halo, layout.style->sea_south, 0.35));
-  for (std::size_t i = 1; i < way.places.size(); ++i) {
+// One move of a ship on the map.
+struct Moved {
+  cv::Point2d from;  // [pixels]
+  cv::Point2d to;
+  bool is_dashed{};  // the ship had nothing aboard
+  double age{};      // 0: the last move, 1: the oldest
+};
+
+// Returns the unit vector to the right of a direction on the map; {0, 0} without a direction.
+cv::Point2d RightOf(cv::Point2d along) {
+  const double length = cv::norm(along);
+  return length > 0.0 ? cv::Point2d(-along.y, along.x) / length : cv::Point2d();
+}
+
+// Returns where a path that is `aside` pixels to the right of its points turns at a point. Sharp
+// turns have no common point; there, the result is next to the end of `own`.
+// @param own, other  right sides of the two moves that meet at the point
+cv::Point2d Turn(cv::Point2d at, cv::Point2d own, cv::Point2d other, double aside) {
+  const double cosine = own.dot(other);
+  return cosine < 0.2 ? at + aside * own : at + (own + other) * (aside / (1.0 + cosine));
+}
+
+// Returns the moves of a ship, the oldest first. They run to the right of the cells' centres, so
+// that the ways there and back can be told apart.
+// @param aside  distance from the centres [pixels]
+std::vector<Moved> MovesOf(const ShipTrail& way, double aside, const Layout& layout) {
+  const std::size_t count = way.places.size();
+  std::vector<cv::Point2d> points;
+  points.reserve(count);
+  for (const auto& place : way.places) points.push_back(layout.view.ToPixel(place.x, place.y));
+  std::vector<Moved> moves;
+  for (std::size_t i = 1; i < count; ++i) {
     if (Trail::IsGap(way.places[i - 1], way.places[i])) continue;
-    const cv::Point2d from = layout.view.ToPixel(way.places[i - 1].x, way.places[i - 1].y);
-    const cv::Point2d to = layout.view.ToPixel(way.places[i].x, way.places[i].y);
-    DrawMoved(map, from, to, !way.loaded[i], color, layout, /*casing=*/1.2);
+    const cv::Point2d own = RightOf(points[i] - points[i - 1]);
+    const bool has_before = i > 1 && !Trail::IsGap(way.places[i - 2], way.places[i - 1]);
+    const bool has_after = i + 1 < count && !Trail::IsGap(way.places[i], way.places[i + 1]);
+    const cv::Point2d before = has_before ? RightOf(points[i - 1] - points[i - 2]) : own;
+    const cv::Point2d after = has_after ? RightOf(points[i + 1] - points[i]) : own;
+    moves.push_back({Turn(points[i - 1], own, before, aside), Turn(points[i], own, after, aside),
+                     !way.loaded[i], 1.0 - double(i) / double(count)});
   }
+  return moves;
+}
+
+// Returns the distance of a ship's path from the centres of the cells [pixels]. It differs between
+// ships, so that paths on the same cells do not cover each other.
+double AsideOf(std::int32_t ship, bool are_several, const Layout& layout) {
+  const double units = 2.2 + (are_several ? 2.4 * (ship % 3) : 0.0);
+  return std::min(units * layout.unit, 0.3 * layout.view.cell_px());
 }
 
 // Draws an arrowhead between two points of a path, in the direction of the motion.
@@ -179,23 +219,24 @@ void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, bool is_da
 }
 
 void DrawPaths(cv::Mat& map, const FarmState& state, const Trail& paths, const Layout& layout) {
+  constexpr double kCasing = 1.2;  // [design units]
+  const cv::Scalar casing = Bgr(Mix(layout.style->halo, layout.style->sea_south, 0.35));
   for (const auto& ship : state.ships) {
     const ShipTrail* way = ship.visible ? paths.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
-    DrawCasing(map, *way, layout);
+    const double aside = AsideOf(ship.id, state.ships.size() > 1, layout);
+    const std::vector<Moved> moves = MovesOf(*way, aside, layout);
+    // A casing below the path makes it visible on the colours of values and on other paths.
+    for (const Moved& move : moves) {
+      DrawMoved(map, move.from, move.to, move.is_dashed, casing, layout, kCasing);
+    }
     double since_head_px = 0.0;
-    for (std::size_t i = 1; i < way->places.size(); ++i) {
-      const auto& from = way->places[i - 1];
-      const auto& to = way->places[i];
-      if (Trail::IsGap(from, to)) continue;
-      const double age = 1.0 - double(i) / double(way->places.size());
-      const cv::Scalar color = Bgr(PathColor(state, ship.id, age, *layout.style));
-      const cv::Point2d start = layout.view.ToPixel(from.x, from.y);
-      const cv::Point2d end = layout.view.ToPixel(to.x, to.y);
-      DrawMoved(map, start, end, !way->loaded[i], color, layout);
-      since_head_px += cv::norm(end - start);
+    for (const Moved& move : moves) {
+      const cv::Scalar color = Bgr(PathColor(state, ship.id, move.age, *layout.style));
+      DrawMoved(map, move.from, move.to, move.is_dashed, color, layout);
+      since_head_px += cv::norm(move.to - move.from);
       if (since_head_px < kBetweenHeads * layout.unit) continue;
-      DrawDirection(map, start, end, color, layout);
+      DrawDirection(map, move.from, move.to, color, layout);
       since_head_px = 0.0;
     }
   }
@@ -227,9 +268,9 @@ void DrawPorts(cv::Mat& map, const FarmSpec& spec, const Layout& layout, const F
 
 namespace {
 
-// Returns the length of the arrow of a legal move [pixels].
+// Returns the size of the arrow of a legal move for DrawArrow [pixels].
 double DirectionSize(const Layout& layout) {
-  return std::max(0.55 * layout.view.cell_px(), 12.0 * layout.unit);
+  return std::max(0.8 * layout.view.cell_px(), 16.0 * layout.unit);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
@@ -23,7 +24,8 @@ constexpr double kKeyRow = 15.0;     // height of a row of the keys
 constexpr double kKeyScale = 24.0;   // height of the scale of risks with its texts
 constexpr double kWide = 230.0;      // a panel at least this wide has all symbols in one row
 
-constexpr double kMildRisk = -5.0;  // risk of the sample for Sign::kAtRisk
+constexpr std::size_t kMaxColors = 4;  // max number of risks in the key
+constexpr double kMildRisk = -5.0;     // risk of the sample for Sign::kAtRisk
 
 bool IsWide(const Layout& layout) { return layout.panel.width >= layout.Px(kWide); }
 
@@ -149,7 +151,6 @@ bool HasRing(const Course& course, std::size_t ring) {
 }  // namespace
 
 RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) {
-  constexpr std::size_t kMaxColors = 4;
   RiskKey key;
   for (std::size_t i = 0; i < courses.size(); ++i) {
     if (!IsDrawn(state.disasters[i])) continue;
@@ -356,8 +357,38 @@ void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs, const FarmState& 
   }
 }
 
+std::vector<double> RisksOf(const FarmState& state) {
+  std::set<double, std::greater<>> risks;
+  for (const auto& disaster : state.disasters) {
+    if (!IsDrawn(disaster)) continue;
+    for (const float risk : disaster.risks) risks.insert(std::round(double(risk)));
+  }
+  return {risks.begin(), risks.end()};
+}
+
+namespace {
+
+// Draws a sample of each risk, and the risk next to it.
+void DrawRisks(cv::Mat& image, const std::vector<double>& risks, const FarmState& state,
+               cv::Rect row, const Layout& layout, const Fonts& fonts) {
+  const auto first = std::find_if(state.disasters.begin(), state.disasters.end(), IsDrawn);
+  const int base = row.y + (row.height + fonts.small.cap_height()) / 2;
+  int x = row.x;
+  x += fonts.small.Draw(image, "risk", {x, base}, Bgr(layout.style->words)) + layout.Px(10);
+  const int step = (row.br().x - x) / std::max(1, static_cast<int>(risks.size()));
+  for (const double risk : risks) {
+    const cv::Rect box(x, row.y + layout.Px(1.5), layout.Px(17), row.height - layout.Px(3));
+    DrawRiskSample(image, box, first->kind, risk, layout);
+    fonts.small.Draw(image, Number(risk, 0), {box.br().x + layout.Px(4), base},
+                     Bgr(layout.style->words));
+    x += step;
+  }
+}
+
+}  // namespace
+
 void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
-                 const Layout& layout, const Fonts& fonts) {
+                 const FarmState& state, const Layout& layout, const Fonts& fonts) {
   const int left = layout.panel.x + layout.Px(10);
   const int right = layout.panel.x + layout.panel.width - layout.Px(10);
   int y = layout.panel.y + layout.panel.height - FootPx(layout) - SignsPx(signs, layout) -
@@ -378,6 +409,11 @@ void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& si
     y += layout.Px(kKeyRow);
   }
   if (!key.empty()) return;
+  const std::vector<double> risks = RisksOf(state);
+  if (!risks.empty() && risks.size() <= kMaxColors) {
+    const cv::Rect row(left, y + layout.Px(5), right - left, layout.Px(kKeyRow));
+    return DrawRisks(image, risks, state, row, layout, fonts);
+  }
   const cv::Rect scale(left, y, right - left, layout.Px(7));
   for (int i = 0; i < scale.width; ++i) {
     cv::rectangle(image, cv::Rect(scale.x + i, scale.y, 1, scale.height),

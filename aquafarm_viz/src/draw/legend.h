@@ -29,8 +29,8 @@ struct NamedRing {
   std::uint8_t kind{};     ///< kind of the storm (DisasterState.kind)
 };
 
-/// The rings that the key of risks names. An empty list: the key shows the colour scale of all
-/// risks.
+/// The rings that the key of risks names. An empty list: the key shows the risks of all rings
+/// without names.
 using RiskKey = std::vector<NamedRing>;
 
 /// Returns the rings that have a radius now or later, of all drawn disasters. The rings of one
@@ -82,8 +82,12 @@ void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layou
 void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs,
                const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
 
-/// Draws the key of risks above the key of signs.
+/// Returns the risks of the rings of all drawn disasters, rounded, the mildest first, each once.
+std::vector<double> RisksOf(const aquafarm_msgs::FarmState& state);
+
+/// Draws the key of risks above the key of signs. With an empty key it shows RisksOf, or the colour
+/// scale of all risks if that is empty or has more than four risks.
 void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
-                 const Layout& layout, const Fonts& fonts);
+                 const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
 
 }  // namespace aquafarm_viz

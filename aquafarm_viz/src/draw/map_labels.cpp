@@ -48,7 +48,7 @@ void DrawLeader(cv::Mat& map, cv::Point2d symbol, double radius, cv::Rect label,
                 LabelSpace& space, const Layout& layout) {
   const cv::Point2d to = NearestIn(label, symbol);
   const double length = cv::norm(to - symbol);
-  if (length < 2.0 * radius + 6.0 * layout.unit) return;
+  if (length < radius + 7.0 * layout.unit) return;
   const cv::Point2d from = symbol + (to - symbol) * (radius / length);
   if (!space.AddLine(from, to, label, layout.Px(3))) return;
   DrawLine(map, from, to, Bgr(layout.style->halo), layout.Px(3));
@@ -281,12 +281,19 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
     for (std::size_t ring = 0; ring < std::min(disaster.radii.size(), disaster.risks.size());
          ++ring) {
       const std::string name = ring < winds.size() ? aquafarm::RingName(winds[ring]) + ", " : "";
-      const std::string text = whose + name + "risk " + Number(double(disaster.risks[ring]), 0);
-      const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins), layout.Px(kPlateRow));
+      const std::string risk = Number(double(disaster.risks[ring]), 0);
       const auto points = PointsOnMap(disaster, ring, map.size(), layout);
       FreeSpace water = space.space(Cover::kNothing);
       BlockOtherRings(state, disaster, ring, map.size(), water, layout);
-      const auto place = PlaceBesideRing(points, size, water, layout);
+      std::optional<cv::Rect> place;
+      std::string text;
+      for (const std::string& longer_first : {whose + name + "risk " + risk, "risk " + risk}) {
+        text = longer_first;
+        const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins),
+                            layout.Px(kPlateRow));
+        place = PlaceBesideRing(points, size, water, layout);
+        if (place) break;
+      }
       if (!place) continue;  // only the key of risks explains it
       space.Add(*place);
       DrawPlate(map, *place, {text}, RiskColor(double(disaster.risks[ring]), layout), layout,

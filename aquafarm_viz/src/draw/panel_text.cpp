@@ -9,6 +9,7 @@
 #include "draw/legend.h"
 #include "draw/region.h"
 #include "draw/symbols.h"
+#include "scene/graticule.h"
 #include "scene/nautical.h"
 #include "scene/outlook_text.h"
 
@@ -277,7 +278,7 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
   if (shown == 0) panel.Detail("none known", "", layout.style->faint);
 }
 
-void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
+void ListShips(Panel& panel, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
   panel.Heading("SHIPS", "");
   int rows = panel.RowsLeft();
   std::size_t left_out = 0;
@@ -300,13 +301,16 @@ void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
     }
     const std::string name = ship.own_device >= 0 ? "device " + std::to_string(ship.own_device)
                                                   : "ship " + std::to_string(ship.id);
-    const std::string cell = "(" + std::to_string(ship.x) + ", " + std::to_string(ship.y) + ")";
+    // The axes of a map with a geographic position do not number the cells.
+    const std::string cell =
+        HasGraticule(spec) ? ""
+                           : "(" + std::to_string(ship.x) + ", " + std::to_string(ship.y) + ")";
     const std::string fault = OutcomeName(ship.outcome);
     const std::string action = ActionName(ship.action) + (fault.empty() ? "" : ": " + fault);
     const std::string load = ship.own_device >= 0 ? ""
                                                   : std::to_string(ship.aboard.size()) + "/" +
                                                         std::to_string(ship.capacity) + " aboard";
-    const std::string where = cell + (load.empty() ? "" : ", " + load);
+    const std::string where = cell + (cell.empty() || load.empty() ? "" : ", ") + load;
     if (panel.Fits(name + ": " + action, where)) {
       panel.Item(name + ": " + action, where, layout.style->faint);
       ++rows;
@@ -405,12 +409,12 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   const RiskKey key = MakeRiskKey(state, forecasts.courses);
   const std::vector<Sign> signs = SignsOf(spec, state, overlays, forecasts.outlook, key, layout);
   DrawSigns(image, signs, state, layout, fonts);
-  DrawRiskKey(image, key, signs, layout, fonts);
+  DrawRiskKey(image, key, signs, state, layout, fonts);
   Panel panel(image, LegendPx(key, signs, layout), layout, fonts);
   const Trail* trail = overlays.trail != nullptr ? overlays.trail : overlays.route;
   ListDevices(panel, spec, state, trail, forecasts.outlook, layout);
   ListDisasters(panel, spec, state, forecasts.courses, layout, std::max(3, panel.RowsLeft() - 7));
-  ListShips(panel, state, layout);
+  ListShips(panel, spec, state, layout);
   const bool has_policy = ListPolicy(panel, spec, state, overlays, values, layout);
   DrawRegion(image, panel.Room(), spec, state, forecasts.courses, coast, layout, fonts);
   return has_policy;

@@ -12,9 +12,10 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr double kValueShare = 0.82;    // opacity of V_π over the sea
-constexpr double kArrowSpacing = 34.0;  // min distance of two arrows [design units]
-constexpr double kLargestArrow = 19.0;  // max size of a symbol [design units]
+constexpr Rgb kNoValue{0x4c, 0x54, 0x5c};  // cells of rocks; no value has a grey
+constexpr double kValueShare = 0.82;       // opacity of V_π over the sea
+constexpr double kArrowSpacing = 34.0;     // min distance of two arrows [design units]
+constexpr double kLargestArrow = 19.0;     // max size of a symbol [design units]
 
 cv::Mat Colors(const cv::Mat& shares) {
   static const cv::Mat3b kTable = [] {
@@ -66,7 +67,7 @@ void DrawValues(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Values&
     if (!InGrid(spec, rock.cell.x, rock.cell.y)) continue;
     const cv::Point2d at = layout.view.ToPixel(rock.cell.x, rock.cell.y);
     const cv::Point2d half(cell / 2.0, cell / 2.0);
-    Tint(map, {cv::Point(at - half), cv::Point(at + half)}, Bgr(kUnknown), 0.5);
+    Tint(map, {cv::Point(at - half), cv::Point(at + half)}, Bgr(kNoValue), 0.85);
     DrawRock(map, at, std::max(0.42 * cell, 1.5));
   }
 }

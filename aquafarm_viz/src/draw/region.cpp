@@ -168,7 +168,8 @@ RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subj
     const std::string nearest = "closest " + PlaceText(spec, subject.nearest.x, subject.nearest.y) +
                                 " in " + HoursText(ahead_s);
     const auto then = static_cast<std::time_t>(state.world_time.sec + ahead_s);
-    const std::string time = spec.has_start_time ? LocalTimeText(spec, then, "%d %b %H:%M") : "";
+    const std::string time =
+        spec.has_start_time ? LocalTimeText(spec, then, "%d %b %H:%M ") + ZoneText(spec) : "";
     const std::string heading = is_over ? over
                                 : std::isfinite(subject.danger)
                                     ? ReachesText(spec, course, now.step + subject.danger)
@@ -260,16 +261,18 @@ void DrawScale(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layou
       RoundLength(0.3 * inset.image.cols / inset.px_per_cell * spec.cell_size_m);
   const int length = cvRound(length_m / spec.cell_size_m * inset.px_per_cell);
   const std::string text = DistanceText(length_m);
-  const cv::Size size(std::max(length, fonts.small.Width(text)),
+  const int margin = layout.Px(5);  // left and right
+  const cv::Size size(std::max(length, fonts.small.Width(text)) + 2 * margin,
                       fonts.small.cap_height() + layout.Px(6));
-  const cv::Point2d corner(size.width / 2.0 + 8.0 * layout.unit,
+  const cv::Point2d corner(size.width / 2.0,
                            inset.image.rows - size.height / 2.0 - 6.0 * layout.unit);
   const auto place = space.Take(size, corner, inset.image.cols);
   if (!place) return;
   const Rgb color = layout.style->words;
-  DrawLabel(inset.image, fonts.small, text, place->tl(), layout);
+  const int left = place->x + margin;
+  DrawLabel(inset.image, fonts.small, text, {left, place->y}, layout);
   const int y = place->br().y - layout.Px(2);
-  cv::rectangle(inset.image, cv::Rect(place->x, y, length, layout.Px(2)), Bgr(color), cv::FILLED);
+  cv::rectangle(inset.image, cv::Rect(left, y, length, layout.Px(2)), Bgr(color), cv::FILLED);
 }
 
 // Draws the outline of the farm over the courses, and the word "ranch" in it or next to it.

@@ -97,9 +97,10 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
   }
 }
 
-void DrawRewardLine(cv::Mat& image, const FarmState& state, const Layout& layout,
+// @param y  base of the line below the map [design units]
+void DrawRewardLine(cv::Mat& image, const FarmState& state, double y, const Layout& layout,
                     const Fonts& fonts) {
-  Line line(image, {layout.Px(10), layout.bottom.y + layout.Px(17)},
+  Line line(image, {layout.Px(10), layout.bottom.y + layout.Px(y)},
             layout.bottom.width - layout.Px(10));
   const auto color = [&layout](float value) {
     return value == 0.0F ? layout.style->faint : value < 0 ? layout.style->bad : layout.style->good;
@@ -166,7 +167,8 @@ void DrawWords(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   if (layout.top.empty()) return DrawEnd(image, state, layout, fonts);
   DrawTop(image, spec, state, outlook, layout, fonts);
   DrawEnd(image, state, layout, fonts);
-  DrawRewardLine(image, state, layout, fonts);
+  // Without a line about a training, the rewards are in the middle.
+  DrawRewardLine(image, state, overlays.training != nullptr ? 17.0 : 26.0, layout, fonts);
   if (overlays.training != nullptr) DrawTrainingLine(image, *overlays.training, layout, fonts);
 }
 

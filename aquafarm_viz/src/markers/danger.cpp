@@ -298,7 +298,7 @@ std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, con
       const double cells = aside * maker.thing_m() / maker.cell_m();
       places.push_back(edge + (is_beside ? cv::Point2d(0.0, cells) : cv::Point2d(cells, 0.0)));
     }
-    const cv::Point2d at = labels.FirstFree(places, 0.75 * maker.thing_m() / maker.cell_m());
+    const cv::Point2d at = labels.FirstFree(places, 0.95 * maker.thing_m() / maker.cell_m());
     const double bearing = std::atan2(east, north) * 180.0 / CV_PI;
     Marker pointer = maker.Shape("pointer", disaster.id, kSignLayer, at.x, at.y, PointerOutline(),
                                  0.75 * maker.thing_m(), GradeColor(disaster.grade));

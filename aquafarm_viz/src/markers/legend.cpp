@@ -84,6 +84,24 @@ class Row {
   // Adds the circles around a device that is hit first.
   void TwoCircles() { Circles({0.26, 0.5}); }
 
+  // Adds the pattern of the rings.
+  void Pattern() {
+    Marker lines = MakeList();
+    const double half_m = 0.45 * size_m_;
+    const double width_m = 0.06 * size_m_;
+    for (const double shift : {-1.0, 0.0, 1.0}) {  // three diagonal lines
+      const double from = std::max(-half_m, -half_m + shift * half_m);
+      const double to = std::min(half_m, half_m + shift * half_m);
+      const double up_m = shift * half_m;
+      for (const auto& [x, side] :
+           {std::pair(from, -1.0), {to, -1.0}, {to, 1.0}, {from, -1.0}, {to, 1.0}, {from, 1.0}}) {
+        lines.points.push_back(Point(x + side * width_m, x - up_m - side * width_m));
+      }
+    }
+    lines.color = Color(SeverityColor(0.0));
+    Put(lines);
+  }
+
   // Adds the pointer towards a centre outside the farm.
   void Pointer() {
     Marker pointer = MakeList();
@@ -134,7 +152,7 @@ class Row {
       const double inner_m = outer_m - 0.12 * size_m_;
       AddBand(list, {inner_m, inner_m, inner_m, inner_m}, {outer_m, outer_m, outer_m, outer_m});
     }
-    list.color = Color(SeverityColor(0.0));
+    list.color = Color(kPaper);
     Put(list);
   }
 
@@ -203,7 +221,8 @@ void AddSignLegend(MarkerArray& array, const FarmSpec& spec, const MapSigns& sig
   text(signs.circle, "hit first");
   symbol(signs.pointer, &Row::Pointer);
   text(signs.pointer, "to the centre");
-  text(signs.pattern, "pattern: at risk");
+  symbol(signs.pattern, &Row::Pattern);
+  text(signs.pattern, "at risk");
   text(signs.dashes, "dashed: empty ship");
 }
 
@@ -211,7 +230,7 @@ void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& valu
   Row row(array, spec, 2, "value_legend");
   if (values.highest > values.lowest) {
     row.Text("value " + Number(double(values.lowest), 1));
-    row.ValueBar(3.0 * row.size_m());
+    row.ValueBar(4.4 * row.size_m());
     row.Text(Number(double(values.highest), 1));
     row.Skip(0.6 * row.size_m());
   } else {  // for example, the policy has no values

@@ -78,7 +78,7 @@ std::string TimeText(std::time_t utc, const char* format) {
 std::string LocalTimeText(const aquafarm_msgs::FarmSpec& spec, std::time_t utc,
                           const char* format) {
   constexpr int kHour = 3600;
-  return TimeText(utc + ZoneOf(spec) * kHour, format) + " " + ZoneText(spec);
+  return TimeText(utc + ZoneOf(spec) * kHour, format);
 }
 
 std::string ZoneText(const aquafarm_msgs::FarmSpec& spec) {
@@ -91,7 +91,8 @@ std::string WorldTimeText(const aquafarm_msgs::FarmSpec& spec,
   const std::string clock = ClockText(spec, state);
   if (!spec.has_start_time || !spec.has_origin || ZoneOf(spec) == 0) return clock;
   const std::time_t utc = state.world_time.sec;
-  return LocalTimeText(spec, utc, "%Y-%m-%d %H:%M") + TimeText(utc, " (%d %b %H:%M UTC)");
+  return LocalTimeText(spec, utc, "%Y-%m-%d %H:%M ") + ZoneText(spec) +
+         TimeText(utc, " (%d %b %H:%M UTC)");
 }
 
 std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, double cells_a_step) {
@@ -118,7 +119,7 @@ std::string StrengthText(const TrackPoint& point) {
 }
 
 std::string TimeOfDay(const aquafarm_msgs::FarmSpec& spec, std::int64_t at_s) {
-  if (spec.has_start_time) return LocalTimeText(spec, at_s, "%H:%M").substr(0, 5);
+  if (spec.has_start_time) return LocalTimeText(spec, at_s, "%H:%M");
   const std::string minutes = std::to_string(at_s / 60 % 60);
   return std::to_string(at_s / 3600) + ":" + (minutes.size() < 2 ? "0" : "") + minutes;
 }

@@ -36,8 +36,8 @@ int NauticalZone(double longitude_deg);
 /// Returns a time as UTC. @param format format of strftime
 std::string TimeText(std::time_t utc, const char* format);
 
-/// Returns a time in the nautical time zone of the farm, followed by the name of the zone, such as
-/// "19 Jul 13:58 UTC+8". The zone of a farm without a geographic position is UTC.
+/// Returns a time in the nautical time zone of the farm, without the name of the zone (ZoneText).
+/// The zone of a farm without a geographic position is UTC.
 /// @param format format of strftime
 std::string LocalTimeText(const aquafarm_msgs::FarmSpec& spec, std::time_t utc, const char* format);
 

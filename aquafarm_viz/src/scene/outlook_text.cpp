@@ -88,7 +88,7 @@ std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double step
   if (!spec.has_start_time || steps * spec.step_duration_s < 3600.0) return "";
   const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
   const std::string time = LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
-  return " (" + (has_zone ? time : time.substr(0, time.rfind(' '))) + ")";
+  return " (" + time + (has_zone ? " " + ZoneText(spec) : "") + ")";
 }
 
 // Shortens "hurricane force in 9 h" to "hurricane in 9 h".
@@ -98,10 +98,11 @@ std::string WithoutForce(std::string text) {
   return at == std::string::npos ? text : text.erase(at, word.size());
 }
 
-// Returns "no known danger to devices until +12 h"; empty if all courses are known to their ends.
+// Returns "no known danger to devices for the next 12 h"; empty if all courses are known to their
+// ends.
 std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
   if (!std::isfinite(outlook.known_until)) return "";
-  return "no known danger to devices until +" + AheadText(spec, outlook.known_until);
+  return "no known danger to devices for the next " + AheadText(spec, outlook.known_until);
 }
 
 // Returns the ring that comes nearest to a device: "risk -5 is 900 m from F2 now" or "gale passes
@@ -305,8 +306,8 @@ std::pair<std::string, std::string> NameAndDanger(
   std::string danger = DangerText(spec, device);
   if (fits(full, danger)) return {full, danger};
   // The kind can be left out, because the symbol next to the name shows it.
-  for (const std::string& shorter :
-       {WorstText(spec, device), RiskText(spec, device), RiskText(spec, device, ", ")}) {
+  for (const std::string& shorter : {NowAndWorstText(spec, device), WorstText(spec, device),
+                                     RiskText(spec, device), RiskText(spec, device, ", ")}) {
     if (fits(label, danger)) break;
     danger = shorter;
   }

@@ -33,9 +33,9 @@ std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 ///
 /// If no ring covers or reaches a device, the text is the nearest ring (Outlook::miss) and the time
 /// until which the courses are known: "typhoon: risk -5 is 900 m from F2 now; no known danger to
-/// devices until +3.0 h". A part that does not apply is left out, so that the text can be empty. If
-/// the farm has devices but none is deployed, the text is "no device is deployed". The text is also
-/// empty if the outlook is not known.
+/// devices for the next 3.0 h". A part that does not apply is left out, so that the text can be
+/// empty. If the farm has devices but none is deployed, the text is "no device is deployed". The
+/// text is also empty if the outlook is not known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
 

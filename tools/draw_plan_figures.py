@@ -73,8 +73,8 @@ def finding(storms):
     share = sum(s["saved"] for s in storms) / sum(s["clairvoyant"] for s in storms)
     less = sum(s["promised"] < s["saved"] for s in storms)
     return (f"In {as_good} of {len(staked)} recorded storms with something at stake the plan saves "
-            f"what a clairvoyant\nsaves ({100 * share:.0f} % in all); in {less} of {len(storms)} storms it saves "
-            "more than it promised")
+            f"what a clairvoyant saves\n({100 * share:.0f} % in all). It saves more than it promised in "
+            f"{less} of all {len(storms)} storms.")
 
 
 def name_of(storm):
@@ -97,7 +97,7 @@ def draw_back_test(data, path):
     axes.plot([s["clairvoyant"] for s in storms], places, "|", color="#d55e00", markersize=17,
               markeredgewidth=3.5, label="saved by a clairvoyant")
     axes.errorbar([s["saved"] for s in storms], places, xerr=[low, high], fmt="o", color="black",
-                  markersize=4, capsize=3, label="saved by the plan (mean, range)")
+                  markerfacecolor="white", markersize=5, capsize=3, label="saved by the plan (mean, range)")
     axes.plot([s["promised"] for s in storms], places, "x", color="#0072b2", markersize=7,
               markeredgewidth=1.8, label="promised (beyond the bar: a milder storm came)")
     for place, storm in zip(places, storms):
@@ -105,7 +105,7 @@ def draw_back_test(data, path):
             axes.text(max(storm["promised"], storm["saved"]) + 6, place, "nothing at stake",
                       va="center", fontsize=9, color="0.35")
     axes.set_yticks(list(places), [name_of(s) for s in storms], fontsize=10)
-    axes.set_xlabel("value of devices [units of value]", fontsize=11)
+    axes.set_xlabel("value of devices [units]", fontsize=11)
     axes.set_xlim(-4, None)
     axes.set_ylim(0.3, len(storms) + 0.7)
     axes.grid(alpha=0.3, axis="x")

@@ -5,8 +5,9 @@ CSV file, and draws the curve of return against energy next to it (.svg).
 
 usage: energy_curve.py SCENARIO.yaml POLICY EPISODES OUT.csv [WEIGHT ...]
 
-The energy of each action is that of a small workboat (docs/data.md), unless the scenario has its
-own block `energy`. The return excludes the term of energy. aquafarm_evaluate must be on the PATH.
+The energy of each action is that of a small workboat (docs/real_ranches.md), unless the scenario
+has its own block `energy`. The return excludes the term of energy. aquafarm_evaluate must be on the
+PATH.
 """
 import csv
 import json

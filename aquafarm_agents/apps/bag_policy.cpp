@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("policy", policy,
                  "run folder, checkpoint file, FILE.py, FILE.zip (docs/python.md), random, "
-                 "planner, clairvoyant, do_nothing or fetch_by_value")
+                 "planner, clairvoyant, do_nothing, fetch_by_value or generalist")
       ->required();
   app.add_option("-o,--output", options.output,
                  "write a copy of the bag with the policy's choices (choice) and values");

@@ -4,8 +4,8 @@
 
     serve_policy.py SOCKET POLICY
 
-POLICY is FILE.py or FILE.py:FUNCTION with a function of this form, or FILE.zip, a model saved by
-Stable-Baselines3 or sb3-contrib:
+POLICY is FILE.zip, a model saved by Stable-Baselines3 or sb3-contrib; or FILE.py or
+FILE.py:FUNCTION with a function of this form:
 
     OBSERVATION = "features"            # or "planes" or "index"; default: "features"
 

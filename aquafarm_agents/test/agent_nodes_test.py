@@ -91,6 +91,15 @@ class AgentNodesTest(unittest.TestCase):
         policy = self.trained()
         self.expect_solved([self.agent(ship, policy, "_episodes:=5") for ship in (0, 1)], 5)
 
+    def test_a_policy_that_does_nothing_holds(self):
+        self.sim(TEAM)
+        for ship in (0, 1):
+            self.agent(ship, "do_nothing")
+        self.wait_until(lambda state: state.step > 5, "both ships at work")
+        state = self.state()
+        self.assertEqual([HOLD, HOLD], [ship.action for ship in state.ships])
+        self.assertEqual([0.0, 0.0], [ship.episode_return for ship in state.ships], "nothing illegal")
+
     def test_only_the_node_of_ship_0_publishes_values(self):
         self.sim(TEAM)
         policy = self.trained()

@@ -285,7 +285,7 @@ class FiguresTest(unittest.TestCase):
         figure = self.drawn(figures.draw_square_error, self.contestants, self.runs)
         headline = " ".join(figure._suptitle.get_text().split())
         self.assertTrue(headline.endswith(
-            "lowest for LSTM-DQN (×0.5), highest for SARSA (×3.0)"), headline)
+            "changes by ×0.5 (LSTM-DQN) to ×3.0 (SARSA)"), headline)
         self.assertEqual({"SARSA: 10 → 30", "LSTM-DQN: 10 → 5"},
                          {axes.get_title("left") for axes in figure.axes} - {""})
 

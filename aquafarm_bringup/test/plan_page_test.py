@@ -90,6 +90,14 @@ class PlanFileTest(unittest.TestCase):
         words = self.refusal(lambda plan: plan["plan"]["routes"][0]["orders"][1].update(device=9))
         self.assertIn("plan.routes.0.orders.1.device: got 9, expected one of the 6 devices", words)
 
+    def test_a_delivery_of_a_device_that_does_not_exist_is_refused(self):
+        words = self.refusal(lambda plan: plan["plan"]["routes"][0]["orders"][2].update(devices=[-1]))
+        self.assertIn("plan.routes.0.orders.2.devices: got -1, expected one of the 6 devices", words)
+
+    def test_frames_that_are_no_list_are_refused(self):
+        words = self.refusal(lambda plan: plan["hazard"].update(frames=None))
+        self.assertIn("x.json: hazard.frames: None is not of type 'array'", words)
+
     def test_a_ring_without_its_number_is_refused(self):
         words = self.refusal(lambda plan: plan["devices"][0]["arrival"].pop())
         self.assertIn("devices: expected 3 numbers, one per ring", words)

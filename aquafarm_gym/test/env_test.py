@@ -74,6 +74,26 @@ class EnvTest(unittest.TestCase):
                     seen = env.step(env.action_space.sample())[0]
                     self.assertTrue(env.observation_space.contains(seen), path)
 
+    def test_features_of_tokens_lie_within_their_space(self):
+        scenario = core.Scenario.parse("""
+name: tokens
+grid: {width: 60, height: 60}
+time: {step_limit: 100}
+disasters: [{kind: typhoon, speed: 2, radii: [3, 9, 20]}]
+view: {tokens: true}
+""", "tokens")
+        env = TeamVectorEnv(8, scenario, "features")
+        self.assertTrue(np.isfinite(env.observation_space.high).all())
+        seen, _ = env.reset(seed=1)
+        env.action_space.seed(1)
+        lowest, highest = seen.min(), seen.max()
+        for _ in range(300):
+            self.assertTrue(env.observation_space.contains(seen))
+            seen = env.step(env.action_space.sample())[0]
+            lowest, highest = min(lowest, seen.min()), max(highest, seen.max())
+        self.assertLess(lowest, -1.0, "lengths go beyond the map's longer side")
+        self.assertGreater(highest, 1.0)
+
     def test_kinds_grades_and_energy_lie_within_their_space(self):
         scenario = core.Scenario.parse("""
 name: kinds

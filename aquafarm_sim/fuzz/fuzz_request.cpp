@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target for service requests. The first byte selects the service, and the rest is the
-// serialised request. The server of two farms executes it and must answer with a code. After every
-// hundredth input, its state must be saved and loaded without an error. This check takes most of
-// the time.
+// Fuzz target for service requests. The first byte selects the service. The rest is the serialised
+// request, or changes to a saved state that is then loaded, or a ship and its action. The server,
+// which starts with two farms, executes it and must not crash. After every hundredth input, the
+// server's state must be saved and loaded without an error. This check takes most of the time.
 #include <ros/serialization.h>
 
 #include <cstddef>

@@ -100,7 +100,8 @@ struct ScenarioChoice {
   bool tokens{};             ///< whether to observe by entity tokens even if the scenario does not
 
   /// Loads the scenario and applies the options.
-  /// @throws InputError in the same cases as FindScenario
+  /// @throws InputError in the same cases as FindScenario, or if the scenario is invalid with the
+  ///   options, for example if max_steps is above 10,000,000
   std::shared_ptr<const Scenario> Load() const {
     Scenario scenario = FindScenario(name, folder);
     if (tokens && !scenario.view.tokens) {
@@ -114,10 +115,10 @@ struct ScenarioChoice {
   }
 };
 
-/// Adds the options that set `choice`, except the name of the scenario.
+/// Adds the options --max-steps and --scenarios, which set members of `choice`.
 inline void AddScenarioOptions(CLI::App& app, ScenarioChoice& choice) {
   app.add_option("--max-steps", choice.max_steps, "step limit of an episode; 0: the scenario's own")
-      ->check(CLI::Range(0, 1000000000));
+      ->check(CLI::Range(0, 10000000));
   app.add_option("--scenarios", choice.folder, "folder of the shipped scenarios");
 }
 

@@ -219,7 +219,7 @@ ExitCode Run(Arguments arguments) {
   if (evaluation.complete && !WriteRequested(arguments, saved, scenario, spec, evaluation)) {
     return ExitCode::kInterrupted;
   }
-  // The evaluation is written last: if it exists, all files exist.
+  // The evaluation is written last: if a complete one exists, all files exist.
   if (!arguments.output.empty()) {
     WriteEvaluation(arguments.output, evaluation,
                     {saved.path, saved.checkpoint.algorithm, saved.checkpoint.steps,
@@ -265,7 +265,7 @@ void AddOutputOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--values-episodes", arguments.values_episodes, "episodes that --values averages")
       ->check(CLI::Range(1, 10000));
   app.add_option("--values-discount", arguments.values_discount,
-                 "discount γ of --values (Eq. 10); 1: undiscounted")
+                 "discount γ of --values (Eq. 10) and of V* in --matrices; 1: undiscounted")
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--matrices", arguments.matrices,
                  "write <this>_policy.mtx (Eq. 9), <this>_transitions.mtx (Eq. 4) and "

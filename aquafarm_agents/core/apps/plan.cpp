@@ -31,7 +31,7 @@ struct Arguments {
   std::string command;
   std::string scenarios{ScenarioFolder()};
   RescueRequest request;
-  std::vector<RescueWarning> warnings;  // about the ranch, such as a port that was moved
+  std::vector<RescueWarning> warnings;  // about the chart of the ranch
 };
 
 GeoPoint Place(const std::string& option, const std::string& text) {
@@ -191,8 +191,9 @@ int Main(int argc, char** argv) {
   CLI::App app("Plans which ship fetches which device before a storm comes.", "aquafarm_plan");
   app.footer(
       "exit codes: 0 ships leave, 2 bad argument or file, 3 cannot write, 10 nothing can be "
-      "saved,\n"
-      "11 the storm reaches no device in the known time, 12 unknown whether it does,\n"
+      "saved or no trip saves more than it costs,\n"
+      "11 the storm reaches no device and no route of a ship in the known time, 12 unknown "
+      "whether it does,\n"
       "13 the bulletin is 12 hours old or older");
   AddOptions(app, arguments);
   return RunWithExitCodes(app, [&] {

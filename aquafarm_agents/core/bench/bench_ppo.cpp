@@ -27,7 +27,8 @@ std::shared_ptr<const Scenario> Paper() {
   return std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"));
 }
 
-// All repetitions share one learner, which has made its first update.
+// All repetitions share one learner. Its first rollout is full at the start, so that each iteration
+// begins with an update.
 void Ppo(benchmark::State& state) {
   static TrainingLoop training("ppo", "batch_size=2048", Paper(), kFarms, kStepsPerRollout);
   Train(state, training);

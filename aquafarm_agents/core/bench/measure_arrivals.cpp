@@ -135,8 +135,8 @@ struct Played {
   std::vector<double> delivered;    // delivered devices, by episode
 };
 
-// Plays `episodes` episodes, rounded up to a multiple of the farms. @param unseen whether to set
-// the disaster slots of the observation to 0
+// Plays `episodes` episodes, rounded up to a multiple of kFarms. @param unseen whether to set the
+// disaster slots of the observation to 0
 Played Play(const std::shared_ptr<const Scenario>& scenario, Policy& policy, Arrival arrival,
             std::int32_t episodes, bool unseen) {
   constexpr std::int32_t kFarms = 256;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target for checkpoints: repairs sizes and checksum of the header, so that the reader gets
-// past them, and makes the policy. Samples that are not changed provide the spec of their farms.
+// Fuzz target for checkpoints: repairs the magic, format, sizes and checksum of the header, so that
+// the reader gets past them, and makes the policy. Samples that need no repair provide the spec of
+// their farms.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

@@ -22,11 +22,11 @@ _EPILOG = """exit codes: 0 all results exist, 1 some runs failed (the others are
 3 storage, 130 interrupted (the same command resumes)"""
 
 
-_LOCK_LIMIT_S = 15.0  # time for the trainings of a killed benchmark to save and exit
+_LOCK_LIMIT_S = 15.0  # time for an interrupted benchmark to end its trainings and exit
 
 
 class BadInput(ValueError):
-    """Wrong input. The message is one line with the given and the expected value."""
+    """Wrong input. The message is one line."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -178,7 +178,7 @@ def _default_names(profile):
 
 
 def _require_paper(options):
-    """Raises BadInput for profile paper with another scenario: its rows name their scenarios."""
+    """Raises BadInput for profile paper with another scenario: some rows play paper_plain."""
     if options.profile == "paper" and options.scenario != "paper":
         raise BadInput(f"scenario: got '{options.scenario}' with profile paper, expected paper, "
                        "whose rows have scenarios of their own; use profile full for another "

@@ -12,7 +12,7 @@ HELP = ("where runs execute: local (this machine's cores), slurm (jobs of Slurm,
         "dask-jobqueue), or the address of a Dask scheduler such as host:8786, which needs the same "
         "files under the same paths (default: local)")
 
-_CONNECT_S = 25.0  # max wait for the scheduler at the start
+_CONNECT_S = 25.0  # max duration of one attempt to connect, and of sinfo
 _SUBMIT_S = 120.0  # max wait for sbatch
 _RETURN_S = 600.0  # max wait for a scheduler that was lost
 _ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?[^/:\s]+:\d{1,5}")
@@ -140,7 +140,7 @@ class Cluster:
                 report(f"the scheduler {self._scheduler} answers again")
                 return
             except (OSError, ValueError):
-                self._close_client()  # it is connected if the scheduler was lost again
+                self._close_client()  # Client() may succeed before the scheduler is lost again
                 if time.monotonic() > end:
                     raise Lost(f"the scheduler {self._scheduler} did not come back within "
                                f"{_RETURN_S:.0f} s; the same command resumes") from None

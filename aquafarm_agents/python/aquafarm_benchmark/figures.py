@@ -303,17 +303,16 @@ def draw_square_error(path, contestants, runs):
         axes.tick_params(labelbottom=True)
         if ends:
             first, last = axes.lines[0].get_ydata()[[0, -1]]
-            axes.set_title(f"{one.label}: {_significant(first)} → {_significant(last)}", fontsize=11,
-                           color=legible(one.colour))
+            axes.set_title(f"{one.label}: {_significant(first)} → {_significant(last)} "
+                           f"(×{last / first:.1f})", fontsize=11, color=legible(one.colour))
             changes.append((last / first, one.label))
     _equal_decades(all_axes.flat[:len(learners)])
     for axes in all_axes[:, 0]:
         axes.set_ylabel("error [reward²]")
-    changes = [f"{name} (×{ratio:.1f})" for ratio, name in sorted(changes)]
-    found = (f"lowest for {changes[0]}, highest for {changes[-1]}" if len(changes) > 1 else
-             ", ".join(changes))
+    changes = [f"×{ratio:.1f} ({name})" for ratio, name in sorted(changes)]
+    found = f"{changes[0]} to {changes[-1]}" if len(changes) > 1 else ", ".join(changes)
     note = (f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic; the titles "
-            f"give the first and the last value. {_shading(contestants, runs)} The error is relative "
+            f"give the first and the last value and their ratio. {_shading(contestants, runs)} The error is relative "
             "to each learner's own targets and cannot be compared between learners. A policy that "
             "fails can have a low error too.")
     unused = all_axes.flat[len(learners):]
@@ -321,7 +320,7 @@ def draw_square_error(path, contestants, runs):
         axes.axis("off")
     if len(unused):
         write_note(unused[0], note)
-    explain(figure, f"Error of the value estimates at the end, relative to the start: {found}",
+    explain(figure, f"In the training, the error of the value estimates changes by {found}",
             "" if len(unused) else note)
     save(figure, path)
 
@@ -385,7 +384,8 @@ def draw_mean_score(path, contestants, runs, references):
         all_axes[letter].margins(x=0.0)
         if letter == "c":  # in the other panels the title names the line
             explain(figure, _highest(contestants, ends, "return per step at the end", digits=2),
-                    f"Fig. 13: means of {measures.WINDOW} episodes. {_shading(contestants, runs)}")
+                    f"Fig. 13: means of {measures.WINDOW} episodes. {_shading(contestants, runs)}"
+                    + (" The lower chart shows the medians only." if panels else ""))
             name_ends(all_axes[letter], _with_values(contestants, ends, digits=2))
         for name, value in references.items():
             if letter != "c":
@@ -396,8 +396,8 @@ def draw_mean_score(path, contestants, runs, references):
 
 
 def plot_mean_score(axes, contestants, runs, references, limits=None):
-    """Plots the 50-episode mean return per step: the median of the runs, shaded between their
-    lowest and highest value. Returns the ends of the lines.
+    """Plots the 50-episode mean return per step: the median of the runs. One or two lines are shaded
+    between the lowest and the highest run. Returns the ends of the lines.
 
     references: {name: return per step}, drawn for comparison
     limits: limits of the y axis; None: automatic
@@ -409,8 +409,10 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
         scores = np.array([measures.return_per_step(*pair, window)
                            for pair in zip(returns, steps)])
         episodes = np.arange(window, returns.shape[1] + 1)
-        ends.append(_plot_shaded(axes, episodes, scores, one, one.label,
-                                 strength=1.0 if len(contestants) < 3 else 0.35))
+        if len(contestants) < 3:
+            ends.append(_plot_shaded(axes, episodes, scores, one, one.label))
+        else:  # the shades of many lines would mix
+            ends.append(_plot_median(axes, episodes, scores, one, one.label))
     axes.axhline(0.0, color="black", linewidth=0.5, label="_zero")
     ends += _plot_references(axes, references, max(end[0] for end in ends), digits=2)
     if limits:
@@ -471,13 +473,18 @@ def plot_repeated(axes, contestants, runs, references):
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
-def _plot_shaded(axes, episodes, values, one, label, strength=1.0):
-    """Plots the median of values [runs, episodes], shaded between their lowest and highest value.
-    Returns the end of the line."""
+def _plot_median(axes, episodes, values, one, label):
+    """Plots the median of values [runs, episodes]. Returns the end of the line."""
     median = np.median(values, axis=0)
     axes.plot(episodes, median, **line_style(one), label=label)
-    shade(axes, episodes, values.min(axis=0), values.max(axis=0), one.colour, strength)
     return episodes[-1], median[-1], one.colour, label
+
+
+def _plot_shaded(axes, episodes, values, one, label):
+    """Plots the median of values [runs, episodes], shaded between their lowest and highest value.
+    Returns the end of the line."""
+    shade(axes, episodes, values.min(axis=0), values.max(axis=0), one.colour)
+    return _plot_median(axes, episodes, values, one, label)
 
 
 def _curves(of_one, column):

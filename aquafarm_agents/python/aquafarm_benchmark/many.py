@@ -107,8 +107,8 @@ def write_tables(folder, columns, rows):
 
 
 def _files(words):
-    """Returns the size and the modification time of each word that names a file. They are part of
-    the task: with a changed file, the task is a different one."""
+    """Returns the size and the modification time of each word that names a file. many.json contains
+    them, so that require_same treats a changed file as another task."""
     return {word: [os.stat(word).st_size, os.stat(word).st_mtime_ns]
             for word in words if os.path.isfile(word)}
 
@@ -121,7 +121,7 @@ def _run(given):
     jobs, rows = jobs_of(given)
     require_same(given.output, "many.json", {
         "what": given.what, "ranches": given.ranches, "arguments": given.rest,
-        "policies": given.policy, "files": _files([*given.ranches, *given.rest])})
+        "policies": given.policy, "files": _files([*given.ranches, *given.rest, *given.policy])})
     complete, code = is_planned if given.what == _PLAN else is_complete, 0
     try:
         with cluster.Cluster(given.scheduler, given.jobs) as workers:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The measures of §4.2, computed with numpy and scipy, independent of files and learners."""
+"""The measures of the paper's §4.2, computed with numpy and scipy, without files or learners."""
 import math
 
 import numpy as np

@@ -70,9 +70,9 @@ class Contestant:
             options=tuple(option.format(**numbers) for option in self.options))
 
 
-# A training plays its episodes one after the other, as in §4.2 of the paper. If many farms ran at the same
-# time, all of the first recorded episodes would be exploration, and short episodes would be
-# recorded first.
+# A training plays its episodes one after the other, as in §4.2 of the paper. If many farms ran at
+# the same time, all of the first recorded episodes would be exploration, and short episodes would
+# be recorded first.
 FARMS = 1
 
 # Trainings run in parallel, one per core, so they use device=cpu. docs/decisions/settling_early.md

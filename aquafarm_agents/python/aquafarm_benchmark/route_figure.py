@@ -6,6 +6,7 @@ import json
 import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Polygon, Rectangle
+from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 
 from aquafarm_benchmark.style import plt, save
@@ -21,13 +22,14 @@ _LANE = 0.14  # offset of a leg from the centres of its cells [cells]; its sign 
 # Style of a leg by whether a device is aboard; colours of Okabe and Ito (2008).
 _LEGS = {False: ("#0072b2", (0, (4, 1.5)), "route with nothing aboard"),
          True: ("#d55e00", "solid", "route with a device aboard")}
-_REPEATED = 0.55  # opacity of a path that may overlap itself
+_REPEATED = 0.35  # opacity of a path that may overlap itself
 _DEVICE = "#c2185b"
 _SEA = "#eaf3f9"
 _LAND = "#c9b98a"
 _STOPS = {"pickup": ("P", "pickup"), "drop_off": ("X", "drop-off")}
 _STOP_STYLE = {"s": 130, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 7}
-_BEFORE = {60: "--", 120: ":"}  # steps before the end whose rings are drawn, and their line style
+_BEFORE = {120: "#f0b4b4", 60: "#dd7d7d"}  # steps before the end whose rings are drawn, and colours
+_RING = "#b22222"
 
 
 def draw_route(path, label, route_file):
@@ -55,11 +57,12 @@ def draw_route(path, label, route_file):
     names = place_names(route["chart"])
     stops = plot_route(axes, route["steps"], names)
     ports = {tuple(cell) for cell in route["chart"]["ports"]}
-    for cell, name in names.items():
-        axes.annotate(name, cell, xytext=(0, 11) if cell in ports else (10, -7),
-                      textcoords="offset points", fontsize=9.5, ha="center", va="center",
-                      weight="bold", zorder=8,
-                      path_effects=[withStroke(linewidth=2.5, foreground="white")])
+    for shown in all_axes[:len(panels) + 1]:
+        for cell, name in names.items():
+            shown.annotate(name, cell, xytext=(0, 11) if cell in ports else (10, -7),
+                           textcoords="offset points", fontsize=9.5, ha="center", va="center",
+                           weight="bold", zorder=8,
+                           path_effects=[withStroke(linewidth=2.5, foreground="white")])
     _disasters(axes, route["steps"], sea)
     for shown in all_axes[:len(panels) + 1]:
         shown.set_xlabel("cells to the east")
@@ -69,7 +72,7 @@ def draw_route(path, label, route_file):
                     f"steps, return {route['return']:.1f}", fontsize=13.5, weight="bold", x=0.01,
                     ha="left")
     _explain(all_axes[-1], [*all_axes[:len(panels)], axes], stops, bool(panels))
-    save(figure, path, dpi=110)  # reports show it at full size, on 1280 pixels
+    save(figure, path, dpi=110)  # reports show it at full size; it fits a window of 1280 pixels
 
 
 def devices_left(route):
@@ -116,17 +119,18 @@ def plot_unfinished(axes, name, route, size):
     sea = _chart(axes, chart, size, left)
     axes.set_xlabel("cells to the east")
     axes.set_ylabel("cells to the north")
-    for steps, style in _BEFORE.items():
-        then = len(route["steps"]) - 2 - steps
-        for disaster in route["steps"][then]["disasters"] if then >= 0 else []:
-            for ring in _rings(disaster):
-                _plot_ring(axes, ring, sea, linewidth=0.8, linestyle=style,
-                           label=f"ring {steps} steps before")
-    for disaster in route["steps"][-2]["disasters"]:  # in the last state they have ended
-        for ring in _rings(disaster):
-            inside = axes.add_patch(Polygon(ring, color="#b22222", alpha=0.12, zorder=1))
+    at_end = route["steps"][-2]["disasters"]  # in the last state they have ended
+    for i, disaster in enumerate(at_end):
+        rings = list(_rings(disaster))
+        for steps, colour in _BEFORE.items() if _covers_any(rings, left) else ():
+            then = len(route["steps"]) - 2 - steps
+            if then >= 0 and i < len(route["steps"][then]["disasters"]):
+                _plot_ring(axes, list(_rings(route["steps"][then]["disasters"][i]))[-1], sea, colour,
+                           linewidth=2.0, label=f"the same ring {steps} steps before")
+        for ring in rings:
+            inside = axes.add_patch(Polygon(ring, color=_RING, alpha=0.12, zorder=1))
             inside.set_clip_path(sea)
-            _plot_ring(axes, ring, sea, linewidth=1.4, label="ring of a disaster in the last step")
+            _plot_ring(axes, ring, sea, linewidth=1.6, label="ring of a disaster in the last step")
     *before, (loaded, last_leg) = legs(route["steps"])
     for _, cells in before:
         axes.plot(*np.array(cells, dtype=float).T, color="#5b6b78", linewidth=1.0, zorder=4,
@@ -134,7 +138,7 @@ def plot_unfinished(axes, name, route, size):
     colour, kind = _LEGS[loaded][0], f"{'a device' if loaded else 'nothing'} aboard"
     axes.add_collection(LineCollection(  # one segment per step: repeated segments look darker
         [np.array(pair, dtype=float) for pair in zip(last_leg, last_leg[1:])], color=colour,
-        linewidth=2.8, zorder=5, alpha=_REPEATED, label=f"last leg, {kind}; darker: repeated"))
+        linewidth=2.0, zorder=5, alpha=_REPEATED, label=f"last leg, {kind}; darker: repeated"))
     axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black",
                  linewidth=2.2, zorder=8, label="device that was not fetched")
     axes.scatter(*last["cell"], s=150, marker="*", color="#f0e442", edgecolor="black", zorder=9,
@@ -170,7 +174,7 @@ def _chart(axes, chart, size=None, left=None):
     for axis, count in ((axes.xaxis, chart["width"]), (axes.yaxis, chart["height"])):
         axis.set_ticks(range(0, count, 5 if count <= 30 else 10))
     axes.set_xlim(-_RIM, width - 1 + _RIM)
-    axes.set_ylim(chart["height"] - height - _RIM, chart["height"] - 1 + _RIM)  # at the top
+    axes.set_ylim(chart["height"] - height - _RIM, chart["height"] - 1 + _RIM)  # ranch at the top
     axes.spines["bottom"].set_position(("data", -_RIM))
     sea = axes.add_patch(Rectangle((-0.5, -0.5), chart["width"], chart["height"], facecolor=_SEA,
                                    edgecolor="#5b6b78", zorder=0))
@@ -183,7 +187,7 @@ def _chart(axes, chart, size=None, left=None):
     devices = [device["cell"] for device in chart["devices"]]
     fetched = [] if left is None else [cell for cell in devices if cell not in left]
     for cells, style, share, label in (
-            (chart["rocks"], {"color": "#c6cdd3", "marker": "^"}, 0.22, "rock"),
+            (chart["rocks"], {"color": "#d3dae0", "marker": "^"}, 0.18, "rock"),
             (chart["ports"], {"color": "#1a7f37", "marker": "s"}, 0.6, "port"),
             (fetched, {"facecolor": "white", "edgecolor": _DEVICE, "marker": "D"}, 0.5,
              "device that was fetched"),
@@ -264,9 +268,13 @@ def plot_route(axes, steps, names):
             stops.append((len(stops) + 1, _STOPS[step["action"]][1],
                           names.get(tuple(step["cell"]), ""), at + 1))
             here.setdefault(tuple(step["cell"]), []).append(len(stops))
+    ports = {cell for cell, name in names.items() if name.isalpha()}
     for cell, numbers in here.items():  # a cell may have several stops
-        axes.annotate(", ".join(map(str, numbers)), cell, xytext=(-10, 0), zorder=8,
-                      textcoords="offset points", ha="right", va="center", fontsize=10,
+        # Next to a port there may be others, below it there is none.
+        offset, across, up = ((0, -11), "center", "top") if cell in ports else (
+            (-10, 0), "right", "center")
+        axes.annotate(", ".join(map(str, numbers)), cell, xytext=offset, zorder=8,
+                      textcoords="offset points", ha=across, va=up, fontsize=10,
                       weight="bold", bbox={"boxstyle": "round,pad=0.15,rounding_size=0.5",
                                            "facecolor": "white", "edgecolor": "black"})
     return stops
@@ -277,11 +285,9 @@ def _explain(empty, charts, stops, has_moves):
     symbols = _symbols(charts)
     empty.legend(symbols.values(), symbols.keys(), loc="upper left", frameon=False, fontsize=11,
                  bbox_to_anchor=(0.0, 1.0), labelspacing=0.7, ncols=2)
-    lines = ["red: the disaster's rings in some steps"]
     if has_moves:
-        lines.insert(0, f"arrow: the preferred move, in every {_EVERY}nd column and row")
-    empty.text(0.02, 0.66, "\n".join(lines), transform=empty.transAxes, va="top", fontsize=11,
-               linespacing=1.4)
+        empty.text(0.02, 0.63, f"arrow: the preferred move, in every {_EVERY}nd column and row",
+                   transform=empty.transAxes, va="top", fontsize=11)
     if stops:
         table = empty.table(stops, colLabels=["stop", "action", "at", "step"], cellLoc="left",
                             colLoc="left", edges="horizontal",
@@ -301,9 +307,14 @@ def _rings(disaster):
                                disaster["y"] + radii * np.cos(bearings)])
 
 
-def _plot_ring(axes, ring, sea, **style):
+def _covers_any(rings, cells):
+    """Returns whether any of the rings [360, 2] contains one of the cells [x, y]."""
+    return any(Path(ring).contains_points(cells).any() for ring in rings)
+
+
+def _plot_ring(axes, ring, sea, colour=_RING, **style):
     """Draws the outline of a ring, clipped at the edge of the sea."""
-    outline, = axes.plot(*np.vstack([ring, ring[:1]]).T, color="#b22222", zorder=2, **style)
+    outline, = axes.plot(*np.vstack([ring, ring[:1]]).T, color=colour, zorder=2, **style)
     outline.set_clip_path(sea)
 
 
@@ -312,19 +323,23 @@ def _disasters(axes, steps, sea):
     steps."""
     stops = np.array([step["cell"] for step in steps if step.get("action") in _STOPS],
                      dtype=float).reshape(-1, 2)
-    inside = axes.viewLim.padded(-1.5)
+    inside = axes.viewLim.padded(-0.3)
+    west = axes.viewLim.xmin + 2.0  # labels of points west of it are to the right of the ring
+    axes.plot([], [], color=_RING, linewidth=1.6, label="ring of the disaster")
     for at in np.linspace(0, len(steps) - 1, _SHOWN_STEPS).astype(int):
         style = {"linewidth": 1.6, "alpha": 0.9} if at == 0 else {"linewidth": 0.9, "alpha": 0.6}
         for disaster in steps[at]["disasters"]:
             *inner, outer = _rings(disaster)
             for ring in [*inner, outer] if at == 0 else [outer]:
-                axes.add_patch(Polygon(ring, fill=False, color="#b22222", zorder=2,
+                axes.add_patch(Polygon(ring, fill=False, color=_RING, zorder=2,
                                        **style)).set_clip_path(sea)
             seen = [point for point in outer[::15] if inside.contains(*point)]
             if not seen:
                 continue
             # The label is at the point that is farthest from the stops of the route.
             best = max(seen, key=lambda point: min(np.hypot(*(stops - point).T), default=0.0))
-            axes.annotate(f"step {at}", best, color="#b22222", fontsize=9, ha="center", va="center",
+            axes.annotate(f"step {at}", best, color=_RING, fontsize=9, va="center",
+                          ha="left" if best[0] < west else "center", xytext=(3, 0),
+                          textcoords="offset points",
                           zorder=7, bbox={"boxstyle": "round,pad=0.1", "facecolor": _SEA,
                                           "edgecolor": "none"})

@@ -109,10 +109,7 @@ def legible(colour):
         rgb = 0.95 * rgb
 
 
-def shade(axes, x, low, high, colour, strength=1.0):
-    """Shades a range. Its thin edges stay visible where ranges overlap.
-
-    strength: factor of the opacity
-    """
-    axes.fill_between(x, low, high, facecolor=(*colors.to_rgb(colour), 0.16 * strength),
-                      edgecolor=(*colors.to_rgb(colour), 0.45 * strength), linewidth=0.5)
+def shade(axes, x, low, high, colour):
+    """Shades a range. Its thin edges stay visible where ranges overlap."""
+    axes.fill_between(x, low, high, facecolor=(*colors.to_rgb(colour), 0.16),
+                      edgecolor=(*colors.to_rgb(colour), 0.45), linewidth=0.5)

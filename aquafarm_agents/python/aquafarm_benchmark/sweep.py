@@ -22,7 +22,7 @@ import sys
 
 from aquafarm_benchmark import cluster
 from aquafarm_benchmark.cli import exit_code, find_program
-from aquafarm_benchmark.runs import Job, RunFailed, run_all
+from aquafarm_benchmark.runs import Job, RunFailed, is_complete, run_all
 
 # 97.5 % quantiles of Student's t with 1 to 30 degrees of freedom. Above 30 degrees, 1.96 is used.
 STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179,
@@ -195,7 +195,7 @@ def _run(words):
         code = 4
     results = {}
     for job in jobs:
-        if job.result.is_file():
+        if is_complete(job.result):
             results.setdefault(int(job.contestant), []).append(json.loads(job.result.read_text()))
     rows = table_of(settings, results)
     text = markdown_of(f"{given.algorithm} on {given.scenario}, seeds {given.seeds}", rows)

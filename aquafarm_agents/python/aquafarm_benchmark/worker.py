@@ -89,8 +89,8 @@ def perform(folder, commands, resumable, cwd, environment):
 
     If the run is resumable and its folder contains a run, the first command gets --resume. Returns
     {code: exit code of the last command, commands: number of started commands, resumes, words: last
-    line of the log}, or None if no client wants the run any more. Raises RuntimeError, with a
-    message of one line, if this worker cannot execute the run.
+    line of the log}, or None if no client wants the run any more or this worker is closing. Raises
+    RuntimeError, with a message of one line, if this worker cannot execute the run.
     """
     from distributed import get_worker  # takes a third of a second to load
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_agents/drive/agent_driver.h"
 
-#include <aquafarm_msgs/DropOff.h>
+#include <aquafarm_msgs/Command.h>
 #include <aquafarm_msgs/FarmState.h>
 #include <aquafarm_msgs/GetState.h>
-#include <aquafarm_msgs/Move.h>
 #include <aquafarm_msgs/Outcome.h>
-#include <aquafarm_msgs/Pickup.h>
 #include <aquafarm_msgs/Reset.h>
 #include <ros/callback_queue.h>
 #include <ros/console.h>
@@ -30,7 +28,6 @@ namespace {
 
 namespace names = aquafarm_sim::names;
 using namespace aquafarm::agents;  // NOLINT: the file uses most of its names
-using aquafarm::Action;
 using aquafarm::InputError;
 using aquafarm_msgs::FarmState;
 using aquafarm_msgs::Outcome;
@@ -69,9 +66,7 @@ class AgentDriver::Impl {
     }
     SizeResults();
     const double limit_s = CommandLimit_s(get.response.barrier_timeout_s);
-    for (auto* link : {&move_, &pickup_, &drop_off_}) {
-      link->emplace(node_, options_.wait_limit_s, options_.stop, limit_s);
-    }
+    command_.emplace(node_, options_.wait_limit_s, options_.stop, limit_s);
   }
 
   const EnvironmentSpec& spec() const { return spec_; }
@@ -198,26 +193,14 @@ class AgentDriver::Impl {
   void Send(const FarmState& now, std::uint8_t action) {
     results_.is_first[0] = 0;
     acted_in_ = {now.seed, now.episode};
-    if (action < aquafarm::kMoveCount) {
-      aquafarm_msgs::Move move;
-      move.request.direction = action;
-      Command(now, names::Move(options_.ship), *move_, move);
-    } else if (action == static_cast<std::uint8_t>(Action::kPickup)) {
-      aquafarm_msgs::Pickup pickup;
-      Command(now, names::Pickup(options_.ship), *pickup_, pickup);
-    } else {
-      aquafarm_msgs::DropOff drop_off;
-      Command(now, names::DropOff(options_.ship), *drop_off_, drop_off);
-    }
-  }
-
-  template <typename Service>
-  void Command(const FarmState& now, const std::string& name, ServiceLink& link, Service& service) {
-    service.request.episode = now.episode;
-    service.request.step = now.step;
-    service.request.token = ++token_;  // a retry after a lost connection is not executed again
-    link.Call(name, service);
-    const auto& result = service.response.result;
+    aquafarm_msgs::Command command;
+    command.request.ship = options_.ship;
+    command.request.action = action;
+    command.request.episode = now.episode;
+    command.request.step = now.step;
+    command.request.token = ++token_;  // a retry after a lost connection is not executed again
+    command_->Call(names::kCommand, command);
+    const auto& result = command.response.result;
     switch (result.code) {
       case Outcome::STALE:  // the command is late; the next observation contains the current state
       case Outcome::EPISODE_OVER:
@@ -242,9 +225,7 @@ class AgentDriver::Impl {
   ros::NodeHandle node_;
   ServiceLink get_;
   ServiceLink reset_;
-  std::optional<ServiceLink> move_;
-  std::optional<ServiceLink> pickup_;
-  std::optional<ServiceLink> drop_off_;
+  std::optional<ServiceLink> command_;
   std::optional<ShipClaim> claim_;
   SlowWarning warning_;
   std::shared_ptr<const aquafarm::Scenario> scenario_;

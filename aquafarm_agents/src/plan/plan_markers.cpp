@@ -22,7 +22,8 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr int kCircleCorners = 72;
-// Heights above the markers of the ranch. The view from above in rviz clips at 500 m.
+// Heights [m]. They exceed those of the markers of the ranch. The view from above in rviz clips at
+// 500 m.
 constexpr double kLine_m = 100.0;
 constexpr double kText_m = 120.0;
 

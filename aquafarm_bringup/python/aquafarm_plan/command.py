@@ -63,6 +63,8 @@ def make(options, rest):
     @returns the exit code
     @throws PlanError for wrong arguments or a wrong plan file
     """
+    if not options.output.name:
+        raise PlanError(f"-o: got {options.output}, expected the name of the page, such as plan.html")
     output = options.output.with_suffix(options.output.suffix or ".html")
     if output.suffix.lower() in (".json", ".geojson"):
         raise PlanError(f"-o: got {output}, expected the name of the page, such as plan.html")

@@ -37,12 +37,9 @@ def check(document, path):
     # The schema is checked without the frames, whose grids contain about 100,000 numbers: the
     # validator would need seconds. _check_frames checks the frames.
     lean = document
-    if isinstance(document, dict) and isinstance(document.get("hazard"), dict):
-        lean = {
-            **document, "hazard": {
-                **document["hazard"], "frames": (document["hazard"].get("frames") or [])[:0]
-            }
-        }
+    hazard = document.get("hazard") if isinstance(document, dict) else None
+    if isinstance(hazard, dict) and isinstance(hazard.get("frames"), list):
+        lean = {**document, "hazard": {**hazard, "frames": []}}
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     error = jsonschema.exceptions.best_match(
         jsonschema.Draft202012Validator(schema).iter_errors(lean))
@@ -76,7 +73,8 @@ def _check_frames(document, path):
 
 def _check_references(document, path):
     """Checks that the ids of ships, devices and ports are their positions in the lists. Checks
-    that all ids in use exist, and that lists by ring have one entry per ring."""
+    that the ids in the orders of devices, in routes and in left_behind exist (not those in the
+    `devices` of a delivery), and that lists by ring have one entry per ring."""
     for name in ("ships", "devices", "ports"):
         ids = [one["id"] for one in document[name]]
         if ids != list(range(len(ids))):
@@ -98,6 +96,8 @@ def _check_references(document, path):
         for j, order in enumerate(route["orders"]):
             for key in ("device", "port"):
                 refer(f"plan.routes.{i}.orders.{j}.{key}", f"{key}s", order[key])
+            for device in order.get("devices", ()):
+                refer(f"plan.routes.{i}.orders.{j}.devices", "devices", device)
     for i, left in enumerate(document["plan"]["left_behind"]):
         refer(f"plan.left_behind.{i}.device", "devices", left["device"])
     for place, arrays in (("devices", [d["arrival"] for d in document["devices"]] +

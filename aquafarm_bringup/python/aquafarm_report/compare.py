@@ -134,7 +134,7 @@ def report(folders, work, episodes, read_metrics):
     sections.append(curves.show([run.player.label for run in runs],
                                 [run.columns for run in runs],
                                 [curves.gap_note(run.player.label, run.columns, run.player)
-                                 for run in runs],
+                                 for run in runs if run.columns],
                                 [*[run.player for run in runs],
                                  *(players if len(by_scenario) == 1 else ())]))
     sections.append(blocks.section("Greedy play, 95 % intervals",

@@ -11,7 +11,7 @@ _LEFT, _WIDTH = 170, 640  # left margin and width of the plot [px]
 
 
 def share_text(rate, sample):
-    """Returns a rate and its 95 % interval (Wilson) as "98 % [94 %, 99 %]". sample: its size"""
+    """Returns a rate and its 95 % interval (Wilson) as "98 % [94 %, 99 %]". sample: sample size"""
     low, high = wilson_interval(round(rate * sample), sample)
     return f"{blocks.percent(rate)} [{blocks.percent(low)}, {blocks.percent(high)}]"
 

@@ -288,7 +288,7 @@ def device_relation(values, text):
 def draw_relations(axes, values, near, seas, letters):
     """Draws the second row: the return against the distance to a device and against each sea.
 
-    near: of device_relation
+    near: result of device_relation
     seas: [(layer, result of compare)]
     """
     if near:

@@ -6,6 +6,7 @@ import pathlib
 import subprocess
 
 import roslib.packages
+import rospkg
 import yaml
 
 LIMIT_S = 300  # default max duration of a program [s]
@@ -20,7 +21,10 @@ class ReportError(Exception):
 
 def program(package, name):
     """Returns the path of a program of aquafarm. Raises ReportError if it is not built."""
-    found = roslib.packages.find_node(package, name)
+    try:
+        found = roslib.packages.find_node(package, name)
+    except rospkg.ResourceNotFound:
+        found = None
     if not found:
         raise ReportError(f"{package} has no {name}; build the workspace first")
     return found[0]

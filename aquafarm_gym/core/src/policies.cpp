@@ -118,7 +118,8 @@ std::unique_ptr<agents::Policy> MakePolicy(const std::string& name, const Enviro
                      ", which this package cannot play; expected one of: " + NamesOf(Learned()) +
                      "; evaluate it with aquafarm_evaluate");
   }
-  // The shipped policy is not bound to a version: MakeLearned compares its tokens by name.
+  // The shipped policy is not bound to a version: MakeLearned compares the names of its features
+  // with those of the farms.
   if (!is_shipped && checkpoint.version != spec.version) {
     throw InputError(path + ": got a policy of aquafarm " + checkpoint.version + ", expected " +
                      spec.version + "; train it again, or use the version that trained it");

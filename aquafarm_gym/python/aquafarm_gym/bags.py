@@ -163,7 +163,8 @@ def make_dataset(dataset_id: str, paths: list[str | pathlib.Path], observation: 
 
     about: further arguments of minari.create_dataset_from_buffers, such as algorithm_name. Minari
     can recover the environment from a dataset of one ship. Action 10 (the ship holds its cell)
-    occurs only if a ship had no command, as in paced bags; the action space then has 11 actions.
+    occurs if a ship had no command, as in paced bags, or if the policy holds ships, as do_nothing
+    does. The action space then has 11 actions.
     Raises ValueError as read_episodes and replay do, and if the bags have different scenarios or
     contain no complete step of an episode from step 0.
     """

@@ -26,8 +26,20 @@ GROUP_BOUNDS: dict[str, tuple[float, float]] = {
     "blocked": (0, 1), "risk": (-1, 0), "course": (-1, 0)}
 
 
+# Features of tokens (view.tokens) are clamped to [-4, 4] (docs/generalist.md), without these:
+UNCLAMPED: frozenset[str] = frozenset(("value", "worth", "loss", "aboard", "capacity", "grade"))
+TOKEN_BOUND: float = 4.0
+
+
+def _token_bounds(name: str) -> tuple[float, float]:
+    """Returns the min and max value of a feature of tokens."""
+    part = name.rpartition(".")[2]
+    return (-FAR, FAR) if part in UNCLAMPED or "risk" in name or "course" in name else (
+        -TOKEN_BOUND, TOKEN_BOUND)
+
+
 def feature_bounds(name: str) -> tuple[float, float]:
-    """Returns the min and max value of a feature."""
+    """Returns the min and max value of a feature. For features of tokens, use _token_bounds."""
     group, _, part = name.rpartition(".")
     if group in GROUP_BOUNDS:
         return GROUP_BOUNDS[group]
@@ -49,7 +61,9 @@ def observation_space(farms: Any, observation: str) -> spaces.Space[Any]:
     if observation == "index":
         return spaces.Discrete(farms.state_count)
     if observation == "features":
-        bounds = np.array([feature_bounds(name) for name in farms.feature_names], np.float32)
+        names = farms.feature_names
+        bounds_of = _token_bounds if "ship.time_left_short" in names else feature_bounds
+        bounds = np.array([bounds_of(name) for name in names], np.float32)
         return spaces.Box(bounds[:, 0], bounds[:, 1], dtype=np.float32)
     return spaces.Box(0, 255, (farms.plane_count, farms.height, farms.width), np.uint8)
 

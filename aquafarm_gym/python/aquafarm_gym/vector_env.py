@@ -341,7 +341,7 @@ class TeamVectorEnv(VectorBase):
         rewards = self._all_rewards
         if not self.farms.has_team_rewards:
             return np.asarray(rewards.sum(axis=1))
-        # Active agents have the same reward; the others have 0.
+        # All agents have the same reward, also those that are not active.
         playing = np.abs(rewards).argmax(axis=1)
         return np.asarray(np.take_along_axis(rewards, playing[:, None], axis=1)[:, 0])
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes a scenario file from a chart, a place and a storm. Shows the layout and lists its
-// decisions.
+// Makes a scenario file from a chart, a place and a storm. Shows the layout and lists the choices
+// of BuildRanch.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>

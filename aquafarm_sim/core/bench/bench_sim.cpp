@@ -111,7 +111,8 @@ void PrintMetrics(const bench::MetricReporter& reporter) {
   PrintMetric("farm_steps_tabular_one_farm", rate("OneFarm"), "steps/s");
   PrintMetric("cost_1000x1000_to_25x25", rate("Side/25") / rate("Side/1000"), "ratio");
   PrintMetric("cost_100x100_to_25x25", rate("Side/25") / rate("Side/100"), "ratio");
-  // Marginal cost of one more ship or disaster; considered constant below 1.5.
+  // Returns the cost of one more ship or disaster among many, divided by that among few. Below 1.5
+  // the cost counts as constant.
   const auto per_one_more = [&](const std::string& what, double few, double many) {
     const double cost_one = 1.0 / rate(what + "/1");
     const double cost_few = 1.0 / rate(what + "/" + std::to_string(static_cast<int>(few)));

@@ -14,8 +14,8 @@
 
 namespace aquafarm_sim {
 
-/// Reads a node's private parameters. The node must call RefuseOthers last. It refuses all
-/// parameters that were neither read nor allowed, so that a misspelled name is an error.
+/// Reads a node's private parameters. The node must call RefuseOthers last. RefuseOthers refuses
+/// all parameters that were neither read nor allowed, so that a misspelled name is an error.
 class Params {
  public:
   explicit Params(const ros::NodeHandle& private_node) : node_(private_node) {}

@@ -41,8 +41,8 @@ inline std::string LocalText(const aquafarm_msgs::RescuePlan& plan, ros::Time ti
 }
 
 /// Returns the instruction for a ship without a route: "stay" in a port, "return to port" at sea.
-/// If devices are aboard, unreachable ports or winds prevent the route: "stay, no safe way to a
-/// port" in a port, "no safe way to a port" at sea.
+/// A ship with devices aboard has no route if it reaches no open port, or if winds stop it before.
+/// Its instruction is "stay, no safe way to a port" in a port, "no safe way to a port" at sea.
 inline std::string WithoutRouteText(const aquafarm_msgs::RescuePlan& plan,
                                     const aquafarm_msgs::RescueShip& ship) {
   const bool in_port = std::any_of(plan.ports.begin(), plan.ports.end(), [&ship](const auto& port) {

@@ -127,7 +127,7 @@ ChunkedBag::Connection& ChunkedBag::Connect(const std::string& topic, const std:
 std::uint8_t* ChunkedBag::AddMessage(Connection& connection, const ros::Time& time,
                                      std::uint32_t length) {
   if (time < latest_) throw std::invalid_argument("a message before the one written last");
-  if (chunk_.size() + length > kMaxChunkBytes) throw std::length_error("a message of 256 MiB");
+  if (chunk_.size() + length > kMaxChunkBytes) throw std::length_error("a chunk of more than 256 MiB");
   latest_ = time;
   if (!chunk_start_) chunk_start_ = time;
   ++connection.count;
@@ -187,8 +187,8 @@ void ChunkedBag::EndChunk() {
 void ChunkedBag::Close() {
   if (!chunk_.empty()) EndChunk();
   const auto position = static_cast<std::uint64_t>(file_.tellp());
-  // All records in one write: if only the first of them are in the file, 'rosbag reindex' loses
-  // every chunk.
+  // Writes all records in one call. If only the first of them are in the file, 'rosbag reindex'
+  // loses every chunk.
   Bytes index;
   for (const auto& [topic, connection] : connections_) Put(connection.record, index);
   Put(chunk_infos_, index);

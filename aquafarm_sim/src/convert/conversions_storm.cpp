@@ -55,7 +55,7 @@ aquafarm::StormFix FixFrom(const aquafarm_msgs::StormFix& message, const std::st
   if (message.has_motion != 0) {
     CheckNumber(name + ".heading_deg", static_cast<double>(message.heading_deg), 0.0, 360.0);
     CheckNumber(name + ".speed_kmh", static_cast<double>(message.speed_kmh), 0.0, 300.0);
-    fix.heading_deg = static_cast<double>(message.heading_deg);
+    fix.heading_deg = message.heading_deg < 360.0F ? static_cast<double>(message.heading_deg) : 0.0;
     fix.speed_kmh = static_cast<double>(message.speed_kmh);
   }
   for (std::size_t i = 0; i < message.rings.size(); ++i) {

@@ -18,7 +18,7 @@ constexpr std::uint32_t kQueue = 10;
 constexpr std::uint32_t kRecordQueue = 10000;
 // While rosbag record writes a chunk, it queues at most 100 messages per topic and drops others.
 constexpr std::chrono::milliseconds kRecordPeriod{2};
-// Max wait for the queue before a message is sent to a new subscriber alone.
+// Max wait for the queue before a message is sent to a single, new subscriber.
 constexpr std::chrono::milliseconds kSendLimit{1000};
 constexpr std::size_t kMaxSummaries = 1000;
 // A recorder connects to its topics one after the other. It counts as ready if the number of

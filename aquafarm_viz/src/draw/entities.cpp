@@ -169,7 +169,7 @@ cv::Point2d Turn(cv::Point2d at, cv::Point2d own, cv::Point2d other, double asid
 }
 
 // Returns the moves of a ship, the oldest first. They run to the right of the cells' centres, so
-// that the ways there and back can be told apart.
+// that opposite ways do not cover each other.
 // @param aside  distance from the centres [pixels]
 std::vector<Moved> MovesOf(const ShipTrail& way, double aside, const Layout& layout) {
   const std::size_t count = way.places.size();

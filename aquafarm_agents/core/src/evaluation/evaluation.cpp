@@ -159,9 +159,9 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
   return json;
 }
 
-// Sets `distinct` and `losses`. To compare the starts of the episodes, it starts them again in this
-// process. They depend only on scenario, seed and number, even if the episodes were played through
-// ROS services. @param accounts [episodes]; empty if they are unknown
+// Sets `distinct` and `losses`. To compare the starts of the episodes, it starts the episodes again
+// in this process. A start depends only on scenario, seed and number, even if the episode was
+// played through ROS services. @param accounts [episodes]; empty if they are unknown
 void CompareStarts(const EnvironmentSpec& spec, std::vector<Accounts> accounts,
                    Evaluation& evaluation) {
   const auto scenario =

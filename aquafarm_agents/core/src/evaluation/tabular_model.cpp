@@ -20,7 +20,8 @@ constexpr int kMaxSweeps = 100'000;
 constexpr double kConverged = 1e-12;
 
 // Returns the scenario without disasters and with the longest step limit, so that no episode ends
-// before the last device is delivered. @throws InputError in the same cases as TabularModel
+// before the last device is delivered. @throws InputError unless the scenario has one ship, no
+// other agent and a fixed layout
 std::shared_ptr<const Scenario> WithoutEnds(Scenario scenario) {
   if (scenario.AgentCount() != 1 || scenario.ships.count != 1) {
     throw InputError("matrices: got " + std::to_string(scenario.AgentCount()) +

@@ -8,7 +8,8 @@
 
 namespace aquafarm::agents {
 
-/// Reads the option `exploration`. The value of the parameter before the call is the default.
+/// Reads the option `exploration`. Its default is the value of the parameter `exploration` before
+/// the call.
 /// @throws InputError in the same cases as ParseExploration
 inline void ReadExploration(OptionReader& reader, ExplorationOptions& exploration,
                             ExplorationOf learners = ExplorationOf::kValues) {

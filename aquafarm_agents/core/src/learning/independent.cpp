@@ -15,7 +15,7 @@ EnvironmentSpec SpecOfOne(EnvironmentSpec spec) {
   return spec;
 }
 
-// Returns the seed of an agent's random streams. It differs from the seeds of runs with nearby
+// Returns the seed of an agent's random streams. Agents of runs with nearby seeds have different
 // seeds.
 std::uint64_t SeedOf(std::uint64_t seed, std::size_t agent) {
   return seed ^ (static_cast<std::uint64_t>(agent) << 48U);

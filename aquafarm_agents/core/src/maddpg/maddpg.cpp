@@ -37,8 +37,8 @@ void MarkOne(std::uint8_t action, float mark, float* out) {
   out[action] = mark;
 }
 
-/// Inputs of the actors of B farms at T consecutive time steps. The last one is the sampled time
-/// step, or the time step from which its target bootstraps.
+/// Inputs of the actors for B samples, each with T consecutive time steps of one farm. The last one
+/// is the sampled time step, or the time step from which its target bootstraps.
 struct Window {
   std::vector<float> observations;     // [T, B, S, F]
   std::vector<float> keeps;            // [T, B, S] as in ActorTeam::Forward
@@ -134,7 +134,7 @@ class MaddpgLearner final : public ReplayLearner<float> {
       critic_actions_;          // [B, S, kActionCount] one-hot; action 0 for an agent that is done
   std::vector<float> rewards_;  // [B, S]
   std::vector<float> discounts_;      // [B, S]
-  std::vector<float> weights_;        // [B, S] 0 for an agent that was already done
+  std::vector<float> weights_;        // [B, S] without a team reward 0 for agents already done
   std::vector<float> noise_;          // [B, S, kActionCount]
   std::vector<float> agent_rewards_;  // scratch, [S]
 };
@@ -215,9 +215,9 @@ void MaddpgLearner::Choose(const StepResults& results, std::vector<std::uint8_t>
   }
 }
 
-// Draws a time step whose complete window is stored, or at least the first step of its episode. For
-// the oldest time steps of the replay neither may be stored. Such a time step is replaced by the
-// oldest one of the same farm with a complete window, if there is one.
+// Draws a time step. Its window must be stored completely, or back to the first step of its
+// episode. This can be false for the oldest time steps of the replay. Such a time step is replaced
+// by the oldest one of the same farm with a complete window, if there is one.
 TransitionIndex MaddpgLearner::DrawMoment(std::size_t i) {
   const TransitionIndex drawn = sampler_.Draw(rng_, i);
   for (std::size_t back = 0; back <= drawn.age; ++back) {

@@ -29,7 +29,7 @@ struct MaddpgOptions {
   double reward_scale{0.05};            ///< factor of the rewards; 1: unscaled
   double max_grad_norm{10.0};           ///< max norm of the gradient; 0: no limit
   bool best_response{true};    ///< true: targets use the agent's best response to the others'
-                               ///< target actors; false: its own target actor, as Lowe et al.
+                               ///< target actors; false: its own target actor (Lowe et al. 2017)
   bool mask_illegal{true};     ///< exclude illegal actions when acting and bootstrapping
   bool mask_blocked{true};     ///< also exclude moves onto a rock, an island or off the map
   bool shared{true};           ///< one network for all actors; false: one network per actor

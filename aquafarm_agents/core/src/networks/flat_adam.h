@@ -17,7 +17,7 @@ class FlatAdam {
   /// Moves the module's parameters to the device.
   FlatAdam(torch::nn::Module& module, torch::Device device);
 
-  /// Computes the gradient of `loss` and takes one optimizer step with it. The parameters and the
+  /// Computes the gradient of `loss` and takes one optimizer step with it. max_grad_norm and the
   /// result are as in the function below.
   [[nodiscard]] bool Step(const torch::Tensor& loss, double learning_rate, double max_grad_norm);
   /// Takes one optimizer step with the current gradient of the parameters.

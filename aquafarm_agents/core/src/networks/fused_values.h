@@ -100,7 +100,7 @@ class FusedLstmValues final : public RecurrentValueNetwork {
   const bool skip_connection_;
   const ParameterMemory parameters_;
   HiddenAndHead rest_;
-  LstmShape shape_;  // of the last Forward
+  LstmShape shape_;  // of the last Forward or WarmUp
   const float* seen_{};
   std::vector<float> bias_;        // sum of the two biases of the LSTM
   std::vector<float> transposed_;  // scratch

@@ -10,8 +10,8 @@
 namespace aquafarm::agents {
 namespace {
 
-// Returns e^x − 1 = 2^n e^r − 1 with x = n ln 2 + r, where e^r − 1 is a Taylor series for |r| ≤ ln
-// 2 / 2. Compilers vectorize loops that call it. @param x in [-87, 87], or NaN
+// Returns e^x − 1 = 2^n e^r − 1 with x = n ln(2) + r and |r| ≤ ln(2) / 2. A Taylor series gives
+// e^r − 1. Compilers vectorize loops that call this function. @param x in [-87, 87], or NaN
 inline float ExpMinusOne(float x) {
   constexpr float kPerLog2 = 1.44269504F;
   constexpr float kLog2 = 0.693359375F;         // has few digits, so that n · kLog2 is exact

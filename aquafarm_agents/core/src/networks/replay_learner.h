@@ -87,7 +87,7 @@ class ReplayLearner : public Learner {
   /// Restores the state saved by SaveOwn. @throws InputError if sections are missing or do not fit
   virtual void LoadOwn(const Checkpoint& checkpoint) = 0;
 
-  /// Copies `values` to the device, as a tensor of `shape`. On the CPU the tensor refers to
+  /// Returns `values` on the device, as a tensor of `shape`. On the CPU the tensor refers to
   /// `values` without a copy.
   template <typename T>
   torch::Tensor ToDevice(std::vector<T>& values, std::vector<std::int64_t> shape) const {

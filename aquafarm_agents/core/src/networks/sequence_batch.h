@@ -25,10 +25,10 @@ struct SequenceBatch {
   /// time step 0
   std::vector<float> warms_up;
   std::vector<std::uint8_t> actions;  ///< [T, B]
-  std::vector<float> rewards;       ///< [T, B] scaled, and discounted sum over the steps to `next`
-  std::vector<float> discounts;     ///< [T, B] factor of the value at `next`
-  std::vector<std::int64_t> next;   ///< [T, B] time step of the bootstrap value
-  std::vector<ActionMask> allowed;  ///< [T + 1, B] allowed actions
+  std::vector<float> rewards;         ///< [T, B] discounted sum of the scaled rewards until `next`
+  std::vector<float> discounts;       ///< [T, B] factor of the value at `next`
+  std::vector<std::int64_t> next;     ///< [T, B] time step of the bootstrap value
+  std::vector<ActionMask> allowed;    ///< [T + 1, B] allowed actions
   std::vector<float> weights;     ///< [T, B] 1 if the network is trained at this time step, else 0
   std::vector<std::size_t> rows;  ///< [T, B] rows in the replay
 

@@ -210,8 +210,8 @@ void PlannerSolver::CountMoves() {
   }
 }
 
-// Raises best[cell] to the max reward from a pickup or a drop-off in the cell until the task is
-// complete. @param best [cells]
+// Raises best[cell] to the max reward of plans that start with a pickup or a drop-off in the cell
+// and complete the task. @param best [cells]
 void PlannerSolver::SeedRewards(std::size_t set, std::vector<double>& best) const {
   const auto raise = [&](std::size_t next, std::size_t cell, float reward) {
     const double further = next == all_gone_ ? 0.0 : rewards_[next * cells_ + cell];
@@ -231,9 +231,10 @@ void PlannerSolver::SeedRewards(std::size_t set, std::vector<double>& best) cons
   }
 }
 
-// Computes the max reward, without values, of every state until the task is complete in calm water.
-// It does not follow from the number of moves with a capacity above 1, where one drop-off may
-// unload several devices, or with energy, where the cost of a move depends on its length and load.
+// Computes for every state the max reward, without values, from there until the task is complete,
+// as if all water were calm. The number of moves does not determine this reward in two cases: with
+// a capacity above 1, one drop-off may unload several devices; with energy, the cost of a move
+// depends on its length and load.
 void PlannerSolver::SumRewards() {
   rewards_.assign(state_count(), kNever);
   std::vector<double> best(cells_);

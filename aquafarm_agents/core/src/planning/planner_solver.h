@@ -2,8 +2,9 @@
 #pragma once
 
 /// Implementation of Planner. planner_solver.cpp prepares the farm and the task as a graph of
-/// states. planner_search.cpp searches the graph. A state consists of a cell of the ship and a set,
-/// which is a status (PickupPlan) of each device of the task. Its index is set · cells + cell.
+/// states. planner_search.cpp searches the graph. A state consists of a cell of the ship and a
+/// *set*: the statuses (PickupPlan) of all devices of the task. The index of a state is
+/// set · cells + cell.
 
 #include <cstdint>
 #include <limits>
@@ -27,7 +28,8 @@ constexpr double kSlack = 1e-3;
 // Max number of states that the narrow search keeps in each step.
 constexpr std::size_t kBeam = 64;
 
-// One action in a cell, other than pickup and drop-off, without the effects of disasters.
+// One action in a cell that neither picks up nor drops off a device, without the effects of
+// disasters.
 struct Option {
   std::int32_t to{};      // cell after the action
   float reward{};         // of a crash or an illegal action; 0 for a move
@@ -61,7 +63,8 @@ class PlannerSolver {
   struct Gains {
     double value{};        // present value of the waiting devices
     double actions{};      // rewards of pickups and drop-offs if each device is delivered alone
-    double if_not{};       // all of these rewards if the plan lasts until the end of the episode
+    double if_not{};       // value + actions if the plan lasts until the end of the episode, minus
+                           // the step rewards that pickups and drop-offs replace
     std::int32_t steps{};  // min number of pickups and drop-offs until all devices are delivered
   };
 
@@ -131,9 +134,9 @@ class PlannerSolver {
   std::vector<float> health_;           // present health of the waiting devices
   std::vector<Gains> gains_;            // by set, with the present health
   std::int32_t first_step_{};           // the farm's present step
-  // Cumulative sums by step from first_step_ on: of the best reward of each step, and of an upper
-  // bound (at most 0) of the difference that risks make to the reward of a move in this step.
-  std::vector<double> step_rewards_;
+  // Cumulative sums by step from first_step_ on.
+  std::vector<double> step_rewards_;  // sum of (best reward − idle_cost_) of each step
+  // Sum of an upper bound, at most 0, of the amount that risks add to the reward of a move.
   std::vector<double> surcharges_;
   bool crash_hurts_{};  // whether a crash in this step damages devices
 

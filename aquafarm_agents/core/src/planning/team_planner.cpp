@@ -14,8 +14,8 @@ namespace {
 
 // Steps of a plan for a ship without work, which only avoids risks.
 constexpr std::int32_t kIdleSteps = 30;
-// Weight of the sum of all ships' times in the cost of an assignment. The time of the last ship has
-// weight 1.
+// Weight of the sum of all ships' times in the cost of an assignment. The time of the ship that
+// finishes last has weight 1.
 constexpr double kWorkWeight = 1e-3;
 
 // Returns the max number of devices of one ship: the average per ship, rounded up, plus two. It is

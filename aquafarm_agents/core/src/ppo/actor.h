@@ -56,7 +56,7 @@ class Actor {
   std::vector<ActionMask> masks_;
   std::vector<float> values_;
   std::vector<float> joint_;  // [N, S, joint_agents, F]; empty without a central critic
-  std::vector<TokenSymmetry> symmetries_;  // averaged over; empty: only the observed tokens
+  std::vector<TokenSymmetry> symmetries_;  // Observe averages over these; empty: no averaging
   std::vector<float> turned_;              // [N, S, F]
   std::vector<float> mean_outputs_;        // [N, S, kActorCriticOutputs]
   std::vector<std::uint8_t> is_first_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Ends loops of a trained policy on entity tokens (token_layout.h). A greedy policy repeats itself
-/// forever if it returns to the same situation, for example in a bay whose exit is far away and
-/// leads away from the port.
+/// Ends loops of a trained policy on entity tokens (token_layout.h). A greedy policy that returns
+/// to the same situation may repeat itself until the episode ends, for example in a bay whose exit
+/// is far away and leads away from the port.
 ///
 ///   situation   cell, load and remaining devices
 ///   loop        a situation occurs for the max_visits-th time since the load or the remaining

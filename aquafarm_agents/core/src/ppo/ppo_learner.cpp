@@ -132,7 +132,7 @@ struct Shard {
   AgentRng exploration;
   RandomStream order;  // draws the order of the samples
   std::uint64_t farm_steps{};
-  StepResults results;        // copy of this shard's results if there are several shards
+  StepResults results;        // copy of this shard's results if its process has several shards
   const StepResults* seen{};  // the results set by Observe
   std::vector<TokenSymmetry> symmetries;  // all symmetries; empty without augmentation
   std::vector<std::uint8_t> symmetry;     // by slot: symmetry of the present episode
@@ -140,7 +140,7 @@ struct Shard {
   std::vector<std::uint8_t> actions;
   std::vector<std::uint8_t> labels;  // the teacher's actions
   std::vector<float> log_probs;
-  std::string prefix;  // prefix of its sections in a checkpoint; empty if there is one shard
+  std::string prefix;  // prefix of its sections in a checkpoint; empty if options.shards is 1
 };
 
 void Shard::Observe(const StepResults& observed) {

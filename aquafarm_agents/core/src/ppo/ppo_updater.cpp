@@ -96,6 +96,7 @@ void PpoUpdater::Update(const std::vector<Input>& inputs, const Context& context
   const auto batches = static_cast<std::size_t>(std::lround(wanted));
   batches_ = std::min(sequences, std::max<std::size_t>(1, batches));
   PpoLoss sum;
+  std::size_t learned = 0;  // minibatches
   for (std::int32_t epoch = 0; epoch < options_.epochs; ++epoch) {
     for (std::size_t i = 0; i < inputs.size(); ++i) Shuffle(i, *inputs[i].rng);
     SumAdvantages(inputs);
@@ -109,12 +110,13 @@ void PpoUpdater::Update(const std::vector<Input>& inputs, const Context& context
         Fail("gradient: got a number that is not finite", context);
       }
       sum += loss;
+      ++learned;
     }
   }
-  const double learned = static_cast<double>(batches_) * options_.epochs;
+  const double count = static_cast<double>(std::max<std::size_t>(1, learned));
   const double scale = options_.reward_scale * options_.reward_scale;
-  const auto error = static_cast<float>(sum.square_error / learned / scale);
-  entropy_ = static_cast<float>(sum.entropy / learned);
+  const auto error = static_cast<float>(sum.square_error / count / scale);
+  entropy_ = static_cast<float>(sum.entropy / count);
   value_error_ = MoveError(value_error_, error, kErrorShare);
 }
 

@@ -67,7 +67,8 @@ void AddCell(const std::string& name, const Turning& turning, Sources& sources) 
   sources[name.substr(0, x) + std::to_string(to.x) + '.' + std::to_string(to.y)] = {name};
 }
 
-// Returns the features that are not copied unchanged from the feature of the same name.
+// Returns the sources of the features that a symmetry may move or negate. All other features are
+// copied from the feature of the same name.
 Sources SourcesOf(const std::vector<std::string>& names, const Turning& turning) {
   Sources sources;
   for (const std::string& name : names) {

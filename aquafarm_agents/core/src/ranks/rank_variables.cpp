@@ -32,7 +32,7 @@ constexpr std::array<Launcher, 4> kLaunchers{{
 
 constexpr int kMaxRanks = 65536;
 constexpr int kMaxPort = 65535;
-constexpr std::uint32_t kFirstJobPort = 20000;  // all ports are below Linux' ephemeral ports
+constexpr std::uint32_t kFirstJobPort = 20000;  // job ports are below Linux' ephemeral ports
 constexpr std::uint32_t kJobPorts = 10000;
 
 int ReadNumber(const char* name, std::string_view text, int min, int max) {

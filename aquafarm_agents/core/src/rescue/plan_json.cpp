@@ -55,8 +55,8 @@ class JsonReport {
   Json Kwh(double kwh) const {
     return case_.problem.energy ? Json(Rounded(kwh, 0.001)) : Json(nullptr);
   }
-  // Returns null with unknown winds. The members then contain no winds, and their numbers would
-  // look safe.
+  // Returns `value`, or null with unknown winds. The members' winds then reach cells too late or
+  // not at all, so their numbers would look safe.
   Json Known(Json value) const { return AreWindsUnknown() ? Json(nullptr) : std::move(value); }
   Json Chance(double share) const { return Known(Share(share)); }
   Json MemberShare(std::int32_t count) const {

@@ -13,7 +13,7 @@ namespace {
 // certainty.
 std::string Percent(double share) {
   if (share >= 0.995) return "> 99 %";
-  return share < 0.005 ? "< 1 %" : Short(100.0 * share, 0) + " %";
+  return share <= 0.005 ? "< 1 %" : Short(100.0 * share, 0) + " %";
 }
 
 std::string Money(const RescueCase& rescue, double value) {
@@ -130,7 +130,7 @@ void SetResult(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report)
         FormatUtc(rescue.start +
                   static_cast<std::int64_t>((ensemble.steps() - 1) * ensemble.options().step_s));
     report.result = PlanResult::kStormStaysAway;
-    report.text = "No winds of the storm reach a device in any of " +
+    report.text = "No winds of the storm reach a device or the route of a ship in any of " +
                   std::to_string(ensemble.members()) + " futures until " + until +
                   ". What follows is unknown: plan again with the next bulletin.";
     return Warn("storm_stays_away", "warning", "Get the next bulletin.", report, rescue);
@@ -143,8 +143,8 @@ void SetResult(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report)
                 Money(rescue, Summarize(report.plan.loss_idle).mean) + " on average.";
 }
 
-// Returns a chance as text: "unknown" with unknown winds, where the members contain no winds that
-// could stop a ship.
+// Returns a chance as text. It is "unknown" with unknown winds, since the members' winds then reach
+// ships too late or not at all.
 std::string Chance(const PlanReport& report, double share) {
   return report.result == PlanResult::kStormUnknown ? "unknown" : Percent(share);
 }

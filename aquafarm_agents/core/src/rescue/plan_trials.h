@@ -54,8 +54,8 @@ struct TrialResult {
 /// members differ from those for which the plans were made.
 struct AverseResult {
   std::size_t track{};  ///< TrialStorm::track
-  double mean{};        ///< of the plan with the smallest mean loss
-  double averse{};      ///< of the plan with the smallest mean of the worst 5 %
+  double mean{};        ///< of the plan with RescueProblem::risk_averse = 0
+  double averse{};      ///< of the plan with RescueProblem::risk_averse = 0.05
 };
 
 /// Plans one ranch for many storms.

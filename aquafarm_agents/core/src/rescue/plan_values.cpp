@@ -113,6 +113,9 @@ Json LeftBehindOf(const RescueCase& rescue, const PlanReport& report) {
     } else if (problem.CarrierOf(d) != kNone) {
       reason = "unreachable";
       text = "it is aboard a ship that can bring it to no open port.";
+    } else if (problem.devices[d].value <= 0.0 || problem.devices[d].damage_before >= 1.0) {
+      reason = "not_worth_it";
+      text = "it has no value left to save.";
     } else if (outcome.mean_loss_idle <= 0.0) {
       reason = "safe_in_place";
       text = "no winds reach it in any of the futures.";

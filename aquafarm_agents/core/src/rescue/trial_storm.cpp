@@ -19,7 +19,7 @@ namespace {
 constexpr double kKmPerDegree = 111.195;
 constexpr std::array<std::int32_t, 8> kLeads_h{12, 24, 36, 48, 60, 72, 96, 120};
 constexpr std::array<std::int32_t, 3> kWinds_kt{34, 50, 64};
-constexpr double kWeakest_mps = 8.0;  // wind of a fix without a known wind (below 10 m/s)
+constexpr double kWeakest_mps = 8.0;  // assumed wind of a fix that gives none, or "below 10 m/s"
 
 double HoursBetween(std::int64_t from, std::int64_t to) {
   return static_cast<double>(to - from) / static_cast<double>(kHour_s);
@@ -108,7 +108,7 @@ void SetRadii(const TrialOptions& options, const std::vector<double>& sizes, Sto
   }
 }
 
-// Errors of a bulletin, correlated by lead time.
+// Errors of a bulletin. Errors at nearby lead times are correlated.
 class BulletinErrors {
  public:
   BulletinErrors(const ForecastErrors& errors, RandomStream& rng)

@@ -35,8 +35,9 @@ struct TrialOptions {
   double bulletin_h{6.0};  ///< time between two bulletins [h]
   /// false: the true winds are those of the recorded track, and the winds of the bulletin differ
   /// from them by errors. A bulletin of weak winds is then more often too low than too high,
-  /// because the tracks of the archive have gales near the ranch. true: the true winds after the
-  /// start of the trial are those of the bulletin plus independent errors.
+  /// because the tracks of the archive have gales near the ranch. true: from the start of the trial
+  /// to the end of the first bulletin, the true winds are those of this bulletin plus independent
+  /// errors.
   bool winds_about_bulletin{};
 };
 

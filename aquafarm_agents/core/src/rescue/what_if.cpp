@@ -64,8 +64,8 @@ class Changes {
   RescuePlan PlanShips(const RescueProblem& changed) {
     return PlanRescue(changed, ensemble_, kAverseRoundsToCompare, cache_);
   }
-  // Returns the better one of `found` and the original plan, which the change still permits. The
-  // short risk-averse search may find a worse plan.
+  // Returns `found`. With risk_averse, returns the original plan if it is better: the change still
+  // permits it, and the short search may find a worse plan.
   RescuePlan PlanMore(const RescueProblem& changed, RescuePlan found) const {
     const double share = changed.risk_averse;
     if (share <= 0.0) return found;
@@ -86,8 +86,9 @@ class Changes {
     rows_.push_back(row);
   }
 
-  // Returns the ship to add: a copy of the first ship without devices aboard. If each ship has
-  // devices aboard, returns a copy of the first ship without them, ready at depart_s or later.
+  // Returns the ship to add: a copy of the first ship that has no devices aboard. If every ship has
+  // devices aboard, copies the first ship, removes its devices and makes it ready at depart_s or
+  // later.
   RescueShip OneMore() const {
     const auto is_empty = [](const RescueShip& ship) { return ship.aboard.empty(); };
     const auto& ships = problem_.ships;

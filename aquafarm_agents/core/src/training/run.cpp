@@ -188,7 +188,7 @@ void Run::Choose(const MakeEnvironment& make_environment) {
   CheckRunOptions(options_);
 }
 
-// Reads run.json of a resumed run: its `init`, and its limits unless new ones are given.
+// Reads run.json of a resumed run: `init` (and its hidden_size), and the limits if none are given.
 void Run::TakeOver(const RunFolder& folder) {
   const std::string path = folder.path() + "/run.json";
   std::error_code ignored;

@@ -110,8 +110,8 @@ TrainingEnd Trainer::Run(const std::atomic<bool>* stop, const OnProgress& on_pro
     end = TrainingEnd::kDiverged;
   } catch (const InputError& error) {
     message_ = error.what();
-    // If this process trains alone, the farms came back with another scenario and count as lost.
-    // With several ranks the error is reported as wrong input.
+    // If this process trains alone, the farms count as lost, for example because they came back
+    // with another scenario. With several ranks the error is reported as wrong input.
     end = options_.group == nullptr ? TrainingEnd::kLost : TrainingEnd::kBadInput;
   }
   // With several ranks nothing is saved here: the other ranks are not informed of the error, so

@@ -245,6 +245,18 @@ TEST_F(Fleet, WithoutADeviceLeftNothingIsPlanned) {
   EXPECT_FALSE(ToJson(case_, ensemble, report, {}).empty());
 }
 
+TEST_F(Fleet, ADeviceWithoutHealthIsLeftBehindButNotSafe) {
+  fleet_.devices[0].health = 0.0;
+  UseFleet(request_, fleet_, case_);
+  const Ensemble ensemble(case_.forecast, case_.ensemble, case_.Sites());
+  const auto json = nlohmann::json::parse(ToJson(case_, ensemble, MakeReport(case_, ensemble), {}));
+  const auto& left = json.at("plan").at("left_behind");
+  ASSERT_EQ(left.size(), 1U) << left;
+  EXPECT_EQ(left[0].at("device"), 0);
+  EXPECT_EQ(left[0].at("reason"), "not_worth_it") << "winds may reach it";
+  EXPECT_EQ(left[0].at("text"), "it has no value left to save.");
+}
+
 TEST_F(Fleet, AStateOfAnotherRanchIsRefused) {
   fleet_.devices.pop_back();
   EXPECT_EQ(Refusal(), "state: got 3 devices, expected 4, as in zhoushan_infa_2021");

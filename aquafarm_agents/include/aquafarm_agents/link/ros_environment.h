@@ -48,7 +48,8 @@ struct RosEnvironmentOptions {
 ///
 /// Reset, Step, Save and Load throw EnvironmentLost if the sim node does not respond within the
 /// limits, or if `stop` ends a wait. Step also throws it at the 21st such reset without the end of
-/// an episode. Reset and Load throw InputError if the sim node refuses the request.
+/// an episode. If the sim node refuses the request, Reset and Load throw InputError, and Step and
+/// Save throw EnvironmentLost.
 class RosEnvironment final : public aquafarm::agents::Environment {
  public:
   /// Waits for the sim node.

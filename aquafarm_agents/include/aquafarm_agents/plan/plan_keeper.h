@@ -36,7 +36,8 @@ bool SamePlan(const PlanInputs& a, const PlanInputs& b);
 /// Makes a plan with one bulletin.
 /// @param inputs with a scenario
 /// @param bulletin path; empty with request.storm
-/// @throws InputError in the same cases as MakeRescueCase, UseFleet and ReadPlan
+/// @throws InputError in the same cases as MakeRescueCase, UseFleet, Ensemble, PlanRescue, ToJson
+///   and ReadPlan
 PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin);
 
 /// Keeps the last plan. If the newest bulletin cannot be used, plans with the bulletin of the last
@@ -47,8 +48,8 @@ class PlanKeeper {
  public:
   /// Plans again if the inputs have changed and include a scenario and a bulletin or storm. Never
   /// throws: errors are in `fault` of the plan.
-  /// @returns false if plan() is the same as before. The first call may return false although it
-  ///          sets `result` and `text`
+  /// @returns true if plan() may have changed. The first call may return false although it sets
+  ///          `result` and `text`
   bool Update(const PlanInputs& inputs);
   /// Returns the last plan. After the first Update and before the first plan, `result` is NONE.
   const PlanMessages& plan() const { return plan_; }

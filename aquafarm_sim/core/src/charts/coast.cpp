@@ -156,7 +156,7 @@ class CoastReader {
     }
     if (ring.front().latitude != ring.back().latitude ||
         ring.front().longitude != ring.back().longitude) {
-      place_.FailValue(path, "the ring is open, expected its last point to be its first");
+      place_.FailValue(path, "got an open ring, expected its last point to equal its first");
     }
     const std::string fault = FaultOf(ring, comparisons_left_);
     if (!fault.empty()) {
@@ -261,7 +261,7 @@ void AddSpans(const std::vector<double>& crossings, std::int32_t y, Grid<std::ui
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
     const double from = std::max(first_from(crossings[i]), 0.0);
     const double to = std::min(first_from(crossings[i + 1]) - 1.0, last);
-    if (!(from <= to)) continue;  // both are whole numbers; in this order, both lie in the row
+    if (!(from <= to)) continue;  // if not skipped: whole numbers with 0 <= from <= to <= last
     for (auto k = static_cast<Eigen::Index>(from); k <= static_cast<Eigen::Index>(to); ++k) {
       ++samples(y, k / kSamples);
     }

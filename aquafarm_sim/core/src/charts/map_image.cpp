@@ -29,8 +29,8 @@ class PgmHeader {
   }
   /// Reads a pixel written as text.
   std::int32_t Pixel(std::int32_t max) { return ReadWhole(Word(), "pixel", 0, max, place_); }
-  /// Skips to the pixels. One blank or a line end of two bytes terminates the header. One line feed
-  /// after the pixels is accepted.
+  /// Skips to the pixels. One blank or a line end of two bytes terminates the header. After a
+  /// header that ends with one blank, one line feed after the pixels is accepted.
   void SkipEnd(std::size_t pixels) {
     const std::size_t left = bytes_.size() - std::min(bytes_.size(), at_);
     const bool one_more = left == pixels + 2;
@@ -116,9 +116,9 @@ MapImage ParsePgm(const std::string& bytes, ParseContext& place) {
   return image;
 }
 
-// Rejects a PNG with a chunk that is longer than the file: stb allocates the stated length before
-// it reads. Also rejects a PNG whose first chunk of pixels (IDAT) is empty: stb would copy its
-// pixels to a null pointer.
+// Rejects a PNG with a chunk that is longer than the rest of the file: stb allocates the stated
+// length before it reads. Also rejects a PNG whose first chunk of pixels (IDAT) is empty: stb would
+// copy its pixels to a null pointer.
 void CheckPngChunks(const std::string& bytes, const ParseContext& place) {
   constexpr std::size_t kSignature = 8;
   constexpr std::size_t kAround = 12;  // length and name before a chunk's data, checksum after it

@@ -93,7 +93,7 @@ void Farm::DrawStorms() {
   }
 }
 
-// Gives a disaster a track of this farm alone and returns it. The caller must set its waypoints.
+// Gives a disaster a track of its own and returns it. The caller must set the waypoints.
 std::vector<Waypoint>& Farm::DrawnTrack(std::size_t id) {
   tracks_[id].reset();
   std::shared_ptr<std::vector<Waypoint>>& track = drawn_->tracks[id];

@@ -178,7 +178,7 @@ void Farm::HashState(Hasher& hasher) const {
   for (std::size_t id = 0; id < disasters_.size(); ++id) {
     HashDisaster(disasters_[id], BulletinOf(id), hasher);
   }
-  // In other cases the tracks are those of the scenario, whose hash covers them.
+  // If no track was set or drawn, the hash of the scenario covers the tracks.
   if (tracks_changed_ || drawn_ != nullptr) {
     for (const Track& track : tracks_) HashTrack(*track, hasher);
   }
@@ -356,8 +356,10 @@ void Farm::CheckConsistent() const {
   if (!fits) throw InputError("state: inconsistent; use another saved state");
 }
 
-// Returns a track as a shared pointer. If it equals the track of the scenario, the pointer is that
-// of the scenario, so that NewestForecast still finds the forecasts of the scenario.
+// Returns a track as a shared pointer. For a disaster with DisasterSpec::storms, a track equal to
+// the drawn track gets the pointer of the drawn track. For another disaster, a track equal to that
+// of the scenario gets the pointer of the scenario. NewestForecast then still finds the forecasts
+// of the scenario.
 Track Farm::Owned(std::size_t id, std::vector<Waypoint> track) const {
   const auto& specs = scenario_->disasters;
   const bool drawn = id < specs.size() && specs[id].storms;

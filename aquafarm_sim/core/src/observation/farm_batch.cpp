@@ -20,8 +20,8 @@ namespace aquafarm {
 namespace {
 
 // Returns whether this process may use OpenMP. OpenMP's threads do not survive a fork: if the
-// parent process has started them, a parallel region in the child waits for them forever. Only the
-// first process that calls this function may therefore use them.
+// parent process has started them, a parallel region in the child waits for them forever. Returns
+// false in a process if its parent or an earlier ancestor called this function before the fork.
 bool MayUseThreads() {
   static std::atomic<pid_t> owner{0};
   pid_t expected = 0;

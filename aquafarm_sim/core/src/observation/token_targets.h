@@ -84,8 +84,9 @@ class TargetsOf {
   /// Returns the index of the route to the device of a slot in the result of RoutesFrom.
   std::size_t route(std::size_t slot) const { return routes_[slot]; }
 
-  // FromPort and ToNextDevice return kUnreachable if no deployed device with a slot can be reached,
-  // and 0 if there is no such device. ToNextDeviceByPort returns kUnreachable if it finds no route.
+  // FromPort and ToNextDevice return 0 if no (other) deployed device has a slot, and kUnreachable
+  // if none of these devices can be reached. ToNextDeviceByPort returns kUnreachable if it finds no
+  // route.
 
   /// Returns the number of moves from the port of a slot to the nearest deployed device.
   std::int32_t FromPort(std::size_t slot) const {

@@ -118,7 +118,7 @@ void ObserveDisaster(const Farm& farm, std::size_t id, bool full,
   const Disaster& disaster = farm.disasters()[id];
   known.belief = disaster;
   known.age = 0;
-  // A ship observes a disaster if the edge of the disaster is within sensor range (our choice, see
+  // A ship observes a disaster if a part of the disaster is within sensor range (our choice, see
   // docs/model.md).
   known.visible = full || IsSeen(sensors, disaster.x, disaster.y, disaster.reach());
   const Bulletin& bulletin = farm.BulletinOf(id);

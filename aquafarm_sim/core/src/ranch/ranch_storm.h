@@ -54,10 +54,10 @@ std::vector<StormForecast> ForecastsDuring(const std::vector<StormForecast>& for
 /// Returns one line that describes the storms of the archive `files` that a ranch uses.
 std::string ArchiveLine(const std::vector<std::string>& files, const StormsSpec& storms);
 
-/// Checks that an episode starts before it ends, and not before the track of its storm.
-/// @param end UTC at which the episode ends, at most the end of the known track. It is one to two
+/// Checks that an episode starts before its storm ends, and not before the track of the storm.
+/// @param end UTC at which the storm ends, at most the end of the known track. It is one to two
 ///   hours after the storm has left the ranch. If the storm does not reach the ranch, it is 13 to
-///   14 hours after the storm was nearest.
+///   14 hours after the storm was nearest. Other disasters may make the episode longer.
 /// @returns a warning if the start is before the first known position, else ""
 /// @throws InputError if the start is not before `end`
 std::string CheckStart(std::int64_t start, std::int64_t end, const StormRings& storm,

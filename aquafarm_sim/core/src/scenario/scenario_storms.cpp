@@ -77,9 +77,9 @@ void CheckFound(const std::vector<ArchivedStorm>& found, const char* key, Range<
   throw FieldError(
       Join(path, key),
       "got " + RangeText(years) + ", but none of the archive's " + std::to_string(read) +
-          " storms is from these years and brings a gale within within_km = " +
+          " storms is from these years, has gales and comes within within_km = " +
           Format(storms.within_km) +
-          " km of the farm; expected at least one: check the years, within_km and grid.origin");
+          " km of the middle of the farm; expected at least one: check the years, within_km and grid.origin");
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& q
     }
   }
   if (expected && internal::Largest(quadrants) != radii) {
-    throw FieldError(here, "got radii that differ from the largest quadrant of each ring");
+    throw FieldError(here, "got radii that differ from the largest quadrant of each ring, expected equal ones");
   }
 }
 

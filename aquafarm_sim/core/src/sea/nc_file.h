@@ -27,7 +27,8 @@ class NcFile {
   /// Returns the ids of all variables.
   std::vector<int> Variables() const;
   std::string Name(int variable) const;
-  /// Returns a text attribute; "" if it is absent, not a text, or longer than 10,000 characters.
+  /// Returns a text attribute; "" if it is absent, not a single text, or an array (NC_CHAR) of more
+  /// than 10,000 characters.
   std::string Text(int variable, const char* key) const;
   /// Returns an attribute with one number; nullopt if it is absent or has several numbers.
   /// @throws InputError if it is a text

@@ -30,7 +30,7 @@ std::int32_t GradeOf(const JsonObject& warning, const std::string& color) {
     if (internal::Upper(color) == kColors[i]) return static_cast<std::int32_t>(i);
   }
   warning.Here().FailValue(internal::Join(warning.path(), "severityColor"),
-                           "got " + Quoted(color) + ", expected Blue, Yellow, Orange or Red");
+                           "got " + Quoted(color) + ", expected White, Blue, Yellow, Orange or Red");
 }
 
 void CheckSpan(const Notice& notice, const JsonObject& where, const char* key) {
@@ -61,7 +61,8 @@ std::vector<Notice> ReadWarnings(const JsonObject& answer, ParseContext& place) 
   return notices;  // empty if no warning is in force
 }
 
-// Returns the upper end [m] of a range such as "<0.5m" or "1.0-1.5m"; nullopt for other texts.
+// Returns the upper end [m] of a range such as "<0.5m" or "1.0-1.5m", or the number of a text such
+// as "2m"; nullopt for other texts.
 std::optional<double> WaveMax(const std::string& text) {
   if (text.size() < 2 || text.back() != 'm') return std::nullopt;
   const std::size_t from = text.find_first_of("-<");

@@ -37,8 +37,8 @@ void AppendFix(StormFix fix, std::vector<StormFix>& fixes, ParseContext& place);
 
 /// Completes a track and its forecasts. Leaves out points that break the order of time or are more
 /// than 30 days from the others, warns about jumps, and computes motions that the source does not
-/// give. Leaves out forecasts without a point after their time of issue, or with points that are
-/// not in order of time.
+/// give. Leaves out forecasts without a point after their time of issue, or in which at least half
+/// of the points break the order of time.
 /// @param left_out points that the reader has left out
 /// @throws InputError if there are no points, if the reader has left out more points than it has
 ///   kept, if at least half of the points break the order of time, or if the points span more than

@@ -11,7 +11,7 @@
 namespace aquafarm {
 namespace {
 
-// Coefficients of one wind; tools/fit_wind_radii.py prints them.
+// Coefficients of one wind. docs/data.md states how each was determined.
 struct Relation {
   std::int32_t wind_kt{};
   double cma{};  // a, one value per authority

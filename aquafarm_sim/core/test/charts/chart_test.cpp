@@ -199,7 +199,7 @@ TEST(Coast, RefusesOtherDataThanCoasts) {
     return "{\"type\": \"Polygon\",\n\"coordinates\": [" + ring + "]}";
   };
   EXPECT_EQ(refused(polygon("[[0,0],[1,0],[1,1],[0,1]]")),
-            "x:2: coordinates[0]: the ring is open, expected its last point to be its first");
+            "x:2: coordinates[0]: got an open ring, expected its last point to equal its first");
   EXPECT_EQ(refused(polygon("[[0,0],[1,0],[0,0]]")),
             "x:2: coordinates[0]: got 3 points, expected a ring of at least 4, the last equal "
             "to the first");

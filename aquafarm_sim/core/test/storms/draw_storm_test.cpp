@@ -270,8 +270,9 @@ TEST(StormsKey, IsRefusedInOneLine) {
             "outside of 'years', [2000, 2009]: training must not see them");
   EXPECT_EQ(Refused("[2000, 2009]", "[2003, 2009]"),
             "ranch.yaml:8: disasters[0].storms.years: got [2003, 2009], but none of the "
-            "archive's 3 storms is from these years and brings a gale within within_km = 300 km of "
-            "the farm; expected at least one: check the years, within_km and grid.origin");
+            "archive's 3 storms is from these years, has gales and comes within within_km = 300 km "
+            "of the middle of the farm; expected at least one: check the years, within_km and "
+            "grid.origin");
   EXPECT_NE(Refused("latitude: 30.1", "latitude: -30.1").find("storms is from these years"),
             std::string::npos);
   EXPECT_EQ(

@@ -104,8 +104,10 @@ std::string Refused(const char* sample, const std::string& from, const std::stri
 }
 
 TEST(Notices, ThatAreWrongAreRefusedWithTheirLine) {
-  EXPECT_EQ(Refused("warning.json", "Yellow", "Pink"),
-            "x.json:5: warning[0].severityColor: got 'Pink', expected Blue, Yellow, Orange or Red");
+  EXPECT_EQ(
+      Refused("warning.json", "Yellow", "Pink"),
+      "x.json:5: warning[0].severityColor: got 'Pink', expected White, Blue, Yellow, Orange or "
+      "Red");
   EXPECT_EQ(Refused("warning.json", "2026-05-05T10:30", "2026-05-32T10:30"),
             "x.json:4: warning[0].endTime: got '2026-05-32T10:30+08:00', expected a time such as "
             "2021-07-25T14:00:00");

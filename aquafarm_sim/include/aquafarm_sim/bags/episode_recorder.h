@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Writes complete episodes as bags while the farms run. Each step only appends its actions to a
-/// log. A separate thread simulates the kept logs again and writes the bags.
+/// Writes ended episodes as bags while the farms run. Each step only appends its actions to a log.
+/// A separate thread simulates the kept logs again and writes the bags.
 
 #include <chrono>
 #include <condition_variable>
@@ -74,7 +74,7 @@ class EpisodeRecorder final : public FarmRecorder {
   EpisodeBagWriter writer_;  // used only by the writing thread
   const RecorderLimits limits_;
   std::vector<EpisodeLog> logs_;  // by farm; used only in callbacks, under the FarmServer's mutex
-  std::optional<float> extreme_;  // kBest, kWorst: best or worst return so far; as logs_
+  std::optional<float> extreme_;  // kBest, kWorst: best or worst return so far; guarded as logs_
   std::string extreme_path_;      // bag of that episode; used only by the writing thread
 
   mutable aquafarm::Mutex mutex_;

@@ -37,7 +37,8 @@ inline constexpr std::array<OlderMessage, 4> kOlderMessages{{
 /// Returns whether a definition is one of kOlderMessages.
 bool IsOlderMessage(std::string_view type, std::string_view md5sum);
 
-/// Thrown for a definition that cannot be parsed, and for a message that does not fit it.
+/// Thrown if a definition cannot be parsed, if a field has different types in two definitions, or
+/// if a message does not fit its definition.
 struct TranslationError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -69,7 +69,7 @@ class FarmPublisher : public FarmListener {
   struct Topic {
     ros::Publisher publisher;
     Message message;
-    bool valid{};  // true: a message was sent
+    bool valid{};  // true: `message` was sent with the last published state
   };
 
   template <typename Message>

@@ -9,7 +9,8 @@
 namespace aquafarm_sim {
 
 /// Records which node has claimed which ship. A claim expires if its holder is not marked as
-/// present for `timeout_s`. Every ship id must be in [0, ships - 1]. Not thread-safe.
+/// present for `timeout_s`. IsHeldByAnother removes it; until then, holder() returns its node.
+/// Every ship id must be in [0, ships - 1]. Not thread-safe.
 class ClaimTable {
  public:
   ClaimTable(std::int32_t ships, double timeout_s);
@@ -24,7 +25,7 @@ class ClaimTable {
   void MarkPresent(std::int32_t ship);
   /// @return name of the node that holds the ship; empty if no node does
   const std::string& holder(std::int32_t ship) const;
-  /// @return number of claims that have expired
+  /// @return number of expired claims that IsHeldByAnother has removed
   std::uint64_t expired() const { return expired_; }
 
  private:

@@ -48,7 +48,7 @@ class CommandBarrier {
   /// @param lock lock of the owner's mutex
   WaitEnd Wait(aquafarm::MutexLock& lock, const Call& call, Clock::time_point deadline,
                const bool& ending);
-  /// Removes the command of a call whose Wait has returned.
+  /// Removes the command of a call whose Wait has returned kTimedOut or kDropped.
   void Withdraw(const Call& call);
   /// Removes all commands. Their calls end with kDropped.
   void Drop();

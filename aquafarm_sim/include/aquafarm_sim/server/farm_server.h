@@ -80,7 +80,7 @@ struct ServerCounters {
   std::vector<std::int32_t> absent;
   std::vector<std::uint64_t> absences;  ///< by ship: how often lockstep stopped waiting for it
   double joint_step_age_s{1e9};         ///< time since the last joint step; 1e9 before the first
-  std::string fault;  ///< last error that paused the paced farm; empty if there was none
+  std::string fault;  ///< last error that paused the paced farm; cleared when the farm resumes
   std::uint64_t dropped_notifications{};  ///< number of failed notifications of the listener
   std::string dropped_reason;             ///< reason of the last failure; empty if there is none
 };
@@ -101,8 +101,8 @@ struct ServerView {
 class FarmListener {
  public:
   virtual ~FarmListener() = default;
-  /// Called after a change of farm 0 (a step, a new or loaded episode, a bulletin), of the pace or
-  /// of the pause. SetListener also calls it.
+  /// Called after a change of farm 0 (a step, a new or loaded episode, set_disaster), of the pace
+  /// or of the pause. SetListener also calls it.
   virtual void OnChange(const ServerView& view) = 0;
   /// Called after the last step of an episode of any farm.
   virtual void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) = 0;

@@ -266,8 +266,9 @@ class Farm {
   std::unique_ptr<DrawnStorms> drawn_;  // null if no disaster has storms
 };
 
-/// Returns the health that each device aboard loses if its ship crashes into a rock or island. A
-/// self-propelled device loses the same if it crashes.
+/// Returns the health that each device aboard loses if its ship crashes into a rock or island and
+/// the crash causes damage (DamageSpec::crash_probability). A self-propelled device loses the same
+/// if it crashes.
 /// @param bits CellBits of the rock or island
 /// @param crash_reward reward of the crash, 0 or negative
 float CrashDamage(const Scenario& scenario, std::uint8_t bits, float crash_reward);

@@ -15,7 +15,7 @@ namespace aquafarm {
 inline constexpr std::int32_t kUnreachable = 1 << 28;
 
 /// Computes the number of moves by water from every cell of a chart to the nearest of `count`
-/// targets. On land, and where no route exists, the number is kUnreachable.
+/// targets. On islands and rocks, and where no route exists, the number is kUnreachable.
 /// @param cells [H, W] CellBits
 /// @param targets [count] cells of the chart
 /// @param steps [H, W] result; resized

@@ -14,7 +14,7 @@
 /// ship's slot lacks this feature. Entities fill the slots in id order. If there are more entities
 /// than slots, those nearest to the ship are kept. The distance of a device or a port is the number
 /// of moves by water; devices aboard count as nearest. The distance of a disaster is that to the
-/// edge of its largest ring. The distance of another ship is the number of moves on open water.
+/// edge of its largest ring. That of another ship is the number of moves as if there were no land.
 ///
 /// Lengths are in units of kTokenLength cells and clamped to [-4, 4]. Risks are divided by the
 /// worst risk of §2.1 of the paper (see docs/model.md). Forecast risks assume that each known
@@ -35,7 +35,7 @@ inline constexpr std::int32_t kTokenPorts = 6;      ///< slots
 inline constexpr std::int32_t kTokenDisasters = 4;  ///< slots
 inline constexpr std::int32_t kTokenOthers = 4;     ///< slots
 inline constexpr std::int32_t kTokenWindow = 3;     ///< radius of the near surroundings [cells]
-inline constexpr std::int32_t kTokenRoute = 32;     ///< max steps of a route whose risk is summed
+inline constexpr std::int32_t kTokenRoute = 32;     ///< first steps of a route that are summed
 
 /// Slots of one kind of entity, consecutive in the feature vector.
 struct TokenGroup {

@@ -7,7 +7,7 @@
 /// A partial view always contains the chart, and the initial cell and the status of every device.
 /// It contains another ship, and the health of a device, only if the ship or the device is in range
 /// of a sensor (View::sensors). The ship's own sensor has the range view.sensor_radius. The view
-/// contains the current state of a disaster if the edge of the disaster is in range. For a disaster
+/// contains the current state of a disaster if a part of the disaster is in range. For a disaster
 /// out of range, it contains the last bulletin and its age. Networked agents (view.shared_sight)
 /// use the sensors of all active agents, and so know their cells.
 ///
@@ -36,7 +36,7 @@ struct Sensor {
 };
 
 struct KnownDevice {
-  Cell cell{};  ///< current cell if it is in sensor range, else its cell at the episode's start
+  Cell cell{};  ///< current cell in full view or sensor range, else that at the episode's start
   DeviceKind kind{};
   DeviceStatus status{};
   bool aboard_self{};  ///< aboard the observing ship
@@ -48,7 +48,7 @@ struct KnownDevice {
 
 struct KnownDisaster {
   bool known{};        ///< visible or in a bulletin; if false, the other fields are not valid
-  bool visible{};      ///< in sensor range now; if false, the last bulletin applies
+  bool visible{};      ///< in full view or sensor range now; if false, the last bulletin applies
   std::int32_t age{};  ///< age of the information [steps]; 0 if visible
   /// State `age` steps ago: the centre is not extrapolated to now. Only steps_left is counted from
   /// now. If agents receive a forecast, dx and dy are the mean motion of the forecast in the period

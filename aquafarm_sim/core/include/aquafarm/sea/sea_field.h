@@ -7,9 +7,10 @@
 ///
 /// Packed values are unpacked with scale_factor and add_offset. A value becomes NaN (land or
 /// unknown) if its packed form equals _FillValue or missing_value, lies outside valid_range or
-/// valid_min … valid_max, or is above 9.9e35 in magnitude. Without _FillValue, netCDF's default for
-/// the type applies. Latitude and longitude may ascend or descend. Longitude may be in [-180, 180]
-/// or [0, 360]. Depth may be positive down or up. Curvilinear grids cause an error.
+/// valid_min … valid_max (by default -1e30 … 1e30), or is above 9.9e35 in magnitude. Without
+/// _FillValue, netCDF's default for the type applies. Latitude and longitude may ascend or descend.
+/// Longitude may be in [-180, 180] or [0, 360]. Depth may be positive down or up. Curvilinear grids
+/// cause an error.
 
 #include <array>
 #include <limits>

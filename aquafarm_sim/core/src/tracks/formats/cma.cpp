@@ -16,7 +16,7 @@ constexpr std::int32_t kAveraging_min = 2;
 
 // Parses a header "66666 BBBB CCC DDDD EEEE F G name date". CCC is the number of points, DDDD a
 // serial number that is unique in each file, and EEEE the number of the storm, or two numbers such
-// as "7127,7128". BBBB is not read.
+// as "7127,7128". BBBB, F and G are not read.
 BestTrackHeader ReadHeader(std::string_view line, ParseContext& place) {
   const std::vector<std::string_view> words = SplitWords(line);
   constexpr std::size_t kBeforeName = 7;

@@ -15,8 +15,8 @@ namespace {
 
 using Fields = std::vector<std::string_view>;
 
-// Returns the averaging period [min] of the winds of WMO_AGENCY, which are in WMO_WIND; 0 if the
-// agency is unknown. IBTrACS does not convert winds. Source: IBTrACS technical details, table of
+// Returns the averaging period [min] of the winds of WMO_AGENCY, which are in WMO_WIND; 0 if no
+// agency is given. IBTrACS does not convert winds. Source: IBTrACS technical details, table of
 // agencies.
 std::int32_t AveragingOf(std::string_view agency) {
   if (agency == "newdelhi") return 3;

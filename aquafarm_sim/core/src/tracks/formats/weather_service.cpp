@@ -81,7 +81,7 @@ const char* KeyOfPoints(const JsonObject& answer) {
   return track == nullptr || track->empty() ? "forecast" : "track";
 }
 
-// Warns about keys that are not read.
+// Warns about unknown keys that have a value.
 void WarnOfUnread(const Json& document, ParseContext& place) {
   constexpr std::array<std::string_view, 11> kKnown{"code", "updateTime", "fxLink",  "isActive",
                                                     "now",  "track",      "refer",   "id",
@@ -95,8 +95,8 @@ void WarnOfUnread(const Json& document, ParseContext& place) {
 // Returns whether a point only marks a landfall (type DL).
 bool IsLandfall(const JsonObject& point) { return point.TryText({"type"}) == "DL"; }
 
-// Reads the forecast of a response that also has a track. Its time of issue is that of the last
-// fix.
+// Reads the forecast of a response that also has `track` or `now`. Its time of issue is that of the
+// last fix.
 void ReadForecast(const JsonObject& answer, StormTrack& track, ParseContext& place) {
   const Json* points = answer.TryList({"forecast"});
   if (points == nullptr || points->empty() || track.fixes.empty()) return;

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// DQN (Mnih et al. 2015; paper §3.4.3, Eq. 15, see docs/model.md): a network for Q(s, ·), trained
-/// from a replay buffer with a target network,
+/// DQN (Mnih et al. 2015; paper §3.4.3, Eq. 15, see docs/model.md) trains a network for Q(s, ·)
+/// from a replay buffer, with a target network:
 ///
 ///   y = r + γ max over a' of Q_target(s', a')        y = r after termination
 ///   loss = (y − Q(s, a))², or the Huber loss
 ///
-/// (with double_dqn, the default, the online network chooses a'; only legal a' are considered)
-/// and LSTM-DQN (Algorithm 2): DQN with a recurrent network, trained from sequences of steps of one
+/// By default, the online network chooses a' (double_dqn) among the legal actions (mask_illegal).
+///
+/// LSTM-DQN (Algorithm 2) is DQN with a recurrent network, trained from sequences of steps of one
 /// episode. The network first reads the burn_in steps before a sequence. It starts with the
-/// recurrent state that was stored at the first of these steps. Near the start of an episode, the
-/// sequence begins at the first step of the episode instead, without burn-in. One forward pass
-/// computes the actions of all farms. DeepOptions lists the options.
+/// recurrent state that was stored at the first of these steps. Near the first stored step of an
+/// episode, the sequence begins at that step instead, without burn-in.
+///
+/// One forward pass computes the actions of all farms. DeepOptions lists the options.
 
 #include <memory>
 #include <string>

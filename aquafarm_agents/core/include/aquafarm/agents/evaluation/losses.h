@@ -10,12 +10,12 @@
 ///   general loss distributions", Journal of Banking & Finance 26, 2002).
 ///
 /// Episodes with equal starts are not independent. The standard error is therefore cluster-robust,
-/// and the intervals come from a cluster bootstrap. It draws distinct starts with replacement, each
-/// with all its episodes. The interval reaches from the 2.5th to the 97.5th percentile (Davison and
-/// Hinkley, "Bootstrap Methods and their Application", 1997, sections 3.8 and 5.3). If all starts
-/// are distinct, these are the ordinary standard error and bootstrap. The intervals of CVaR are
-/// somewhat too short if few episodes are in the tail. Equal episodes with equal seeds give equal
-/// intervals.
+/// and the intervals come from a cluster bootstrap. The bootstrap draws from the set of distinct
+/// starts, with replacement. Each drawn start counts with all its episodes. The interval reaches
+/// from the 2.5th to the 97.5th percentile (Davison and Hinkley, "Bootstrap Methods and their
+/// Application", 1997, sections 3.8 and 5.3). If all starts are distinct, these are the ordinary
+/// standard error and bootstrap. The intervals of CVaR are somewhat too short if few episodes are
+/// in the tail. Equal episodes with equal seeds give equal intervals.
 
 #include <array>
 #include <cstddef>
@@ -68,7 +68,7 @@ Losses SummariseLosses(std::vector<Accounts> accounts, std::vector<std::size_t> 
                        const std::string& currency, std::uint64_t seed);
 
 /// Returns the names of the columns of AppendAccounts, each after a comma:
-/// ",start,insured,saved,damaged,lost,operating_cost,energy_cost,monitoring_insured,…"
+/// ",start,insured,saved,damaged,lost,operating_cost,energy_cost,temporary_breeding_insured,…"
 std::string AccountColumns();
 /// Appends the value of each column, after a comma. Amounts have two decimals.
 /// @param start index of the episode's start; see Losses::starts

@@ -23,8 +23,8 @@ struct RescueRequest {
   std::string storm;       ///< file of a recorded track. Its part after `at` serves as the forecast
   std::string storm_name;  ///< storm in this file; may be empty if the file has one storm
   /// Start of the plan, UTC [s since 1970]; required for `storm`. If it is unset, the plan starts
-  /// at `now`. It starts at the last report of the bulletin if `now` is unset, is before this
-  /// report, or is at least 12 h after it.
+  /// at `now`. If `now` is unset, too, or is before the last report of the bulletin or at least
+  /// 12 h after it, the plan starts at this report.
   std::optional<std::int64_t> at;
   std::optional<std::int64_t> now;    ///< present time, UTC [s since 1970]; unset for a past storm
   std::string devices;                ///< CSV file; empty: the devices of the scenario

@@ -44,9 +44,9 @@ struct RescuePlan {
   double saved{};                        ///< mean loss if no ship leaves minus mean loss
   double bound{};                        ///< upper bound of `saved` over all plans
   double cost{};                         ///< cost of energy and ship-hours
-  /// With risk_averse, the objective is the mean loss of the worst members plus cost. This is the
-  /// max amount by which the objective of another sequence of direct trips may be smaller. Infinity
-  /// if the search was not exhaustive; 0 without risk_averse.
+  /// Upper bound of how much smaller the objective of any other plan (rescue_plan.h) can be. With
+  /// risk_averse, the objective is the mean loss of the worst members plus cost. Infinity if the
+  /// search was not exhaustive; 0 without risk_averse.
   double averse_gap{};
   bool is_exhaustive{};  ///< whether the search considered all plans (rescue_plan.h)
 };

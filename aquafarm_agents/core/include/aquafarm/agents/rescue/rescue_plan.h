@@ -15,9 +15,9 @@
 ///   the ship still works ──> best value per set of devices ──> best disjoint sets of all ships
 ///
 /// If energy or ship-hours have prices (RescueEnergy), their cost is subtracted from the value
-/// saved. A trip that costs more than it saves is left out. With risk_averse, the search is
-/// repeated with higher weights of the worst members of the plans found so far. `averse_gap` bounds
-/// the advantage of other plans.
+/// saved. A trip that costs more than it saves is left out, except the first trip of a ship that
+/// starts with devices aboard. With risk_averse, the search is repeated with higher weights of the
+/// worst members of the plans found so far. `averse_gap` bounds the advantage of other plans.
 ///
 /// The value of a plan is the sum of the values of its devices, so combining the ships adds no
 /// error. The search keeps only the best partial sequences and combinations, up to a max number. If

@@ -15,7 +15,7 @@ namespace aquafarm::agents {
 const std::vector<Algorithm>& Algorithms();
 
 /// Finds an algorithm by its name.
-/// @throws InputError "algorithm: got 'dqm', expected one of: random, …"
+/// @throws InputError "algorithm: got 'dqm' (did you mean 'dqn'?), expected one of: random, …"
 const Algorithm& FindAlgorithm(const std::string& name);
 
 /// Returns the default limit of a training [farm steps]: Algorithm::default_steps. For an algorithm

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Folder with all files of a training run:
+/// Folder with the files that a training writes:
 ///
 ///   lock                 file that a process locks while it trains here; contains its process id
 ///   scenario.yaml        canonical text of the scenario

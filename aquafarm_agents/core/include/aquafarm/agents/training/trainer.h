@@ -50,7 +50,7 @@ struct TrainingProgress {
   double steps_per_second{};  ///< since the previous report
   double elapsed_s{};         ///< since the training started or resumed in this process
   double time_left_s{-1.0};   ///< -1 if unknown
-  std::uint32_t restarts{};   ///< number of times that lost farms were replaced by new ones
+  std::uint32_t restarts{};   ///< times that all farms began new episodes, see ConsumeRestart
   inline static constexpr int kWindow = 50;
 };
 

@@ -13,7 +13,7 @@ import unittest
 import rosgraph
 import rospy
 import rostest
-from aquafarm_msgs.msg import EpisodeSummary, FarmState
+from aquafarm_msgs.msg import EpisodeSummary, FarmState, Outcome
 from aquafarm_msgs.srv import Claim, GetState, LoadState, Pause, SaveState
 from diagnostic_msgs.msg import DiagnosticArray
 
@@ -98,7 +98,7 @@ class AgentNodesTest(unittest.TestCase):
         self.wait_until(lambda state: state.step > 5, "both ships at work")
         state = self.state()
         self.assertEqual([HOLD, HOLD], [ship.action for ship in state.ships])
-        self.assertEqual([0.0, 0.0], [ship.episode_return for ship in state.ships], "nothing illegal")
+        self.assertEqual([Outcome.HELD] * 2, [ship.outcome for ship in state.ships])
 
     def test_only_the_node_of_ship_0_publishes_values(self):
         self.sim(TEAM)

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Geometry and words of the drawings on the page of a plan."""
+import math
 import pathlib
 import sys
 import unittest
@@ -141,6 +142,19 @@ class PlanFiguresTest(unittest.TestCase):
         self.assertIsNone(pointer(1.0, 1.0), "the centre is on the map")
         plan["storm"]["points"] = []
         self.assertIsNone(chart.storm_pointer(plan, frame), "the centre is unknown")
+
+    def test_the_arrow_to_a_storm_keeps_away_from_devices(self):
+        plan = plan_sample.sample(members=100)
+        ranch = plan["ranch"]
+        plan["storm"]["points"] = [{"time": plan["clock"]["start"], "at": [12, -300]},
+                                   {"time": document.Clock(plan["clock"]).at(3600), "at": [0, 0]}]
+        frame = chart.Frame(ranch)
+        free = chart.storm_pointer(plan, frame)["xy"]
+        plan["devices"][0]["cell"] = [round(free[0] / frame.scale - 0.5), 1]
+        moved = chart.chart(plan)["storm"]["xy"]
+        self.assertEqual(free[1], moved[1], "along the southern border")
+        self.assertGreaterEqual(math.dist(moved, frame.px(*plan["devices"][0]["cell"])), 45.0)
+        self.assertLess(abs(moved[0] - free[0]), 81.0)
 
     def test_no_more_than_everything_can_be_lost(self):
         plan = plan_sample.sample(members=100)

@@ -47,6 +47,8 @@ def chart(plan):
     ports = [{"letter": letter(port["id"]), "name": port["name"], "xy": frame.px(*port["cell"])}
              for port in plan["ports"]]
     storm = storm_pointer(plan, frame)
+    if storm:
+        _keep_away(storm, [one["xy"] for one in devices + ports], frame)
     return {
         "storm": storm, "frame": frame, "coast": _coast(plan["ranch"], frame),
         "rocks": [frame.px(*cell) for cell in plan["ranch"]["rocks"]], "ports": ports,
@@ -81,6 +83,19 @@ def storm_pointer(plan, frame):
                    frame.height / 2 - north * frame.scale / reach), "bearing": bearing,
             "words": f"{name}: centre {km:,.0f} km {compass(bearing)} "
                      f"({round(bearing) % 360:03d}°) at {clock.time(clock.at(0))}"}
+
+
+def _keep_away(storm, symbols, frame):
+    """Moves the arrow of storm_pointer along its border, at most 80 px, until it is at least 45 px
+    away from all symbols. It stays in place if there is no such position."""
+    x, y = storm["xy"]
+    is_aside = min(x, frame.width - x) < min(y, frame.height - y)
+    for shift in sorted(range(-80, 81, 10), key=abs):
+        at = (x, y + shift) if is_aside else (x + shift, y)
+        is_inside = 29 < at[0] < frame.width - 29 and 29 < at[1] < frame.height - 29
+        if is_inside and all(math.dist(at, symbol) >= 45.0 for symbol in symbols):
+            storm["xy"] = at
+            return
 
 
 def _coast(ranch, frame):

@@ -16,7 +16,7 @@ from skimage.metrics import structural_similarity  # noqa: E402
 from aquafarm_bringup.files import open_atomically  # noqa: E402
 
 MOST_WINDOW = 7  # max side of the window of the SSIM [cells], the default of scikit-image
-_WEAK = 0.3  # for a smaller absolute rank correlation, the headline says "hardly changes"
+_WEAK = 0.3  # for a smaller absolute rank correlation, the headline says "no steady trend"
 FEWEST_CELLS = 10  # min number of cells for a comparison
 NEXT_TO = 2.0  # max distance at which a cell counts as next to a device or port [cells]
 _COLUMN = 2.9  # width of a map in the figure [inch]
@@ -174,11 +174,11 @@ def draw_map(axis, field, km, colours, unit, lowest=0.0):
 
 def draw_places(axis, text, km):
     """Marks the ports, and the devices at the start of the episode, if the file contains them."""
-    for key, words, shape in (("ports", "port", {"marker": "o", "facecolor": "white"}),
-                              ("devices", "device", {"marker": "^", "facecolor": "#ffd166"})):
+    for key, words, shape in (("ports", "port", {"marker": "o", "facecolor": "black"}),
+                              ("devices", "device", {"marker": "^", "facecolor": "white"})):
         if cells := text.get(key):
             x, y = zip(*(((east + 0.5) * km, (north + 0.5) * km) for east, north in cells))
-            axis.scatter(x, y, s=42, edgecolor="black", linewidth=1.2, label=words, zorder=3,
+            axis.scatter(x, y, s=46, edgecolor="black", linewidth=1.6, label=words, zorder=3,
                          **shape)
 
 
@@ -266,10 +266,10 @@ def headline(relations):
     relations: [(layer, result of compare)]
     """
     pairs = [(sea_words(name), result["spearman_rho"]) for (name, _, _), result in relations]
-    said = {"falls": [], "rises": [], "hardly changes": []}
+    said = {"falls": [], "rises": [], "has no steady trend": []}
     for words, rho in sorted((pair for pair in pairs if pair[1] is not None),
                              key=lambda pair: -abs(pair[1])):
-        trend = "hardly changes" if abs(rho) < _WEAK else "falls" if rho < 0.0 else "rises"
+        trend = "has no steady trend" if abs(rho) < _WEAK else "falls" if rho < 0.0 else "rises"
         known = any(said.values())
         said[trend].append(f"{words} ({'' if known else 'rank correlation '}{signed(rho)})")
     parts = [f"{trend} with {' and '.join(names)}" for trend, names in said.items() if names]

@@ -127,7 +127,8 @@ ChunkedBag::Connection& ChunkedBag::Connect(const std::string& topic, const std:
 std::uint8_t* ChunkedBag::AddMessage(Connection& connection, const ros::Time& time,
                                      std::uint32_t length) {
   if (time < latest_) throw std::invalid_argument("a message before the one written last");
-  if (chunk_.size() + length > kMaxChunkBytes) throw std::length_error("a chunk of more than 256 MiB");
+  if (chunk_.size() + length > kMaxChunkBytes)
+    throw std::length_error("a chunk of more than 256 MiB");
   latest_ = time;
   if (!chunk_start_) chunk_start_ = time;
   ++connection.count;

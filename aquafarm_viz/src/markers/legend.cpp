@@ -94,7 +94,7 @@ class Row {
       const double to = std::min(half_m, half_m + shift * half_m);
       const double up_m = shift * half_m;
       for (const auto& [x, side] :
-           {std::pair(from, -1.0), {to, -1.0}, {to, 1.0}, {from, -1.0}, {to, 1.0}, {from, 1.0}}) {
+           {std::pair(from, 1.0), {to, 1.0}, {to, -1.0}, {from, 1.0}, {to, -1.0}, {from, -1.0}}) {
         lines.points.push_back(Point(x + side * width_m, x - up_m - side * width_m));
       }
     }

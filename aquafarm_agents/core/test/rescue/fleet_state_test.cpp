@@ -254,7 +254,7 @@ TEST_F(Fleet, ADeviceWithoutHealthIsLeftBehindButNotSafe) {
   ASSERT_EQ(left.size(), 1U) << left;
   EXPECT_EQ(left[0].at("device"), 0);
   EXPECT_EQ(left[0].at("reason"), "not_worth_it") << "winds may reach it";
-  EXPECT_EQ(left[0].at("text"), "it has no value left to save.");
+  EXPECT_EQ(left[0].at("text"), "F0: it has no value left to save.");
 }
 
 TEST_F(Fleet, AStateOfAnotherRanchIsRefused) {

@@ -167,11 +167,11 @@ std::string ArchiveLine(const std::vector<std::string>& files, const StormsSpec&
 std::string CheckStart(std::int64_t start, std::int64_t end, const StormRings& storm,
                        const Passage& passage) {
   if (end <= start) {
-    throw InputError("start: got " + FormatTime(start) + ", expected a time before " +
-                     FormatTime(end) +
-                     (end == storm.waypoints.back().time ? ", until when the storm is known"
-                      : passage.worst_wind_kt > 0        ? ", one to two hours after the storm has left the ranch"
-                                                  : ", 13 to 14 hours after the storm was nearest"));
+    throw InputError(
+        "start: got " + FormatTime(start) + ", expected a time before " + FormatTime(end) +
+        (end == storm.waypoints.back().time ? ", until when the storm is known"
+         : passage.worst_wind_kt > 0 ? ", one to two hours after the storm has left the ranch"
+                                     : ", 13 to 14 hours after the storm was nearest"));
   }
   const std::int64_t first = storm.waypoints.front().time;
   if (start >= first) return "";

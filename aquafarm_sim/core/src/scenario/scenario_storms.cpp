@@ -74,12 +74,13 @@ std::vector<StormTrack> ReadTracks(const std::string& text, const std::string& p
 void CheckFound(const std::vector<ArchivedStorm>& found, const char* key, Range<std::int32_t> years,
                 std::size_t read, const StormsSpec& storms, const std::string& path) {
   if (!found.empty()) return;
-  throw FieldError(
-      Join(path, key),
-      "got " + RangeText(years) + ", but none of the archive's " + std::to_string(read) +
-          " storms is from these years, has gales and comes within within_km = " +
-          Format(storms.within_km) +
-          " km of the middle of the farm; expected at least one: check the years, within_km and grid.origin");
+  throw FieldError(Join(path, key),
+                   "got " + RangeText(years) + ", but none of the archive's " +
+                       std::to_string(read) +
+                       " storms is from these years, has gales and comes within within_km = " +
+                       Format(storms.within_km) +
+                       " km of the middle of the farm; expected at least one: check the years, "
+                       "within_km and grid.origin");
 }
 
 }  // namespace

@@ -71,7 +71,8 @@ void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& q
     }
   }
   if (expected && internal::Largest(quadrants) != radii) {
-    throw FieldError(here, "got radii that differ from the largest quadrant of each ring, expected equal ones");
+    throw FieldError(
+        here, "got radii that differ from the largest quadrant of each ring, expected equal ones");
   }
 }
 

@@ -29,8 +29,9 @@ std::int32_t GradeOf(const JsonObject& warning, const std::string& color) {
   for (std::size_t i = 0; i < kColors.size(); ++i) {
     if (internal::Upper(color) == kColors[i]) return static_cast<std::int32_t>(i);
   }
-  warning.Here().FailValue(internal::Join(warning.path(), "severityColor"),
-                           "got " + Quoted(color) + ", expected White, Blue, Yellow, Orange or Red");
+  warning.Here().FailValue(
+      internal::Join(warning.path(), "severityColor"),
+      "got " + Quoted(color) + ", expected White, Blue, Yellow, Orange or Red");
 }
 
 void CheckSpan(const Notice& notice, const JsonObject& where, const char* key) {

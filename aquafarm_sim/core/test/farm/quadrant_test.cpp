@@ -184,7 +184,7 @@ TEST(Quadrants, ThatDoNotFitAreRefused) {
   scenario.disasters[0].track[1].radii[1] = 9.0F;
   EXPECT_EQ(Refused(scenario),
             "disasters[0].track[1].quadrants: got radii that differ from the largest quadrant of "
-            "each ring");
+            "each ring, expected equal ones");
 }
 
 }  // namespace

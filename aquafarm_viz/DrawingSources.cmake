@@ -19,6 +19,7 @@ set(AQUAFARM_DRAWING_SOURCES
   src/draw/legend.cpp
   src/draw/map_labels.cpp
   src/draw/panel_text.cpp
+  src/draw/paths.cpp
   src/draw/policy_layers.cpp
   src/draw/region.cpp
   src/draw/sea_layer.cpp

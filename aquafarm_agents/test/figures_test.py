@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Compares the data in the figures of §4 with numbers computed from each episode."""
+import itertools
 import sys
 import unittest
 import unittest.mock
@@ -249,15 +250,19 @@ class FiguresTest(unittest.TestCase):
                 self.assertLessEqual(lines["RANDOM"][0].max(), 1500, "SARSA ends there")
 
     def test_names_above_fig_12a_do_not_overlap(self):
-        for name, steps in (("sarsa", 10), ("lstm_dqn", 12)):  # reach the return close to each other
+        dqn = next(one for one in CONTESTANTS if one.name == "dqn")
+        for name, steps in (("sarsa", 10), ("lstm_dqn", 12), ("dqn", 11)):  # close to each other
             rising = np.array([-100.0] * 50 + [100.0] * 100)
             self.runs[name] = [{"curve": {"return": rising, "steps": np.full(150, steps)}}]
         figure, axes = style.plt.subplots()
-        figures.plot_rewards_by_steps(axes, self.contestants, self.runs, {"clairvoyant": 100.0})
+        figures.plot_rewards_by_steps(axes, [*self.contestants, dqn], self.runs,
+                                      {"clairvoyant": 100.0})
         figure.draw_without_rendering()
-        first, second = (Text.get_window_extent(text) for text in axes.texts)  # without the leader
-        self.assertFalse(first.overlaps(second))
-        self.assertGreater(min(first.y0, second.y0), axes.get_window_extent().y1, "above the chart")
+        names = [Text.get_window_extent(text) for text in axes.texts]  # without the leaders
+        self.assertEqual(3, len(names))
+        self.assertFalse(any(one.overlaps(other) for one, other in itertools.combinations(names, 2)))
+        self.assertGreater(min(one.y0 for one in names), axes.get_window_extent().y1,
+                           "above the chart")
 
     def test_a_headline_names_all_learners_with_the_highest_printed_value(self):
         ends = [(9, 4.46, "red", "SARSA"), (9, 4.54, "blue", "LSTM-DQN")]
@@ -286,7 +291,7 @@ class FiguresTest(unittest.TestCase):
         headline = " ".join(figure._suptitle.get_text().split())
         self.assertTrue(headline.endswith(
             "changes by ×0.5 (LSTM-DQN) to ×3.0 (SARSA)"), headline)
-        self.assertEqual({"SARSA: 10 → 30", "LSTM-DQN: 10 → 5"},
+        self.assertEqual({"SARSA: 10 → 30 (×3.0)", "LSTM-DQN: 10 → 5 (×0.5)"},
                          {axes.get_title("left") for axes in figure.axes} - {""})
 
     def test_a_row_with_printed_settings_has_the_colour_of_its_learner_dashed(self):
@@ -338,7 +343,7 @@ class FiguresTest(unittest.TestCase):
                           (False, [[0, 0], [0, 0]])], route_figure.legs(steps))
         names = route_figure.place_names({"devices": [{"cell": [1, 0]}], "ports": [[5, 5], [0, 0]]})
         self.assertEqual([(1, "pickup", "F0", 2), (2, "drop-off", "B", 4)],
-                         route_figure.plot_route(self.axes, steps, names))
+                         route_figure.plot_route(self.axes, steps, names, {(5, 5), (0, 0)}))
         for line, cells in zip(self.axes.lines, ([(0, 0), (1, 0)], [(1, 0), (0, 0)])):
             np.testing.assert_array_equal(cells, line.get_xydata()[[0, -1]])
         self.assertEqual({"1": (1, 0), "2": (0, 0)},
@@ -375,7 +380,7 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual([[0, 0]], marks["ship at the end"])
         lines = self.lines()
         self.assertIn("ring of a disaster in the last step", lines)
-        self.assertNotIn("ring 60 steps before", lines, "the episode has 3 steps")
+        self.assertNotIn("the same ring 60 steps before", lines, "the episode has 3 steps")
         last, = (one for one in self.axes.collections if isinstance(one, LineCollection))
         self.assertIn("last leg, a device aboard", last.get_label())
         np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
@@ -387,6 +392,15 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(8.7, self.axes.get_xlim()[1], "the scale of the largest ranch")
         self.assertAlmostEqual(4.7 + 0.7, high - low, msg="the scale of the largest ranch")
         self.assertAlmostEqual(route["chart"]["height"] - 0.3, high, msg="ranches are at the top")
+        _, self.axes = style.plt.subplots()
+        far = {"x": 30.0, "y": 2.0, "radii": [1.0]}
+        waiting = [{**steps[0], "disasters": [{**storm, "x": 2.5}, far]}] * 70
+        ended = [{**step, "disasters": [storm, far]} for step in steps[:3]]
+        route_figure.plot_unfinished(self.axes, "ranch 7", {**route, "steps": [
+            *waiting, *ended, steps[3]]}, (9, 5))
+        labels = [line.get_label() for line in self.axes.lines]
+        self.assertEqual(1, labels.count("the same ring 60 steps before"), "not of the far disaster")
+        self.assertAlmostEqual(2.5, self.lines()["the same ring 60 steps before"][0].mean(), 1)
 
 
 if __name__ == "__main__":

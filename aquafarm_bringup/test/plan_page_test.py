@@ -392,6 +392,10 @@ class CommandTest(unittest.TestCase):
                                     (("--from", "sample.json", "--ships", "3"),
                                      "--from: got also --ships 3, expected no other"),
                                     (("r.yaml", "-o", "x/a.html"), "x; make it first"),
+                                    (("r.yaml", "-o", "."),
+                                     "-o: got ., expected the name of the page"),
+                                    (("r.yaml", "-o", ".."),
+                                     "-o: got .., expected the name of the page"),
                                     (("r.yaml", "-o", "a.json"),
                                      "-o: got a.json, expected the name of the page")):
             code, words = self.run_command(*arguments)

@@ -344,9 +344,9 @@ TEST(StateMarkers, StayBelowTheHeightAtWhichRvizCutsOff) {
 }
 
 TEST(StateMarkers, HaveTextOfElevenPixelsInAWindowOf1280x720) {
-  // In this window the view is about 620 pixels high. It contains the farm and the lines above and
+  // In this window the view is about 628 pixels high. It contains the farm and the lines above and
   // below it: 34.5 % of the side of the farm times TextScale, see whole_view.cpp.
-  constexpr double kView_px = 620.0 / (1.0 + 0.345 * 1.2);
+  constexpr double kView_px = 628.0 / (1.0 + 0.345 * 1.2);
   // Measured on the screen: capitals have 0.6 of the scale, and 0.69 of the size of Liberation
   // Sans.
   constexpr double kFontSize = 0.6 / 0.69;

@@ -83,6 +83,21 @@ TEST(RiskKey, NamesRingsOnlyIfAllAreGiven) {
   EXPECT_TRUE(MakeRiskKey(scene.state, {named, CourseOf(scene.spec, scene.state, 1, {})}).empty());
 }
 
+TEST(RiskKey, ListsRisksOfRingsWithoutNamesOnceTheMildestFirst) {
+  Outlooks scene;
+  scene.state.disasters.push_back(test::MakeDisaster(1, 5.0F, 5.0F));
+  scene.state.disasters[1].kind = aquafarm_msgs::DisasterState::RED_TIDE;
+  scene.state.disasters[1].radii = {2.0F, 4.0F};
+  scene.state.disasters[1].risks = {-8.0F, -5.0F};
+  const RiskKey rings =
+      RingsWithoutNames(scene.state, {scene.course(), CourseOf(scene.spec, scene.state, 1, {})});
+  ASSERT_EQ(rings.size(), 3U);
+  EXPECT_EQ(rings[0].risk, -5.0);
+  EXPECT_EQ(rings[1].risk, -8.0);
+  EXPECT_EQ(rings[1].kind, aquafarm_msgs::DisasterState::RED_TIDE);
+  EXPECT_EQ(rings[2].risk, -20.0);
+}
+
 TEST(RiskKey, LeavesOutARingThatTheDisasterNeverHas) {
   Outlooks scene;
   scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);

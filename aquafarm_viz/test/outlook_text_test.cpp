@@ -177,10 +177,67 @@ TEST(OutlookText, NamesTheNearestRingIfNoDeviceIsInDanger) {
             "no known danger to devices for the next 3.0 h");
   const std::vector<std::string> headlines = Headlines(scene.spec, scene.state, scene.outlook());
   EXPECT_EQ(headlines.front().substr(0, 36), "Typhoon in the ENE: risk -5 passes a");
-  EXPECT_EQ(headlines.back(), "Risk -5 passes about 2.0 km from F3 in about 1.5 h")
+  EXPECT_EQ(headlines.back(),
+            "Risk -5 passes about 2.0 km from F3 in about 1.5 h; "
+            "no known danger to devices for the next 3.0 h")
       << "also the shortest headline says so";
   scene.state.disasters[0].x = 10.0F;  // moves away
-  EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()), "risk -5 is 2.0 km from F3 now");
+  EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()),
+            "risk -5 is 2.0 km from F3 now; no known danger to devices for the next 3.0 h");
+}
+
+TEST(OutlookText, SaysThatARingComesNearerWhereTheOutlookEnds) {
+  Outlooks scene;
+  scene.state.disasters[0].x = 85.0F;  // its ring reaches the device after 65 steps, 60 are known
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
+            "typhoon: risk -5 is about 5.0 km from F3 in about 3.0 h and comes nearer; "
+            "no known danger to devices for the next 3.0 h");
+  EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()),
+            "risk -5 is about 5.0 km from F3 in about 3.0 h and comes nearer; "
+            "no known danger to devices for the next 3.0 h");
+  scene.state.disasters[0].steps_left = 60;  // then it is over
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
+            "typhoon: risk -5 passes about 6.0 km from F3 in about 3.0 h");
+}
+
+TEST(OutlookText, CallsNothingKnownAfterTheLastComputedStep) {
+  Outlooks scene;
+  scene.storms = ReadStormTracks(R"(
+disasters:
+  - kind: typhoon
+    risks: [-20, -5]
+    track:
+      - {step: 0, x: 40, y: 12, radii: [5, 10], grade: 3, risks: [-20, -5]}
+      - {step: 5000, x: 39, y: 12, radii: [5, 10], grade: 3, risks: [-20, -5]}
+)",
+                                 1000.0);
+  scene.state.disasters[0].steps_left = 5000;
+  scene.spec.step_duration_s = 60.0;
+  EXPECT_EQ(scene.outlook().known_until, 1000.0);
+  EXPECT_NE(OutlookText(scene.spec, scene.state, scene.outlook())
+                .find("no known danger to devices for the next 17 h"),
+            std::string::npos)
+      << OutlookText(scene.spec, scene.state, scene.outlook());
+}
+
+TEST(OutlookText, DevicesAreHitFirstByTheTimeAndTheRiskOfTheirFirstRing) {
+  const Outlooks scene;
+  Outlook outlook;
+  outlook.devices = {{1, 0.0, 0U, 0, {{10.0, -5.0, 0U, 34}, {60.0, -20.0, 0U, 64}}},
+                     {2, 0.0, 0U, 0, {{10.0, -5.0, 0U, 34}, {40.0, -10.0, 0U, 50}}},
+                     {3, 0.0, 0U, 0, {{20.0, -5.0, 0U, 34}}},
+                     {4, 0.0, 0U, 0, {}}};
+  std::string hit;
+  for (const DeviceOutlook& one : outlook.devices) {
+    hit += IsHitFirst(scene.spec, outlook, one) ? std::to_string(one.id) : "";
+  }
+  EXPECT_EQ(hit, "12") << "what comes later does not matter";
+}
+
+TEST(OutlookText, DoesNotNameTheSameWindTwice) {
+  const Outlooks scene;
+  EXPECT_EQ(NowAndWorstText(scene.spec, {2, -5.0, 0U, 34, {{60.0, -10.0, 0U, 34}}}),
+            "gale in 3.0 h");
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "aquafarm_viz/draw/image.h"
 #include "draw/legend.h"
 #include "draw/map_labels.h"
+#include "draw/paths.h"
 #include "draw/symbols.h"
 #include "fixture.h"
 #include "scene/ship_place.h"
@@ -321,6 +322,23 @@ TEST(Signs, OfDevicesStandNextToTheirDeviceAndNotNearerToARock) {
     EXPECT_LT(away(cell), away(cell + side)) << side;
     EXPECT_LT(away(cell), 2.0 * layout.view.cell_px()) << side;
   }
+}
+
+TEST(Paths, OppositeWaysAreOnBothSidesOfTheCells) {
+  const Layout layout = MakeLayout(25, 25, {800, 640});
+  ShipTrail way;
+  way.places = {{5, 5}, {6, 5}, {7, 5}, {7, 6}, {7, 5}};
+  way.loaded = {false, false, false, false, true};
+  const auto moves = MovesOf(way, 0, /*are_several=*/false, layout);
+  ASSERT_EQ(moves.size(), 4U);
+  const cv::Point2d start = layout.view.ToPixel(5, 5);
+  EXPECT_GT(moves[0].from.y, start.y) << "to the right of a move to the east is south";
+  EXPECT_EQ(moves[1].to, moves[2].from) << "a right angle is joined";
+  EXPECT_GT(moves[2].from.x, layout.view.ToPixel(7, 5).x);
+  EXPECT_LT(moves[3].from.x, layout.view.ToPixel(7, 6).x) << "the way back is on the other side";
+  EXPECT_TRUE(moves[2].is_dashed);
+  EXPECT_FALSE(moves[3].is_dashed);
+  EXPECT_NE(MovesOf(way, 1, /*are_several=*/true, layout)[0].from.y, moves[0].from.y);
 }
 
 }  // namespace

@@ -106,6 +106,7 @@ def _draw_returns(path, contestants, find, note, ylabel, plots):
 
 
 _LOGARITHMIC = "#eef1f4"  # background of the logarithmic part of a scale
+_MOST_SHADED = 2  # the shades of more lines would mix
 _LETTER = 0.013  # mean width of a letter of a name [widths of the axes]
 _ALIKE = 0.02  # references share one line if their relative difference is below this
 
@@ -154,7 +155,7 @@ def _mark_reached(axes, references):
 
 def _name_reached(axes, ends, target):
     """Marks where lines reach a return. Writes their names and numbers of steps above the axes, in
-    two rows if they are close. Returns the ends of the other lines, which have no name yet."""
+    several rows if they are close. Returns the ends of the other lines, which have no name yet."""
     others = []
     reached = []
     for end in ends:
@@ -165,11 +166,11 @@ def _name_reached(axes, ends, target):
         else:
             others.append(end)
     to_axes = axes.transData + axes.transAxes.inverted()
-    row_ends = [-np.inf, -np.inf]  # where the last names of the two rows end [widths of the axes]
+    row_ends = [-np.inf] * len(reached)  # where the last names of the rows end [widths of the axes]
     for steps, colour, name in sorted(reached):
         words = f"{name} {_steps_text(float(f'{steps:.2g}'))}"
         place = float(to_axes.transform((steps, target))[0])
-        row = 0 if place - _LETTER * len(words) > row_ends[0] else 1
+        row = next(i for i, end in enumerate(row_ends) if place - _LETTER * len(words) > end)
         row_ends[row] = place
         axes.plot(steps, target, "o", color=colour, markersize=5, zorder=5, label="_reached")
         axes.annotate(words, (steps, target), xytext=(place, 1.025 + 0.05 * row),
@@ -376,16 +377,19 @@ def draw_mean_score(path, contestants, runs, references):
     figure = plt.figure(figsize=(9, 8.4 if panels else 4.9), layout="constrained")
     places = [[letter for letter, _ in panels], ["c"] * len(panels)] if panels else [["c"]]
     all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)
+    is_shaded = len(contestants) <= _MOST_SHADED
+    note = (f"Fig. 13: means of {measures.WINDOW} episodes. " +
+            (_shading(contestants, runs) if is_shaded or panels else
+             f"Median of {_count(contestants, runs)} runs.") +
+            ("" if is_shaded or not panels else " The lower chart shows the medians only."))
     for letter, panel in [("c", contestants), *panels]:
-        whose = panel[0].label if len(panel) == 1 else "Learners and RANDOM"
+        whose = panel[0].label if len(panel) == 1 else "All"
         label_axes(all_axes[letter], f"{whose} (Fig. 13{letter})", "return per step")
         limits = None if letter == "c" else all_axes["c"].get_ylim()
         ends = plot_mean_score(all_axes[letter], panel, runs, references, limits)
         all_axes[letter].margins(x=0.0)
         if letter == "c":  # in the other panels the title names the line
-            explain(figure, _highest(contestants, ends, "return per step at the end", digits=2),
-                    f"Fig. 13: means of {measures.WINDOW} episodes. {_shading(contestants, runs)}"
-                    + (" The lower chart shows the medians only." if panels else ""))
+            explain(figure, _highest(contestants, ends, "return per step at the end", digits=2), note)
             name_ends(all_axes[letter], _with_values(contestants, ends, digits=2))
         for name, value in references.items():
             if letter != "c":
@@ -396,8 +400,8 @@ def draw_mean_score(path, contestants, runs, references):
 
 
 def plot_mean_score(axes, contestants, runs, references, limits=None):
-    """Plots the 50-episode mean return per step: the median of the runs. One or two lines are shaded
-    between the lowest and the highest run. Returns the ends of the lines.
+    """Plots the 50-episode mean return per step: the median of the runs. Up to _MOST_SHADED lines are
+    shaded between the lowest and the highest run. Returns the ends of the lines.
 
     references: {name: return per step}, drawn for comparison
     limits: limits of the y axis; None: automatic
@@ -409,10 +413,8 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
         scores = np.array([measures.return_per_step(*pair, window)
                            for pair in zip(returns, steps)])
         episodes = np.arange(window, returns.shape[1] + 1)
-        if len(contestants) < 3:
-            ends.append(_plot_shaded(axes, episodes, scores, one, one.label))
-        else:  # the shades of many lines would mix
-            ends.append(_plot_median(axes, episodes, scores, one, one.label))
+        plot = _plot_shaded if len(contestants) <= _MOST_SHADED else _plot_median
+        ends.append(plot(axes, episodes, scores, one, one.label))
     axes.axhline(0.0, color="black", linewidth=0.5, label="_zero")
     ends += _plot_references(axes, references, max(end[0] for end in ends), digits=2)
     if limits:

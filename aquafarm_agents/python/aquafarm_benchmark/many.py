@@ -107,10 +107,13 @@ def write_tables(folder, columns, rows):
 
 
 def _files(words):
-    """Returns the size and the modification time of each word that names a file. many.json contains
-    them, so that require_same treats a changed file as another task."""
+    """Returns the size and the modification time of each word that names a file, and of the policy
+    and the checkpoints of each word that names a run folder. many.json contains them, so that
+    require_same treats a changed file as another task."""
+    inside = [str(path) for word in words for path in
+              [pathlib.Path(word) / "policy.ckpt", *pathlib.Path(word).glob("checkpoints/*.ckpt")]]
     return {word: [os.stat(word).st_size, os.stat(word).st_mtime_ns]
-            for word in words if os.path.isfile(word)}
+            for word in (*words, *inside) if os.path.isfile(word)}
 
 
 def _say(text):

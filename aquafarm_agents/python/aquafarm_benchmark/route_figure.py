@@ -55,8 +55,8 @@ def draw_route(path, label, route_file):
         empty.axis("off")
     sea = _chart(axes, route["chart"])
     names = place_names(route["chart"])
-    stops = plot_route(axes, route["steps"], names)
     ports = {tuple(cell) for cell in route["chart"]["ports"]}
+    stops = plot_route(axes, route["steps"], names, ports)
     for shown in all_axes[:len(panels) + 1]:
         for cell, name in names.items():
             shown.annotate(name, cell, xytext=(0, 11) if cell in ports else (10, -7),
@@ -122,11 +122,13 @@ def plot_unfinished(axes, name, route, size):
     at_end = route["steps"][-2]["disasters"]  # in the last state they have ended
     for i, disaster in enumerate(at_end):
         rings = list(_rings(disaster))
-        for steps, colour in _BEFORE.items() if _covers_any(rings, left) else ():
+        covering = [k for k, ring in enumerate(rings) if _covers_any(ring, left)]
+        for steps, colour in _BEFORE.items() if covering else ():
             then = len(route["steps"]) - 2 - steps
-            if then >= 0 and i < len(route["steps"][then]["disasters"]):
-                _plot_ring(axes, list(_rings(route["steps"][then]["disasters"][i]))[-1], sea, colour,
-                           linewidth=2.0, label=f"the same ring {steps} steps before")
+            before = route["steps"][then]["disasters"] if then >= 0 else []
+            if len(before) == len(at_end):  # else one has ended, and the order is another
+                _plot_ring(axes, list(_rings(before[i]))[covering[-1]], sea, colour, linewidth=2.0,
+                           label=f"the same ring {steps} steps before")
         for ring in rings:
             inside = axes.add_patch(Polygon(ring, color=_RING, alpha=0.12, zorder=1))
             inside.set_clip_path(sea)
@@ -256,9 +258,13 @@ def place_names(chart):
     return names
 
 
-def plot_route(axes, steps, names):
+def plot_route(axes, steps, names, ports):
     """Draws the legs of a route and numbers its stops. Returns [(number, action, place, step)].
-    An action of step t is complete in step t + 1. names: see place_names"""
+    An action of step t is complete in step t + 1.
+
+    names: see place_names
+    ports: their cells (x, y); numbers are below ports, whose names are above them
+    """
     _plot_legs(axes, steps)
     axes.scatter(*steps[0]["cell"], s=170, facecolor="none", edgecolor="black", linewidth=1.8,
                  zorder=6, label="start")
@@ -268,9 +274,7 @@ def plot_route(axes, steps, names):
             stops.append((len(stops) + 1, _STOPS[step["action"]][1],
                           names.get(tuple(step["cell"]), ""), at + 1))
             here.setdefault(tuple(step["cell"]), []).append(len(stops))
-    ports = {cell for cell, name in names.items() if name.isalpha()}
     for cell, numbers in here.items():  # a cell may have several stops
-        # Next to a port there may be others, below it there is none.
         offset, across, up = ((0, -11), "center", "top") if cell in ports else (
             (-10, 0), "right", "center")
         axes.annotate(", ".join(map(str, numbers)), cell, xytext=offset, zorder=8,
@@ -307,9 +311,9 @@ def _rings(disaster):
                                disaster["y"] + radii * np.cos(bearings)])
 
 
-def _covers_any(rings, cells):
-    """Returns whether any of the rings [360, 2] contains one of the cells [x, y]."""
-    return any(Path(ring).contains_points(cells).any() for ring in rings)
+def _covers_any(ring, cells):
+    """Returns whether a ring [360, 2] contains one of the cells [x, y]."""
+    return Path(ring).contains_points(cells).any()
 
 
 def _plot_ring(axes, ring, sea, colour=_RING, **style):

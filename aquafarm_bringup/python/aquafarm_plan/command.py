@@ -63,11 +63,9 @@ def make(options, rest):
     @returns the exit code
     @throws PlanError for wrong arguments or a wrong plan file
     """
-    if not options.output.name:
+    if not options.output.name.strip(".") or options.output.suffix.lower() in (".json", ".geojson"):
         raise PlanError(f"-o: got {options.output}, expected the name of the page, such as plan.html")
     output = options.output.with_suffix(options.output.suffix or ".html")
-    if output.suffix.lower() in (".json", ".geojson"):
-        raise PlanError(f"-o: got {output}, expected the name of the page, such as plan.html")
     if not output.resolve().parent.is_dir():
         raise PlanError(f"-o: there is no folder {output.resolve().parent}; make it first")
     if options.source:

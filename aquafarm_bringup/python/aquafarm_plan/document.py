@@ -73,8 +73,8 @@ def _check_frames(document, path):
 
 def _check_references(document, path):
     """Checks that the ids of ships, devices and ports are their positions in the lists. Checks
-    that the ids in the orders of devices, in routes and in left_behind exist (not those in the
-    `devices` of a delivery), and that lists by ring have one entry per ring."""
+    that the ids in the orders of devices, in routes and in left_behind exist, and that lists by
+    ring have one entry per ring."""
     for name in ("ships", "devices", "ports"):
         ids = [one["id"] for one in document[name]]
         if ids != list(range(len(ids))):

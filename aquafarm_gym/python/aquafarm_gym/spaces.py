@@ -26,20 +26,17 @@ GROUP_BOUNDS: dict[str, tuple[float, float]] = {
     "blocked": (0, 1), "risk": (-1, 0), "course": (-1, 0)}
 
 
-# Features of tokens (view.tokens) are clamped to [-4, 4] (docs/generalist.md), without these:
-UNCLAMPED: frozenset[str] = frozenset(("value", "worth", "loss", "aboard", "capacity", "grade"))
+# Bounds of the features of tokens (view.tokens), whose lengths are clamped to [-4, 4]
+# (docs/generalist.md). Values of devices, loads and risks are not clamped.
 TOKEN_BOUND: float = 4.0
+UNCLAMPED: tuple[str, ...] = ("value", "worth", "aboard", "capacity", "risk", "course")
 
 
-def _token_bounds(name: str) -> tuple[float, float]:
-    """Returns the min and max value of a feature of tokens."""
-    part = name.rpartition(".")[2]
-    return (-FAR, FAR) if part in UNCLAMPED or "risk" in name or "course" in name else (
-        -TOKEN_BOUND, TOKEN_BOUND)
-
-
-def feature_bounds(name: str) -> tuple[float, float]:
-    """Returns the min and max value of a feature. For features of tokens, use _token_bounds."""
+def feature_bounds(name: str, is_token: bool = False) -> tuple[float, float]:
+    """Returns the min and max value of a feature. is_token: the farms have view.tokens"""
+    if is_token:
+        is_unclamped = any(word in name for word in UNCLAMPED)
+        return (-FAR, FAR) if is_unclamped else (-TOKEN_BOUND, TOKEN_BOUND)
     group, _, part = name.rpartition(".")
     if group in GROUP_BOUNDS:
         return GROUP_BOUNDS[group]
@@ -62,8 +59,8 @@ def observation_space(farms: Any, observation: str) -> spaces.Space[Any]:
         return spaces.Discrete(farms.state_count)
     if observation == "features":
         names = farms.feature_names
-        bounds_of = _token_bounds if "ship.time_left_short" in names else feature_bounds
-        bounds = np.array([bounds_of(name) for name in names], np.float32)
+        has_tokens = "ship.time_left_short" in names  # a feature that only tokens have
+        bounds = np.array([feature_bounds(name, has_tokens) for name in names], np.float32)
         return spaces.Box(bounds[:, 0], bounds[:, 1], dtype=np.float32)
     return spaces.Box(0, 255, (farms.plane_count, farms.height, farms.width), np.uint8)
 

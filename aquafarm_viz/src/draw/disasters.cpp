@@ -73,7 +73,7 @@ void DrawCentre(cv::Mat& map, const DisasterState& disaster, const SignPlace& si
                   Bgr(disaster.grade == 2 ? kInk : kPaper));
 }
 
-// Draws a pointer at the border towards a centre outside the map.
+// Draws a pointer at the border. It has the direction from the middle of the map to the centre.
 void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, const SignPlace& sign,
                        const Layout& layout) {
   const cv::Point2d middle(map.cols / 2.0, map.rows / 2.0);

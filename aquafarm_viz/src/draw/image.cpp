@@ -10,6 +10,7 @@
 #include "aquafarm_viz/base/checks.h"
 #include "draw/course.h"
 #include "draw/map_labels.h"
+#include "draw/paths.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "draw/paths.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {
@@ -25,12 +26,9 @@ void LabelSpace::BlockPaths(const aquafarm_msgs::FarmState& state, const Trail& 
                             const Layout& layout) {
   for (const auto& ship : state.ships) {
     const ShipTrail* way = ship.visible ? paths.Find(ship.id) : nullptr;
-    for (std::size_t i = 1; way != nullptr && i < way->places.size(); ++i) {
-      const cv::Point from = way->places[i - 1];
-      const cv::Point to = way->places[i];
-      if (Trail::IsGap(from, to)) continue;
-      spaces_[std::size_t(Cover::kNothing)].BlockLine(layout.view.ToPixel(from.x, from.y),
-                                                      layout.view.ToPixel(to.x, to.y),
+    if (way == nullptr) continue;
+    for (const Moved& move : MovesOf(*way, ship.id, state.ships.size() > 1, layout)) {
+      spaces_[std::size_t(Cover::kNothing)].BlockLine(move.from, move.to,
                                                       layout.Px(11));  // as wide as an arrowhead
     }
   }

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "aquafarm/tracks/wind_name.h"
+#include "draw/paths.h"
 #include "draw/symbols.h"
 #include "scene/nautical.h"
 
@@ -357,29 +357,36 @@ void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs, const FarmState& 
   }
 }
 
-std::vector<double> RisksOf(const FarmState& state) {
-  std::set<double, std::greater<>> risks;
-  for (const auto& disaster : state.disasters) {
+RiskKey RingsWithoutNames(const FarmState& state, const std::vector<Course>& courses) {
+  RiskKey rings;
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    const auto& disaster = state.disasters[i];
     if (!IsDrawn(disaster)) continue;
-    for (const float risk : disaster.risks) risks.insert(std::round(double(risk)));
+    for (std::size_t ring = 0; ring < disaster.risks.size(); ++ring) {
+      const NamedRing one{0, std::round(double(disaster.risks[ring])), disaster.kind};
+      const bool is_known = std::any_of(
+          rings.begin(), rings.end(), [&one](const auto& other) { return other.risk == one.risk; });
+      if (HasRing(courses[i], ring) && !is_known) rings.push_back(one);
+    }
   }
-  return {risks.begin(), risks.end()};
+  std::sort(rings.begin(), rings.end(),
+            [](const NamedRing& a, const NamedRing& b) { return a.risk > b.risk; });
+  return rings;
 }
 
 namespace {
 
-// Draws a sample of each risk, and the risk next to it.
-void DrawRisks(cv::Mat& image, const std::vector<double>& risks, const FarmState& state,
-               cv::Rect row, const Layout& layout, const Fonts& fonts) {
-  const auto first = std::find_if(state.disasters.begin(), state.disasters.end(), IsDrawn);
+// Draws a sample of each ring, and the risk next to it.
+void DrawRisks(cv::Mat& image, const RiskKey& rings, cv::Rect row, const Layout& layout,
+               const Fonts& fonts) {
   const int base = row.y + (row.height + fonts.small.cap_height()) / 2;
   int x = row.x;
   x += fonts.small.Draw(image, "risk", {x, base}, Bgr(layout.style->words)) + layout.Px(10);
-  const int step = (row.br().x - x) / std::max(1, static_cast<int>(risks.size()));
-  for (const double risk : risks) {
+  const int step = (row.br().x - x) / std::max(1, static_cast<int>(rings.size()));
+  for (const NamedRing& ring : rings) {
     const cv::Rect box(x, row.y + layout.Px(1.5), layout.Px(17), row.height - layout.Px(3));
-    DrawRiskSample(image, box, first->kind, risk, layout);
-    fonts.small.Draw(image, Number(risk, 0), {box.br().x + layout.Px(4), base},
+    DrawRiskSample(image, box, ring.kind, ring.risk, layout);
+    fonts.small.Draw(image, Number(ring.risk, 0), {box.br().x + layout.Px(4), base},
                      Bgr(layout.style->words));
     x += step;
   }
@@ -387,8 +394,8 @@ void DrawRisks(cv::Mat& image, const std::vector<double>& risks, const FarmState
 
 }  // namespace
 
-void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
-                 const FarmState& state, const Layout& layout, const Fonts& fonts) {
+void DrawRiskKey(cv::Mat& image, const RiskKey& key, const RiskKey& unnamed,
+                 const std::vector<Sign>& signs, const Layout& layout, const Fonts& fonts) {
   const int left = layout.panel.x + layout.Px(10);
   const int right = layout.panel.x + layout.panel.width - layout.Px(10);
   int y = layout.panel.y + layout.panel.height - FootPx(layout) - SignsPx(signs, layout) -
@@ -409,10 +416,9 @@ void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& si
     y += layout.Px(kKeyRow);
   }
   if (!key.empty()) return;
-  const std::vector<double> risks = RisksOf(state);
-  if (!risks.empty() && risks.size() <= kMaxColors) {
+  if (!unnamed.empty() && unnamed.size() <= kMaxColors) {
     const cv::Rect row(left, y + layout.Px(5), right - left, layout.Px(kKeyRow));
-    return DrawRisks(image, risks, state, row, layout, fonts);
+    return DrawRisks(image, unnamed, row, layout, fonts);
   }
   const cv::Rect scale(left, y, right - left, layout.Px(7));
   for (int i = 0; i < scale.width; ++i) {

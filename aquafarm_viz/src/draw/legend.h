@@ -82,12 +82,14 @@ void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layou
 void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs,
                const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
 
-/// Returns the risks of the rings of all drawn disasters, rounded, the mildest first, each once.
-std::vector<double> RisksOf(const aquafarm_msgs::FarmState& state);
+/// Returns the rings of all drawn disasters that have a radius now or later, without their winds,
+/// the mildest first. Of several rings with the same rounded risk, the first is listed.
+RiskKey RingsWithoutNames(const aquafarm_msgs::FarmState& state,
+                          const std::vector<Course>& courses);
 
-/// Draws the key of risks above the key of signs. With an empty key it shows RisksOf, or the colour
-/// scale of all risks if that is empty or has more than four risks.
-void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
-                 const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
+/// Draws the key of risks above the key of signs. With an empty key it shows the rings `unnamed` in
+/// one row, or the colour scale of all risks if there are none or more than four.
+void DrawRiskKey(cv::Mat& image, const RiskKey& key, const RiskKey& unnamed,
+                 const std::vector<Sign>& signs, const Layout& layout, const Fonts& fonts);
 
 }  // namespace aquafarm_viz

@@ -158,8 +158,6 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlo
 
 void DrawDangerMarks(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
                      const Outlook& outlook, const Layout& layout) {
-  const std::string first =
-      outlook.devices.empty() ? "" : DangerText(spec, outlook.devices.front());
   for (const DeviceOutlook& one : outlook.devices) {
     const DeviceState* device = Find(state, one.id);
     const double risk = WorstRisk(one);
@@ -167,7 +165,7 @@ void DrawDangerMarks(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     const cv::Point2d at = layout.view.ToPixel(device->x, device->y);
     const double radius = layout.device_radius_px();
     const cv::Scalar color = Bgr(RiskColor(risk, layout));
-    const bool is_first = DangerText(spec, one) == first;
+    const bool is_first = IsHitFirst(spec, outlook, one);
     for (const double times :
          is_first ? std::vector<double>{1.5, kDangerRing} : std::vector<double>{1.5}) {
       StrokeCircle(map, at, times * radius, Bgr(layout.style->halo), layout.Px(4));
@@ -287,8 +285,8 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
       BlockOtherRings(state, disaster, ring, map.size(), water, layout);
       std::optional<cv::Rect> place;
       std::string text;
-      for (const std::string& longer_first : {whose + name + "risk " + risk, "risk " + risk}) {
-        text = longer_first;
+      for (const std::string& candidate : {whose + name + "risk " + risk, "risk " + risk}) {
+        text = candidate;
         const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins),
                             layout.Px(kPlateRow));
         place = PlaceBesideRing(points, size, water, layout);

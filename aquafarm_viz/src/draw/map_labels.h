@@ -28,8 +28,8 @@ FreeSpace BlockSymbols(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs:
                        const Outlook& outlook, const Layout& layout);
 
 /// Draws a circle around each device that a ring of a disaster covers or reaches. The circle has
-/// the colour of the worst risk, now or later. The most urgent device, and all devices with the
-/// same DangerText, have a second circle.
+/// the colour of the worst risk, now or later. Devices that are hit first (IsHitFirst) have a
+/// second circle.
 void DrawDangerMarks(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                      const aquafarm_msgs::FarmState& state, const Outlook& outlook,
                      const Layout& layout);

@@ -160,20 +160,18 @@ ColoredText DeviceInHalf(const Panel& panel, const FarmSpec& spec, const DeviceS
   const bool done = device.status == DeviceState::DELIVERED;
   const std::string status = done ? "safe" : StatusName(device.status);
   const auto at = trail == nullptr ? std::nullopt : trail->ChangedAt(device.id);
-  std::vector<std::string> texts{at ? status + " " + TimeOfDay(spec, *at) : status, status};
-  Rgb color = done ? layout.style->good : layout.style->faint;
   for (const DeviceOutlook& one : outlook.devices) {
-    if (one.id != device.id || DangerText(spec, one).empty()) continue;
-    color = layout.style->alarm;
-    const std::string when =
-        one.risk_now < 0.0 ? "at risk now" : "in " + AheadText(spec, one.arrivals.front().steps);
-    texts = {DangerText(spec, one), RiskText(spec, one), when};
+    if (one.id != device.id || !(WorstRisk(one) < 0.0)) continue;
+    const auto [name, danger] = NameAndDanger(spec, DeviceName(device.kind), one,
+                                              [&panel](const auto& left, const auto& right) {
+                                                return panel.FitsInHalf(left + " " + right);
+                                              });
+    return {name + " " + danger, layout.style->alarm};
   }
-  const std::string label = DeviceLabel(device.id) + " ";
-  const auto fitting = std::find_if(texts.begin(), texts.end() - 1, [&](const std::string& text) {
-    return panel.FitsInHalf(label + text);
-  });
-  return {label + *fitting, color};
+  const std::string text = DeviceLabel(device.id) + " " + status;
+  const std::string longer = at ? text + " " + TimeOfDay(spec, *at) : text;
+  return {panel.FitsInHalf(longer) ? longer : text,
+          done ? layout.style->good : layout.style->faint};
 }
 
 // Draws one device in each half of a row. The left halves contain the first devices.
@@ -409,7 +407,7 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   const RiskKey key = MakeRiskKey(state, forecasts.courses);
   const std::vector<Sign> signs = SignsOf(spec, state, overlays, forecasts.outlook, key, layout);
   DrawSigns(image, signs, state, layout, fonts);
-  DrawRiskKey(image, key, signs, state, layout, fonts);
+  DrawRiskKey(image, key, RingsWithoutNames(state, forecasts.courses), signs, layout, fonts);
   Panel panel(image, LegendPx(key, signs, layout), layout, fonts);
   const Trail* trail = overlays.trail != nullptr ? overlays.trail : overlays.route;
   ListDevices(panel, spec, state, trail, forecasts.outlook, layout);

@@ -125,15 +125,6 @@ void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Po
 void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Point top_left,
                const Layout& layout, Rgb color);
 
-/// Draws the trails or routes of the ships. Older parts fade into the sea. Moves of a rescue ship
-/// with nothing aboard are dashed.
-void DrawPaths(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& paths,
-               const Layout& layout);
-
-/// Draws a short line that looks like a path.
-void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, bool is_dashed,
-                    const aquafarm_msgs::FarmState& state, const Layout& layout);
-
 /// Blends the colours of V_π over the map, and grey over the cells of rocks, which have no value.
 void DrawValues(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Values& values,
                 const Layout& layout);

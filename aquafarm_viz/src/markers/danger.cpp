@@ -240,8 +240,6 @@ void AddCircle(MarkerArray& array, const Maker& maker, const DeviceState& device
 // urgent devices first. Deletes the circles and labels of all other devices.
 void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                 const FarmState& state, const Outlook& outlook, Labels& labels) {
-  const std::string first =
-      outlook.devices.empty() ? "" : DangerText(spec, outlook.devices.front());
   std::set<std::int32_t> circled;
   std::set<std::int32_t> labelled;
   for (const DeviceOutlook& one : outlook.devices) {
@@ -249,7 +247,7 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     const DeviceState& device =
         *std::find_if(state.devices.begin(), state.devices.end(),
                       [&one](const DeviceState& other) { return other.id == one.id; });
-    const bool is_first = DangerText(spec, one) == first;
+    const bool is_first = IsHitFirst(spec, outlook, one);
     const double radius = (is_first ? kSecondOuter : kOuter) * maker.thing_m() / maker.cell_m();
     AddCircle(array, maker, device, WorstRisk(one), is_first);
     circled.insert(one.id);

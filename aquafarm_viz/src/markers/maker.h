@@ -66,7 +66,7 @@ class Maker {
       : cell_m_(spec.cell_size_m),
         // On large farms objects are drawn larger than a cell to stay visible.
         thing_m_(spec.cell_size_m * std::max(1.0, std::max(spec.width, spec.height) / 40.0)),
-        // With the whole farm in a view of 600 pixels, rviz's letters have about 11 pixels.
+        // With the whole farm in a view of 628 pixels, rviz's letters have about 11 pixels.
         word_m_(std::max(0.6 * thing_m_, 0.028 * TextScale(spec) *
                                              std::max(spec.width, spec.height) * spec.cell_size_m)),
         layer_m_(std::min(0.03 * spec.cell_size_m, 8.0)),

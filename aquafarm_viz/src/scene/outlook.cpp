@@ -7,9 +7,7 @@
 
 #include "aquafarm/tracks/wind_name.h"
 #include "aquafarm_viz/base/checks.h"
-#include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
-#include "aquafarm_viz/scene/labels.h"
 #include "scene/nautical.h"
 
 namespace aquafarm_viz {
@@ -251,10 +249,19 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
     const double end = courses[i].ahead.back().step - double(state.step);
     const double known = courses[i].known_until - double(state.step);
     if (known < disaster.steps_left) outlook.known_until = std::min(outlook.known_until, known);
+    const double wanted = std::min(end, double(disaster.steps_left));
+    if (wanted > kMaxSteps) outlook.known_until = std::min(outlook.known_until, double(kMaxSteps));
     last = std::max(last, int(std::min(end, double(kMaxSteps))));
   }
   for (int step = 0; step <= last; ++step) AddStep(state, courses, step, devices, outlook);
-  if (!(outlook.miss.risk < 0.0)) outlook.miss = {};
+  RingMiss& miss = outlook.miss;
+  if (!(miss.risk < 0.0)) miss = {};
+  if (miss.risk < 0.0 && miss.steps > 0.0) {
+    const Course& course = courses[miss.disaster];
+    const int computed = int(std::min(course.ahead.back().step - double(state.step), double(last)));
+    miss.comes_nearer =
+        miss.steps >= computed && state.disasters[miss.disaster].steps_left > computed + 1;
+  }
   std::stable_sort(outlook.devices.begin(), outlook.devices.end(), IsMoreUrgent);
   return outlook;
 }

@@ -31,6 +31,7 @@ struct RingMiss {
   std::int32_t device{};                                  ///< id of the device
   std::size_t disaster{};                                 ///< index in FarmState.disasters
   std::int32_t wind_kt{};  ///< min wind within the ring [kn]; 0: not given
+  bool comes_nearer{};     ///< the ring is still approaching where the outlook ends
 };
 
 /// The danger to one deployed device.
@@ -50,7 +51,7 @@ struct Outlook {
   /// Compass points from the farm to the disasters of the state; empty if the centre is in the
   /// farm.
   std::vector<std::string> directions;
-  /// Steps from now until which all courses are known; infinite if they are known until the
+  /// Steps from now until which all courses are known and computed; infinite if that is until the
   /// disasters end.
   double known_until{std::numeric_limits<double>::infinity()};
   /// Deployed devices inside the grid, the most urgent first: by the time at which the first ring

@@ -114,7 +114,17 @@ std::string MissText(const FarmSpec& spec, const Outlook& outlook) {
       DistanceText(miss.cells * double(spec.cell_size_m)) + " from " + DeviceLabel(miss.device);
   if (!(miss.steps > 0.0)) return ring + " is " + where + " now";
   const std::string about = outlook.is_extrapolated ? "about " : "";
-  return ring + " passes " + about + where + " in " + about + AheadText(spec, miss.steps);
+  const std::string when = " in " + about + AheadText(spec, miss.steps);
+  return miss.comes_nearer ? ring + " is " + about + where + when + " and comes nearer"
+                           : ring + " passes " + about + where + when;
+}
+
+// Returns the nearest ring and the time until which the courses are known: "risk -5 is 900 m from
+// F2 now; no known danger to devices for the next 3.0 h". A part that does not apply is left out.
+std::string SafeText(const FarmSpec& spec, const Outlook& outlook) {
+  const std::string known = KnownText(spec, outlook);
+  if (!std::isfinite(outlook.miss.cells)) return known;
+  return MissText(spec, outlook) + (known.empty() ? "" : "; " + known);
 }
 
 // Writes an outlook as one sentence, see OutlookText.
@@ -165,10 +175,8 @@ class Sentence {
 
   // Returns the sentence if no device is in danger.
   std::string WriteSafe() const {
-    const std::string known = KnownText(spec_, outlook_);
-    if (!std::isfinite(outlook_.miss.cells)) return known;
-    return Name(outlook_.miss.disaster) + ": " + MissText(spec_, outlook_) +
-           (known.empty() ? "" : "; " + known);
+    const bool is_near = std::isfinite(outlook_.miss.cells);
+    return (is_near ? Name(outlook_.miss.disaster) + ": " : "") + SafeText(spec_, outlook_);
   }
 
   // Adds the ring that covers the most urgent device now, if there is one.
@@ -203,15 +211,19 @@ class Sentence {
   // Adds the devices that the same ring reaches later: "F2 in 2.2 h", "F2 and F3 within 3.0 h" or
   // "4 more within 3.0 h".
   void AddOthers(const RingArrival& ring) {
-    double last = ring.steps;
-    const auto is_later = [&](const DeviceOutlook& one) {
-      return std::any_of(one.arrivals.begin(), one.arrivals.end(), [&](const RingArrival& other) {
-        if (other.disaster != ring.disaster || other.risk != ring.risk) return false;
-        if (AheadText(spec_, other.steps) == AheadText(spec_, ring.steps)) return false;
-        last = std::max(last, other.steps);
-        return true;
-      });
+    const auto is_same_ring = [&](const RingArrival& other) {
+      return other.disaster == ring.disaster && other.risk == ring.risk &&
+             AheadText(spec_, other.steps) != AheadText(spec_, ring.steps);
     };
+    const auto is_later = [&](const DeviceOutlook& one) {
+      return std::any_of(one.arrivals.begin(), one.arrivals.end(), is_same_ring);
+    };
+    double last = ring.steps;
+    for (const DeviceOutlook& one : outlook_.devices) {
+      for (const RingArrival& other : one.arrivals) {
+        if (is_same_ring(other)) last = std::max(last, other.steps);
+      }
+    }
     const auto count = std::count_if(outlook_.devices.begin(), outlook_.devices.end(), is_later);
     if (count == 0) return;
     const std::string whom =
@@ -248,11 +260,18 @@ std::vector<std::string> Headlines(const FarmSpec& spec, const FarmState& state,
 
 std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
   if (outlook.devices.empty()) return "";
-  if (!IsInDanger(outlook)) {
-    return std::isfinite(outlook.miss.cells) ? MissText(spec, outlook) : KnownText(spec, outlook);
-  }
+  if (!IsInDanger(outlook)) return SafeText(spec, outlook);
   const DeviceOutlook& first = outlook.devices.front();
   return DeviceLabel(first.id) + ": " + DangerText(spec, first);
+}
+
+bool IsHitFirst(const FarmSpec& spec, const Outlook& outlook, const DeviceOutlook& device) {
+  const auto first_ring = [&spec](const DeviceOutlook& one) {
+    if (one.risk_now < 0.0) return std::pair(std::string("now"), one.risk_now);
+    if (one.arrivals.empty()) return std::pair(std::string(), 0.0);
+    return std::pair(AheadText(spec, one.arrivals.front().steps), one.arrivals.front().risk);
+  };
+  return WorstRisk(device) < 0.0 && first_ring(device) == first_ring(outlook.devices.front());
 }
 
 std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
@@ -281,8 +300,10 @@ std::string WorstText(const FarmSpec& spec, const DeviceOutlook& device) {
 
 std::string NowAndWorstText(const FarmSpec& spec, const DeviceOutlook& device) {
   const std::string worst = WorstText(spec, device);
-  const bool is_named = device.risk_now < 0.0 && device.wind_now_kt > 0 &&
-                        !device.arrivals.empty() && device.arrivals.back().wind_kt > 0;
+  const bool is_named =
+      device.risk_now < 0.0 && device.wind_now_kt > 0 && !device.arrivals.empty() &&
+      device.arrivals.back().wind_kt > 0 &&
+      std::string(NameOf(device.wind_now_kt)) != NameOf(device.arrivals.back().wind_kt);
   return is_named ? NameOf(device.wind_now_kt) + (" now, " + WithoutForce(worst)) : worst;
 }
 

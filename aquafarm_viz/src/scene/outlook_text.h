@@ -26,7 +26,8 @@ std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 /// Examples: "typhoon, risk -10, reaches F3 in 6.5 h" and "typhoon: risk -5 over F2 now, risk -20
 /// in 6.5 h". If the winds of the rings are given: "typhoon In-Fa: gale over F0 and F1 now, gale
 /// reaches F5 in 8 min, storm reaches F0 in 6.5 h". On a farm with a start time, the local time
-/// follows each arrival that is at least an hour away, the first one with its zone.
+/// follows the next and the worst arrival if they are at least an hour away, the first one with its
+/// zone.
 ///
 /// If no worse ring comes, the devices that the same ring reaches later follow: "typhoon, near
 /// gale, reaches F0 and F1 in 2.0 h, F2 in 2.2 h".
@@ -46,9 +47,13 @@ std::vector<std::string> Headlines(const aquafarm_msgs::FarmSpec& spec,
                                    const aquafarm_msgs::FarmState& state, const Outlook& outlook);
 
 /// Returns a short form of OutlookText: the danger to the most urgent device, such as "F2: risk -20
-/// now". Without a danger, returns the nearest ring, "risk -5 is 900 m from F2 now", or the text
-/// about the known time, or an empty text.
+/// now". Without a danger, returns OutlookText without the name of the disaster.
 std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook);
+
+/// Returns whether a ring covers or reaches a device as early as the most urgent device, and with
+/// the same risk. Times are the same if AheadText displays them equally.
+bool IsHitFirst(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook,
+                const DeviceOutlook& device);
 
 /// Returns the danger to a device: the ring that covers it now, the next worse ring and the worst
 /// ring to come. Examples: "risk -10 in 6.5 h", "risk -5 now", "risk -5 now, -20 in 6.5 h". If the

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "draw/paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "draw/symbols.h"
+
+namespace aquafarm_viz {
+
+using aquafarm_msgs::FarmState;
+
+namespace {
+
+constexpr double kBetweenHeads = 50.0;  // min distance of two arrowheads on a path [design units]
+
+// Returns the colour of a part of a ship's path. The path of the only ship is green, which no risk
+// has. The paths of several ships have the colours of the ships. Older parts fade into the sea.
+// @param age  0: now, 1: the oldest part
+Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
+  const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.5) : style.good;
+  return Mix(fresh, style.sea_south, 0.4 * age);
+}
+
+// Draws one move of a path: a line, or a shorter line that is a dash of the path.
+// @param casing  added to the width on each side [design units]
+void DrawMoved(cv::Mat& map, cv::Point2d from, cv::Point2d to, bool is_dashed,
+               const cv::Scalar& color, const Layout& layout, double casing = 0.0) {
+  const cv::Point2d gap = (is_dashed ? 0.22 : 0.0) * (to - from);
+  DrawLine(map, from + gap, to - gap, color, layout.Px((is_dashed ? 1.8 : 3.2) + 2.0 * casing));
+}
+
+// Returns the unit vector to the right of a direction on the map; {0, 0} without a direction.
+cv::Point2d RightOf(cv::Point2d along) {
+  const double length = cv::norm(along);
+  return length > 0.0 ? cv::Point2d(-along.y, along.x) / length : cv::Point2d();
+}
+
+// Returns where a path that is `aside` pixels to the right of its points turns at a point. At a
+// turn of more than a right angle, where the common point is far away, the result is next to the
+// end of `own`.
+// @param own, other  right sides of the two moves that meet at the point
+cv::Point2d Turn(cv::Point2d at, cv::Point2d own, cv::Point2d other, double aside) {
+  const double cosine = own.dot(other);
+  return cosine < -0.2 ? at + aside * own : at + (own + other) * (aside / (1.0 + cosine));
+}
+
+// Returns the distance of a ship's path from the centres of the cells [pixels]. Of several ships,
+// each three in turn have different distances, so that paths on the same cells are both visible.
+double AsideOf(std::int32_t ship, bool are_several, const Layout& layout) {
+  const double units = 2.2 + (are_several ? 2.4 * (ship % 3) : 0.0);
+  return std::min(units * layout.unit, 0.3 * layout.view.cell_px());
+}
+
+}  // namespace
+
+std::vector<Moved> MovesOf(const ShipTrail& way, std::int32_t ship, bool are_several,
+                           const Layout& layout) {
+  const double aside = AsideOf(ship, are_several, layout);
+  const std::size_t count = way.places.size();
+  std::vector<cv::Point2d> points;
+  points.reserve(count);
+  for (const auto& place : way.places) points.push_back(layout.view.ToPixel(place.x, place.y));
+  std::vector<Moved> moves;
+  for (std::size_t i = 1; i < count; ++i) {
+    if (Trail::IsGap(way.places[i - 1], way.places[i])) continue;
+    const cv::Point2d own = RightOf(points[i] - points[i - 1]);
+    const bool has_before = i > 1 && !Trail::IsGap(way.places[i - 2], way.places[i - 1]);
+    const bool has_after = i + 1 < count && !Trail::IsGap(way.places[i], way.places[i + 1]);
+    const cv::Point2d before = has_before ? RightOf(points[i - 1] - points[i - 2]) : own;
+    const cv::Point2d after = has_after ? RightOf(points[i + 1] - points[i]) : own;
+    moves.push_back({Turn(points[i - 1], own, before, aside), Turn(points[i], own, after, aside),
+                     !way.loaded[i], 1.0 - double(i) / double(count)});
+  }
+  return moves;
+}
+
+namespace {
+
+// Draws an arrowhead between two points of a path, in the direction of the motion.
+void DrawDirection(cv::Mat& map, cv::Point2d from, cv::Point2d to, const cv::Scalar& color,
+                   const Layout& layout) {
+  static const std::vector<cv::Point2f> kHead{{0.0F, 1.0F}, {-0.9F, -0.8F}, {0.9F, -0.8F}};
+  const cv::Point2d way = to - from;
+  const double bearing_deg = std::atan2(way.x, -way.y) * 180.0 / CV_PI;
+  FillShape(map, kHead, {(from + to) / 2.0, double(layout.Px(5.5)), bearing_deg}, color);
+}
+
+}  // namespace
+
+void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, bool is_dashed,
+                    const FarmState& state, const Layout& layout) {
+  const Style& style = *layout.style;
+  const cv::Scalar color =
+      Bgr(state.ships.size() > 1 ? style.words : PathColor(state, 0, 0.3, style));
+  const cv::Point2d middle = (from + to) * 0.5;
+  DrawMoved(image, from, middle, is_dashed, color, layout);
+  DrawMoved(image, middle, to, is_dashed, color, layout);
+}
+
+void DrawPaths(cv::Mat& map, const FarmState& state, const Trail& paths, const Layout& layout) {
+  constexpr double kCasing = 1.2;  // [design units]
+  const cv::Scalar casing = Bgr(Mix(layout.style->halo, layout.style->sea_south, 0.35));
+  for (const auto& ship : state.ships) {
+    const ShipTrail* way = ship.visible ? paths.Find(ship.id) : nullptr;
+    if (way == nullptr) continue;
+    const std::vector<Moved> moves = MovesOf(*way, ship.id, state.ships.size() > 1, layout);
+    // A casing below the path makes it visible on the colours of values and on other paths.
+    for (const Moved& move : moves) {
+      DrawMoved(map, move.from, move.to, move.is_dashed, casing, layout, kCasing);
+    }
+    double since_head_px = 0.0;
+    for (const Moved& move : moves) {
+      const cv::Scalar color = Bgr(PathColor(state, ship.id, move.age, *layout.style));
+      DrawMoved(map, move.from, move.to, move.is_dashed, color, layout);
+      since_head_px += cv::norm(move.to - move.from);
+      if (since_head_px < kBetweenHeads * layout.unit) continue;
+      DrawDirection(map, move.from, move.to, color, layout);
+      since_head_px = 0.0;
+    }
+  }
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The paths of ships on the map; private to this package.
+
+#include <aquafarm_msgs/FarmState.h>
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "aquafarm_viz/scene/trail.h"
+
+namespace aquafarm_viz {
+
+struct Layout;
+
+/// One move of a ship on the map.
+struct Moved {
+  cv::Point2d from;  ///< [pixels]
+  cv::Point2d to;
+  bool is_dashed{};  ///< the ship had nothing aboard
+  double age{};      ///< near 0: the last move; below 1: the oldest
+};
+
+/// Returns the moves of a ship, the oldest first. They run to the right of the cells' centres, so
+/// that opposite ways do not cover each other.
+/// @param are_several  whether the farm has several ships; their distances from the centres differ
+std::vector<Moved> MovesOf(const ShipTrail& way, std::int32_t ship, bool are_several,
+                           const Layout& layout);
+
+/// Draws the trails or routes of the ships. Older parts fade into the sea. Moves of a rescue ship
+/// with nothing aboard are dashed.
+void DrawPaths(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& paths,
+               const Layout& layout);
+
+/// Draws a short line that looks like a path.
+void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, bool is_dashed,
+                    const aquafarm_msgs::FarmState& state, const Layout& layout);
+
+}  // namespace aquafarm_viz

@@ -36,7 +36,7 @@ constexpr double kPollPeriod_s = 0.01;
 class ShipDriver::Impl {
  public:
   Impl(const ros::NodeHandle& node, std::uint8_t observation_types, ShipDriverOptions options)
-      : options_(std::move(options)),
+      : options_(options),
         node_(node),
         get_(node, options_.wait_limit_s, options_.stop),
         save_(node, options_.wait_limit_s, options_.stop),

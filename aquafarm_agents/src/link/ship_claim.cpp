@@ -16,11 +16,9 @@ constexpr double kReleaseLimit_s = 1.0;
 
 }  // namespace
 
-ShipClaim::ShipClaim(ros::NodeHandle node, std::int32_t ship, double wait_limit_s,
+ShipClaim::ShipClaim(const ros::NodeHandle& node, std::int32_t ship, double wait_limit_s,
                      const std::atomic<bool>* stop)
-    : node_(std::move(node)),
-      name_(aquafarm_sim::names::Claim(ship)),
-      link_(node_, wait_limit_s, stop) {
+    : node_(node), name_(aquafarm_sim::names::Claim(ship)), link_(node_, wait_limit_s, stop) {
   Renew();
 }
 

@@ -56,7 +56,7 @@ ReplayParams ReadReplayParams(const ros::NodeHandle& node) {
   return params;
 }
 
-ReplayNode::ReplayNode(ros::NodeHandle node, const ReplayParams& params)
+ReplayNode::ReplayNode(const ros::NodeHandle& node, const ReplayParams& params)
     : node_(node),
       params_(params),
       tape_(params.bag),

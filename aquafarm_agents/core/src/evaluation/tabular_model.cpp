@@ -182,7 +182,9 @@ PolicyMatrix MakePolicyMatrix(const TabularModel& model, const std::vector<float
       continue;
     }
     int count = 0;
-    for (std::size_t action = 0; action < kActionCount; ++action) count += (allowed >> action) & 1U;
+    for (std::size_t action = 0; action < kActionCount; ++action) {
+      count += static_cast<int>((allowed >> action) & 1U);
+    }
     for (std::size_t action = 0; action < kActionCount; ++action) {
       if (((allowed >> action) & 1U) != 0) policy[row][action] = level / count;
     }

@@ -21,9 +21,9 @@ class ServiceLink {
   /// @param wait_limit_s max time for which a failed call is repeated
   /// @param stop if true, Call makes no further attempt; null: calls cannot be stopped
   /// @param call_limit_s max duration of one attempt
-  ServiceLink(ros::NodeHandle node, double wait_limit_s, const std::atomic<bool>* stop,
+  ServiceLink(const ros::NodeHandle& node, double wait_limit_s, const std::atomic<bool>* stop,
               double call_limit_s = kCallLimit_s)
-      : node_(std::move(node)),
+      : node_(node),
         wait_limit_s_(wait_limit_s),
         stop_(stop),
         call_limit_s_(call_limit_s),

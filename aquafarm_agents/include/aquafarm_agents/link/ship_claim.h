@@ -20,7 +20,7 @@ class ShipClaim {
   /// @throws InputError if another node has claimed the ship
   /// @throws EnvironmentLost if the sim node does not respond within the limit, or if the wait is
   ///         stopped
-  ShipClaim(ros::NodeHandle node, std::int32_t ship, double wait_limit_s,
+  ShipClaim(const ros::NodeHandle& node, std::int32_t ship, double wait_limit_s,
             const std::atomic<bool>* stop);
   ~ShipClaim();
   ShipClaim(const ShipClaim&) = delete;

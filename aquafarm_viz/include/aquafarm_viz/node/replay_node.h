@@ -41,7 +41,7 @@ class ReplayNode {
  public:
   /// @param node namespace of the services and of topics without a leading slash
   /// @throws std::runtime_error if the bag cannot be shown, see ReplayTape
-  ReplayNode(ros::NodeHandle node, const ReplayParams& params);
+  ReplayNode(const ros::NodeHandle& node, const ReplayParams& params);
 
   const ReplayTape& tape() const { return tape_; }
 

@@ -264,6 +264,13 @@ class FiguresTest(unittest.TestCase):
         self.assertGreater(min(one.y0 for one in names), axes.get_window_extent().y1,
                            "above the chart")
 
+    def test_a_headline_says_once_that_all_settings_are_as_printed(self):
+        printed = [one for one in PROFILES["paper"].contestants
+                   if one.name in ("dqn_printed", "sarsa_printed")]
+        ends = [(9, 4.0, "red", "SARSA, printed"), (9, -2.0, "blue", "DQN, printed")]
+        self.assertEqual("With the settings as printed, SARSA has the highest return: 4",
+                         figures._highest(printed, ends, "return"))
+
     def test_a_headline_names_all_learners_with_the_highest_printed_value(self):
         ends = [(9, 4.46, "red", "SARSA"), (9, 4.54, "blue", "LSTM-DQN")]
         self.assertEqual("LSTM-DQN has the highest return: 5",

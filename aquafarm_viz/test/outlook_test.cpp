@@ -34,7 +34,7 @@ TEST(Outlook, OfAPresentCourseNamesEachRingAndItsTime) {
   EXPECT_EQ(outlook.devices[0].arrivals[1].steps, 25.0);
   EXPECT_EQ(outlook.devices[0].arrivals[1].risk, -20.0);
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, risk -5, reaches F3 in about 1.0 h, risk -20 in about 1.2 h");
+            "typhoon: risk -5 reaches F3 in about 1.0 h, risk -20 in about 1.2 h");
 }
 
 TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
@@ -49,12 +49,12 @@ TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
   scene.spec.has_start_time = true;
   scene.spec.step_duration_s = 1800.0;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, risk -5, reaches F3 in 5.0 h (Thu 05:51 UTC)")
+            "typhoon: risk -5 reaches F3 in 5.0 h (Thu 05:51 UTC)")
       << "5 h after the state's time, 0 h 51 min";
   scene.spec.has_start_time = false;
   scene.spec.step_duration_s = 0.0;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, risk -5, reaches F3 in 10 steps");
+            "typhoon: risk -5 reaches F3 in 10 steps");
 }
 
 TEST(Outlook, NamesNoWindThatIsNotGiven) {

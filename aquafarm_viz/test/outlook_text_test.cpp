@@ -17,7 +17,7 @@ TEST(OutlookText, NamesTheWindsOfRingsThatTheScenarioGives) {
   Outlooks scene;
   scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "typhoon, gale, reaches F3 in 30 min");
+            "typhoon: gale reaches F3 in 30 min");
   EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "gale in 30 min");
   EXPECT_EQ(RiskText(scene.spec, scene.outlook().devices[0]), "-5 in 30 min");
   scene.state.step = 8;
@@ -37,7 +37,7 @@ TEST(OutlookText, HasTheNameOfAStormThatIsOnItsTrack) {
                                                      "    name: In-Fa\n"),
                       1000.0);
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
-            "typhoon In-Fa, risk -5, reaches F3 in 30 min");
+            "typhoon In-Fa: risk -5 reaches F3 in 30 min");
   scene.state.disasters[0].kind = aquafarm_msgs::DisasterState::RED_TIDE;
   EXPECT_EQ(scene.course().name, "") << "a bulletin put another disaster in its place";
   scene.state.disasters[0].kind = aquafarm_msgs::DisasterState::TYPHOON;
@@ -53,7 +53,7 @@ TEST(OutlookText, NamesTheWorstRingToComeAfterTheNext) {
   outlook.devices = {device};
   outlook.names = {"typhoon"};
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, gale, reaches F3 in 30 min, hurricane force in 3.0 h");
+            "typhoon: gale reaches F3 in 30 min, hurricane force in 3.0 h");
   EXPECT_EQ(DangerText(scene.spec, device), "gale in 30 min, hurricane force in 3.0 h");
   EXPECT_EQ(WorstText(scene.spec, device), "hurricane force in 3.0 h");
 }
@@ -112,7 +112,7 @@ TEST(OutlookText, NamesATyphoonByTheClassOfItsWind) {
     EXPECT_EQ(CentreText(scene.spec, scene.state.disasters[0], course).rfind(outlook.names[0], 0),
               0U);
     const std::string sentence = OutlookText(scene.spec, scene.state, outlook);
-    return sentence.substr(0, sentence.find(','));
+    return sentence.substr(0, sentence.find(':'));
   };
   EXPECT_EQ(text(17.1), "tropical depression");
   EXPECT_EQ(text(17.2), "tropical storm");
@@ -125,8 +125,8 @@ TEST(OutlookText, NamesATyphoonByTheClassOfItsWind) {
 TEST(OutlookText, HasHeadlinesWithAndWithoutDirectionsAndAShortOne) {
   Outlooks scene;
   const std::vector<std::string> expected{
-      "Typhoon in the E, risk -5, reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
-      "Typhoon, risk -5, reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
+      "Typhoon in the E: risk -5 reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
+      "Typhoon: risk -5 reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
       "F3: risk -5 in 1.0 h, -20 in 1.2 h"};
   EXPECT_EQ(Headlines(scene.spec, scene.state, scene.outlook()), expected);
   scene.state.disasters[0].x = 212.0F;
@@ -156,16 +156,16 @@ TEST(OutlookText, NamesTheDevicesThatTheSameRingReachesLater) {
   };
   outlook.devices = {{1, 0.0, 0U, 0, arrivals(40.0, 0U)}, {2, 0.0, 0U, 0, arrivals(44.0, 0U)}};
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, gale, reaches F1 in 2.0 h, F2 in 2.2 h");
+            "typhoon: gale reaches F1 in 2.0 h, F2 in 2.2 h");
   outlook.devices.push_back({4, 0.0, 0U, 0, arrivals(60.0, 0U)});
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, gale, reaches F1 in 2.0 h, F2 and F4 within 3.0 h");
+            "typhoon: gale reaches F1 in 2.0 h, F2 and F4 within 3.0 h");
   outlook.devices.push_back({5, 0.0, 0U, 0, arrivals(50.0, 0U)});
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon, gale, reaches F1 in 2.0 h, 3 more within 3.0 h");
+            "typhoon: gale reaches F1 in 2.0 h, 3 more within 3.0 h");
   outlook.devices.resize(1);
   outlook.devices.push_back({2, 0.0, 0U, 0, arrivals(44.0, 1U)});
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon, gale, reaches F1 in 2.0 h")
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon: gale reaches F1 in 2.0 h")
       << "another disaster reaches F2";
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures the time of the clairvoyant plan of one episode of paper.yaml, and decisions per second
-// of the planner that replans in each step without knowing the future. One thread; the episodes
-// differ.
+// Measures the time per clairvoyant plan of an episode of paper.yaml, and the decisions per second of
+// the planner that replans in each step without knowing the future. Uses one thread. Each iteration
+// plans another episode.
 #include <benchmark/benchmark.h>
 
 #include <memory>

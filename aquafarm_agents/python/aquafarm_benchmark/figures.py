@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib import ticker
 
 from aquafarm_benchmark import measures
+from aquafarm_benchmark.protocol import PRINTED
 from aquafarm_benchmark.style import (explain, label_axes, legible, line_style, name_ends, number,
                                       plt, save, shade, write_note)
 
@@ -21,16 +22,19 @@ def _learners(contestants):
 
 def _highest(contestants, ends, what, digits=0):
     """Returns the headline of a chart: "DQN has the highest return: 271". The last values of the
-    lines of the learners are compared as they are printed; RANDOM is left out."""
+    lines of the learners are compared as they are printed; RANDOM is left out. If all learners have
+    the settings as printed in the paper, the headline says so once."""
     learners = {one.label for one in _learners(contestants)}
     last = sorted(((y, name) for _, y, _, name in ends if name in learners), reverse=True)
     if not last:
         return what.capitalize()
     value = number(last[0][0], digits)
     names = [name for y, name in last if number(y, digits) == value]
-    if len(last) == 1:
-        return f"{names[0]}: {what} {value}"
-    return f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} the highest {what}: {value}"
+    said = f"{names[0]}: {what} {value}" if len(last) == 1 else (
+        f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} the highest {what}: {value}")
+    if all(name.endswith(PRINTED) for _, name in last):
+        return f"With the settings as printed, {said.replace(PRINTED, '')}"
+    return said
 
 
 def _with_values(contestants, ends, digits=0):

@@ -130,6 +130,7 @@ REFERENCES = (
 CONTESTANTS += REFERENCES
 OPTIMUM = Contestant("clairvoyant", "clairvoyant", "#000000", learns=False, cost=0.2, repeats=False)
 
+PRINTED = ", printed"  # end of the label of a learner with the settings that the paper prints
 # The farm of `paper` with the plain observation: no precomputed routes, no lookahead risk.
 PLAIN_SCENARIO = "paper_plain"
 
@@ -138,7 +139,7 @@ def _printed(one, options, cost):
     """Returns a row with the settings that the paper prints, on the scenario with the plain
     observation. Its line is dashed and has the colour of the tuned learner."""
     return dataclasses.replace(one, name=f"{one.name}_printed", algorithm=one.algorithm_name,
-                               label=f"{one.label}, printed", linestyle="dashed", options=options,
+                               label=one.label + PRINTED, linestyle="dashed", options=options,
                                exploration="", cost=cost, scenario=PLAIN_SCENARIO)
 
 

@@ -318,7 +318,7 @@ def _covers_any(ring, cells):
 
 def _plot_ring(axes, ring, sea, colour=_RING, **style):
     """Draws the outline of a ring, clipped at the edge of the sea."""
-    outline, = axes.plot(*np.vstack([ring, ring[:1]]).T, color=colour, zorder=2, **style)
+    outline, = axes.plot(*np.vstack([ring, ring[:1]]).T, color=colour, zorder=3.5, **style)
     outline.set_clip_path(sea)
 
 

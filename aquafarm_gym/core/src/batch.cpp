@@ -97,10 +97,10 @@ std::vector<std::int32_t> Batch::Selected(const py::array& mask) const {
   const std::vector<py::ssize_t> shape{batch_.farms()};
   if (!mask.dtype().equal(py::dtype("bool")) || mask.ndim() != 1 || mask.shape(0) != shape[0]) {
     throw InputError("mask: got " + Describe(mask) + ", expected " + Describe("bool", shape) +
-                     "; select each farm with True");
+                     "; set True for each farm that starts");
   }
   if (!is_reset_) {
-    throw InputError("start: got no reset before, expected one; reset all farms first");
+    throw InputError("FarmBatch: got no reset before, expected one; call reset first");
   }
   std::vector<std::int32_t> selected;
   for (std::int32_t i = 0; i < batch_.farms(); ++i) {
@@ -120,7 +120,7 @@ void Batch::Start(const py::array& mask, const py::sequence& seeds, const py::se
                   py::handle stride) {
   const Turn turn(busy_);
   const std::uint64_t apart =
-      WholeNumber(stride, "FarmBatch: stride", 1, kAnyNumber, "pass 1 for every episode");
+      WholeNumber(stride, "FarmBatch: stride", 1, kAnyNumber, "pass 1 to skip no episode");
   const std::vector<std::int32_t> selected = Selected(mask);
   const auto farms = static_cast<std::size_t>(batch_.farms());
   if (seeds.size() != farms || episodes.size() != farms) {

@@ -140,7 +140,10 @@ void WriteFile(const std::string& path, const std::string& text) {
   file.close();
   std::error_code error;
   if (file) std::filesystem::rename(temporary, path, error);
-  if (!file || error) throw InputError(path + ": cannot be written");
+  if (!file || error) {
+    std::filesystem::remove(temporary, error);
+    throw InputError(path + ": cannot be written");
+  }
 }
 
 // Rejects --size and --cell if the chart defines other values. A chart in metres has its own size

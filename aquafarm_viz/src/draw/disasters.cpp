@@ -105,7 +105,7 @@ SignPlace PlaceSign(const DisasterState& disaster, const Layout& layout) {
   }
   // The pointer lies where the line from the middle of the map to the centre reaches the edge.
   const cv::Point2d middle(map.width / 2.0, map.height / 2.0);
-  const double margin = std::min(13.0 * layout.unit, std::min(middle.x, middle.y));
+  const double margin = std::min(16.0 * layout.unit, std::min(middle.x, middle.y));
   const cv::Point2d away = centre - middle;
   const double beyond = std::max(std::abs(away.x) / std::max(1.0, middle.x - margin),
                                  std::abs(away.y) / std::max(1.0, middle.y - margin));

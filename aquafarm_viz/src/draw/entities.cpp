@@ -154,7 +154,7 @@ namespace {
 
 // Returns the size of the arrow of a legal move for DrawArrow [pixels].
 double DirectionSize(const Layout& layout) {
-  return std::max(0.8 * layout.view.cell_px(), 16.0 * layout.unit);
+  return std::max(0.62 * layout.view.cell_px(), 14.0 * layout.unit);
 }
 
 }  // namespace

@@ -189,14 +189,14 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
       p.DrawDisasters(map, spec, state, forecasts, layers.risk, layers.values && values != nullptr);
   if (has_route) DrawPaths(map, state, *overlays.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
-  DrawPorts(map, spec, p.layout, p.fonts);
-  DrawDevices(map, spec, state, p.layout);
-  DrawShips(map, spec, state, overlays.trail, p.layout);
   if (layers.directions) {
     if (!p.directions) p.directions = LegalDirections(spec);
     DrawDirections(map, *p.directions, p.layout);
     BlockDirections(*p.directions, p.layout, space);
   }
+  DrawPorts(map, spec, p.layout, p.fonts);
+  DrawDevices(map, spec, state, p.layout);
+  DrawShips(map, spec, state, overlays.trail, p.layout);
   if (overlays.choice != nullptr) DrawChoice(map, spec, state, *overlays.choice, p.layout);
   if (!DrawPanel(p.image, spec, state, overlays, values, forecasts, p.coast, p.layout, p.fonts)) {
     p.DrawPolicyKey(map, state, overlays, values, space);

@@ -285,7 +285,8 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
       BlockOtherRings(state, disaster, ring, map.size(), water, layout);
       std::optional<cv::Rect> place;
       std::string text;
-      for (const std::string& candidate : {whose + name + "risk " + risk, "risk " + risk}) {
+      for (const std::string& candidate :
+           {whose + name + "risk " + risk, whose + "risk " + risk, "risk " + risk}) {
         text = candidate;
         const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins),
                             layout.Px(kPlateRow));

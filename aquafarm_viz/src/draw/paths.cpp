@@ -69,8 +69,11 @@ std::vector<Moved> MovesOf(const ShipTrail& way, std::int32_t ship, bool are_sev
     const bool has_after = i + 1 < count && !Trail::IsGap(way.places[i], way.places[i + 1]);
     const cv::Point2d before = has_before ? RightOf(points[i - 1] - points[i - 2]) : own;
     const cv::Point2d after = has_after ? RightOf(points[i + 1] - points[i]) : own;
-    moves.push_back({Turn(points[i - 1], own, before, aside), Turn(points[i], own, after, aside),
-                     !way.loaded[i], 1.0 - double(i) / double(count)});
+    const cv::Point2d from = Turn(points[i - 1], own, before, aside);
+    const double age = 1.0 - double(i) / double(count);
+    const bool is_sharp = has_before && cv::norm(moves.back().to - from) > 0.5;
+    if (is_sharp) moves.push_back({moves.back().to, from, false, age});  // around the point
+    moves.push_back({from, Turn(points[i], own, after, aside), !way.loaded[i], age});
   }
   return moves;
 }

@@ -24,7 +24,8 @@ struct Moved {
 };
 
 /// Returns the moves of a ship, the oldest first. They run to the right of the cells' centres, so
-/// that opposite ways do not cover each other.
+/// that opposite ways do not cover each other. At a sharp turn, an additional short move joins the
+/// two sides.
 /// @param are_several  whether the farm has several ships; their distances from the centres differ
 std::vector<Moved> MovesOf(const ShipTrail& way, std::int32_t ship, bool are_several,
                            const Layout& layout);

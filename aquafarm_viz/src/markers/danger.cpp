@@ -215,8 +215,8 @@ std::string InLines(std::string text, double max_width) {
 }
 
 // Radii of the circles around a device in danger [thing_m()].
-constexpr double kInner = 0.72;
-constexpr double kOuter = 0.86;
+constexpr double kCircleInner = 0.72;
+constexpr double kCircleOuter = 0.86;
 constexpr double kSecondInner = 0.96;  // of a device that is hit first
 constexpr double kSecondOuter = 1.06;
 
@@ -231,7 +231,7 @@ void AddCircle(MarkerArray& array, const Maker& maker, const DeviceState& device
     const double outer_m = outer * maker.thing_m();
     AddBand(circle, {inner_m, inner_m, inner_m, inner_m}, {outer_m, outer_m, outer_m, outer_m});
   };
-  band(kInner, kOuter);
+  band(kCircleInner, kCircleOuter);
   if (is_first) band(kSecondInner, kSecondOuter);
   array.markers.push_back(circle);
 }
@@ -248,7 +248,8 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
         *std::find_if(state.devices.begin(), state.devices.end(),
                       [&one](const DeviceState& other) { return other.id == one.id; });
     const bool is_first = IsHitFirst(spec, outlook, one);
-    const double radius = (is_first ? kSecondOuter : kOuter) * maker.thing_m() / maker.cell_m();
+    const double radius =
+        (is_first ? kSecondOuter : kCircleOuter) * maker.thing_m() / maker.cell_m();
     AddCircle(array, maker, device, WorstRisk(one), is_first);
     circled.insert(one.id);
     if (labelled.size() == kMaxLabels) continue;

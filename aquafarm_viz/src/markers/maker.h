@@ -38,7 +38,8 @@ enum Layer {
   kWordLayer
 };
 
-/// Distance of a ship from its port along each axis, in units of Maker::thing_m().
+/// Distance of a ship from the port in its cell along each axis, so that both are visible, in units
+/// of Maker::thing_m().
 constexpr double kShipAside = 0.8;
 /// Line of text above the farm that contains the clock, see Maker::LineAbove.
 constexpr double kLineOfClock = 2.0;
@@ -66,7 +67,7 @@ class Maker {
       : cell_m_(spec.cell_size_m),
         // On large farms objects are drawn larger than a cell to stay visible.
         thing_m_(spec.cell_size_m * std::max(1.0, std::max(spec.width, spec.height) / 40.0)),
-        // With the whole farm in a view of 628 pixels, rviz's letters have about 11 pixels.
+        // In a view of 628 pixels with the whole farm, rviz's letters have 11 pixels or more.
         word_m_(std::max(0.6 * thing_m_, 0.028 * TextScale(spec) *
                                              std::max(spec.width, spec.height) * spec.cell_size_m)),
         layer_m_(std::min(0.03 * spec.cell_size_m, 8.0)),

@@ -197,7 +197,7 @@ class Sentence {
     const std::string these = WhomText(spec_, outlook_, ring);
     const std::string what = RingText(ring.risk, ring.wind_kt);
     if (text_.empty()) {
-      text_ = Name(ring.disaster) + ", " + what + ", reaches " + these;
+      text_ = Name(ring.disaster) + ": " + what + " reaches " + these;
     } else {
       const char* between = HasDirection(ring.disaster) ? ", " : " ";
       text_ += ", " + (ring.disaster == disaster_ ? "" : Name(ring.disaster) + between) + what +

@@ -23,14 +23,14 @@ std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 
 /// Returns the outlook in one sentence: the ring that covers the most urgent device now and all
 /// devices in that ring, the next ring that reaches any device, and the worst ring to come.
-/// Examples: "typhoon, risk -10, reaches F3 in 6.5 h" and "typhoon: risk -5 over F2 now, risk -20
+/// Examples: "typhoon: risk -10 reaches F3 in 6.5 h" and "typhoon: risk -5 over F2 now, risk -20
 /// in 6.5 h". If the winds of the rings are given: "typhoon In-Fa: gale over F0 and F1 now, gale
 /// reaches F5 in 8 min, storm reaches F0 in 6.5 h". On a farm with a start time, the local time
 /// follows the next and the worst arrival if they are at least an hour away, the first one with its
 /// zone.
 ///
-/// If no worse ring comes, the devices that the same ring reaches later follow: "typhoon, near
-/// gale, reaches F0 and F1 in 2.0 h, F2 in 2.2 h".
+/// If no worse ring comes, the devices that the same ring reaches later follow: "typhoon: near
+/// gale reaches F0 and F1 in 2.0 h, F2 in 2.2 h".
 ///
 /// If no ring covers or reaches a device, the text is the nearest ring (Outlook::miss) and the time
 /// until which the courses are known: "typhoon: risk -5 is 900 m from F2 now; no known danger to

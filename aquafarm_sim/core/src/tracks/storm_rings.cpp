@@ -254,7 +254,7 @@ std::string Describe(const StormKnowledge& knowledge) {
   using internal::FormatTime;
   const std::string recorded = FormatTime(knowledge.recorded_until);
   const std::string until = FormatTime(knowledge.known_until);
-  if (knowledge.recorded_until == 0) return "not recorded, forecast until " + until;
+  if (knowledge.recorded_until == 0) return "not recorded, forecast or assumed until " + until;
   if (knowledge.known_until == knowledge.recorded_until) return "known until " + recorded + " only";
   if (knowledge.issued == 0) {
     return "known until " + recorded +

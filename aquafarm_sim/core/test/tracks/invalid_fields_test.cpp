@@ -219,9 +219,10 @@ TEST(Jma, OneWrongValueLeavesTheStorm) {
   const std::string point = "21072506 002 5 300 1225 970 ";
   EXPECT_EQ(Warnings(With(text, point, "21072506 002 8 300 1225 970 ")),
             "x:3: grade: got 8, expected one of 2 to 7 or 9; the value is ignored\n");
-  EXPECT_EQ(Warnings(With(text, "90080 0080", "90080 0090")),
-            "x:3: shortest radius: got 90, expected at most the longest, 80, of 50 kt; the radii "
-            "are ignored\n");
+  EXPECT_EQ(
+      Warnings(With(text, "90080 0080", "90080 0090")),
+      "x:3: shortest radius: got 90, expected at most the longest radius, 80, of 50 kt; the radii "
+      "are ignored\n");
   EXPECT_EQ(Warnings(With(text, point, "21072506 002 5 990 1225 970 ")),
             "x:3: latitude in tenths of a degree: got '990', expected a whole number in [-900, "
             "900]; the point is left out\n");

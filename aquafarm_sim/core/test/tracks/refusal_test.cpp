@@ -55,7 +55,7 @@ const std::vector<WrongText> kWrongTexts{
     {"JmaHeaderCut",
      "66666 2106  001 0011 2106 0 6                IN-FA              2022010\n"
      "21072500 002 2 297 1230  998     000\n",
-     "x:1: got a header of 71 columns, expected 72 or more, to its date"},
+     "x:1: got a header of 71 columns, expected 72 or more, which contain the date"},
     {"JmaCut", JMA_HEAD "21072500 002 2 297\n",
      "x:2: got a line of 18 columns, expected at least 36"},
     {"JmaHour", JMA_HEAD "21072524 002 2 297 1230  998     000\n",

@@ -30,14 +30,14 @@ TEST(Jma, ALineThatEndsWithinAPointIsRefused) {
     }
   }
   EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 35))),
-            "x:3: got a line of 35 columns, expected at least 36 of a point, up to its wind");
+            "x:3: got a line of 35 columns, expected at least 36, which contain the wind");
   EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 60))),
             "x:3: got a line of 60 columns, expected 62 or more where there are radii of 30 kt");
   EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 52))),
             "x:3: got radii of 50 kt alone, expected those of 30 kt as well");
   EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 36))),
-            "x:3: got a line of 36 columns, expected at least 62 at the grade of a storm, up to "
-            "its radii");
+            "x:3: got a line of 36 columns, expected at least 62, which contain the "
+            "radii of a storm");
 }
 
 // Points below a padded header are padded; points below a header that ends with its date are not.

@@ -25,8 +25,9 @@ std::string_view Columns(std::string_view line, std::size_t first, std::size_t e
 }
 
 // Returns the radii by quadrant of a wind area of the JMA. The area is a circle whose centre may
-// differ from the storm's: the longest radius points to one side, the shortest to the other. Each
-// quadrant gets the distance from the storm to the circle in the middle of the quadrant.
+// differ from the storm's: the longest radius points to one side, the shortest to the other. The
+// radius of a quadrant is the distance from the storm to the edge of this circle, in the direction
+// of the quadrant's middle.
 std::array<double, kQuadrantCount> Quadrants(std::int32_t direction, double longest,
                                              double shortest) {
   std::array<double, kQuadrantCount> radius{};
@@ -65,8 +66,8 @@ void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, Storm
         "radii", "direction of the longest radius: got 0, expected 1 to 9 with a radius" + of_wind);
   } else if (*near > *far) {
     place.WarnOnce("radii", "shortest radius: got " + std::to_string(*near) +
-                                ", expected at most the longest, " + std::to_string(*far) + "," +
-                                of_wind);
+                                ", expected at most the longest radius, " + std::to_string(*far) +
+                                "," + of_wind);
   } else {
     AddRing(
         {wind_kt, Quadrants(*code, *far * kKmPerNauticalMile, *near * kKmPerNauticalMile), false},
@@ -77,7 +78,7 @@ void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, Storm
 BestTrackHeader ReadHeader(std::string_view line, ParseContext& place) {
   if (line.size() < kThroughHeader) {
     place.Fail("got a header of " + std::to_string(line.size()) + " columns, expected " +
-               std::to_string(kThroughHeader) + " or more, to its date");
+               std::to_string(kThroughHeader) + " or more, which contain the date");
   }
   BestTrackHeader header;
   header.points = ReadWhole(Columns(line, 12, 15), "number of points", 1, 999, place);
@@ -102,7 +103,7 @@ StormGrade Grade(std::int32_t code, const std::optional<double>& wind_mps) {
       return StormGrade::kTropicalStorm;
     case 4:
       return StormGrade::kSevereTropicalStorm;
-    default:  // TY has no upper limit here; 6, 7 and 9 do not give a grade
+    default:  // TY of the JMA includes STY and SuperTY; 6, 7 and 9 give no grade
       if (wind_mps) return GradeOfWind(*wind_mps);
       return code == 5 ? StormGrade::kTyphoon : StormGrade::kUnknown;
   }
@@ -114,7 +115,7 @@ StormFix ReadPoint(std::string_view line, ParseContext& place) {
   }
   if (line.size() < kThroughWind) {
     place.Fail("got a line of " + std::to_string(line.size()) + " columns, expected at least " +
-               std::to_string(kThroughWind) + " of a point, up to its wind");
+               std::to_string(kThroughWind) + ", which contain the wind");
   }
   const std::string_view hour = Columns(line, 0, 8);
   StormFix fix;
@@ -140,19 +141,20 @@ StormFix ReadPoint(std::string_view line, ParseContext& place) {
     place.Fail("got radii of 50 kt alone, expected those of 30 kt as well");
   }
   ReadRing(line, kWeaker, 30, fix, place);
-  // Storms have radii since 1977. Without radii the columns are blank, not missing.
+  // Since 1977 a point with the grade of a storm has the columns of the radii, even if they are
+  // blank.
   constexpr std::int64_t k1977 = 220924800;
   const bool is_storm = code >= 3 && code <= 5;
   if (is_storm && fix.time >= k1977 && line.size() < kThroughRadii) {
     place.Fail("got a line of " + std::to_string(line.size()) + " columns, expected at least " +
-               std::to_string(kThroughRadii) + " at the grade of a storm, up to its radii");
+               std::to_string(kThroughRadii) + ", which contain the radii of a storm");
   }
   fix.landfall = Columns(line, 71, 72) == "#";
   return fix;
 }
 
-// Warns about points that may be cut off. Points after a padded header are padded, too. Points
-// after a header that ends with its date end with the wind, the radii or the landfall mark.
+// Warns about points that may be cut off. Points after a padded header are padded, too. If a header
+// has no columns after its date, its points end after the wind, the radii or the landfall mark.
 void WarnOfShortPoints(std::string_view text, ParseContext& place) {
   LineReader lines(text, place);
   std::string_view line;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures the time per clairvoyant plan of an episode of paper.yaml, and the decisions per second of
-// the planner that replans in each step without knowing the future. Uses one thread. Each iteration
-// plans another episode.
+// Measures the time per clairvoyant plan of an episode of paper.yaml, and the decisions per second
+// of the planner that replans in each step without knowing the future. Uses one thread. Each
+// iteration plans another episode.
 #include <benchmark/benchmark.h>
 
 #include <memory>

@@ -13,7 +13,8 @@ namespace {
 constexpr double kMeanDecay = 0.9;
 constexpr double kSquareDecay = 0.999;
 
-/// Factors of one step. `rate` and `root` are computed in double precision and rounded to float once.
+/// Factors of one step. `rate` and `root` are computed in double precision and rounded to float
+/// once.
 struct Factors {
   float mean;    // weight of the gradient in its moving average
   float square;  // weight of the squared gradient in its moving average

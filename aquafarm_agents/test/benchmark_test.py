@@ -20,7 +20,7 @@ import numpy as np
 import rosbag
 import rostest
 
-from aquafarm_benchmark import cli, cluster, figures, human, measures, protocol, runs
+from aquafarm_benchmark import cli, cluster, error_figure, figures, human, measures, protocol, runs
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import DATA, Program, program  # noqa: E402
@@ -174,7 +174,7 @@ class BenchmarkTest(unittest.TestCase):
         errors["q_learning"][:, :7] = math.nan  # nothing was learnt yet
         runs = {name: [{"curve": {"loss": row}} for row in rows] for name, rows in errors.items()}
         _, axes = figures.plt.subplots()
-        ends = figures.plot_square_error(axes, shown, runs)
+        ends = error_figure.plot_square_error(axes, shown, runs)
         noisy, steady = axes.lines
         self.assertEqual(351, len(noisy.get_xdata()))
         self.assertLess(np.ptp(np.log(noisy.get_ydata())), 0.5)

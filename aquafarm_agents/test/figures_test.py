@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
-from aquafarm_benchmark import figures, route_figure, style
+from aquafarm_benchmark import error_figure, figures, route_figure, style
 from aquafarm_benchmark.protocol import CONTESTANTS, PROFILES
 
 WINDOW = 50
@@ -72,7 +72,7 @@ class FiguresTest(unittest.TestCase):
         for run in self.runs["sarsa"]:
             run["curve"]["loss"][:10] = np.nan  # before the first update
         self.runs["lstm_dqn"][0]["curve"]["loss"][:] = np.nan
-        figures.plot_square_error(self.axes, self.contestants, self.runs)
+        error_figure.plot_square_error(self.axes, self.contestants, self.runs)
         x, y = self.lines()["SARSA"]
         np.testing.assert_array_equal(np.arange(WINDOW, 121), x)
         for place in (0, 33, 70):
@@ -88,7 +88,7 @@ class FiguresTest(unittest.TestCase):
         self.runs["sarsa"] = [make_run(seed, 120) for seed in range(1, 6)]
         for factor, run in zip((1.0, 2.0, 3.0, 4.0, 500.0), self.runs["sarsa"]):
             run["curve"]["loss"] = np.full(120, factor)
-        figures.plot_square_error(self.axes, [by_name("sarsa")], self.runs)
+        error_figure.plot_square_error(self.axes, [by_name("sarsa")], self.runs)
         _, y = self.lines()["SARSA"]
         np.testing.assert_allclose(3.0, y, err_msg="the median, whatever one run does")
         edge = self.axes.collections[0].get_paths()[0].vertices[:, 1]
@@ -144,7 +144,8 @@ class FiguresTest(unittest.TestCase):
     def drawn(self, draw, *arguments):
         """Returns the figure that a draw_… function saves."""
         kept = []
-        with unittest.mock.patch.object(figures, "save", lambda figure, _: kept.append(figure)):
+        with unittest.mock.patch.object(sys.modules[draw.__module__], "save",
+                                        lambda figure, _: kept.append(figure)):
             draw("nowhere", *arguments)
         return kept[0]
 
@@ -294,10 +295,10 @@ class FiguresTest(unittest.TestCase):
         for name, last in (("sarsa", 30.0), ("lstm_dqn", 5.0)):
             for run in self.runs[name]:
                 run["curve"]["loss"] = np.array([10.0] * 60 + [last] * 60)
-        figure = self.drawn(figures.draw_square_error, self.contestants, self.runs)
+        figure = self.drawn(error_figure.draw_square_error, self.contestants, self.runs)
         headline = " ".join(figure._suptitle.get_text().split())
         self.assertTrue(headline.endswith(
-            "changes by ×0.5 (LSTM-DQN) to ×3.0 (SARSA)"), headline)
+            "in training: ×0.5 (LSTM-DQN) to ×3.0 (SARSA)"), headline)
         self.assertEqual({"SARSA: 10 → 30 (×3.0)", "LSTM-DQN: 10 → 5 (×0.5)"},
                          {axes.get_title("left") for axes in figure.axes} - {""})
 
@@ -393,7 +394,7 @@ class FiguresTest(unittest.TestCase):
         np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
         np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
         self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
-                         "time limit at step 3, last stop at 1",
+                         "time limit at step 3, last stop at 2",
                          self.axes.get_title("left"))
         low, high = self.axes.get_ylim()
         self.assertEqual(8.7, self.axes.get_xlim()[1], "the scale of the largest ranch")

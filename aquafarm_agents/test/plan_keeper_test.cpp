@@ -194,6 +194,7 @@ TEST_F(Keeper, AStepOfTheRanchPlansAgainFromItsShips) {
   inputs_.step = 8;
   EXPECT_EQ(Update().ships.at(0).cell.x, 11);
   for (auto& device : inputs_.fleet->devices) device.is_deployed = false;
+  inputs_.fleet->devices[0].self_propelled = true;
   inputs_.step = 9;
   EXPECT_EQ(Update().text, "Every device is in port: there is nothing left to fetch.");
   EXPECT_EQ(keeper_.plan().plan.result, RescuePlan::PLAN);

@@ -77,8 +77,8 @@ class BulletinNode {
       for (const std::string& path : folder_.New()) {
         TrySend(path);
         folder_.Mark(path);
-        fault_.clear();
       }
+      fault_.clear();
     } catch (const std::exception& error) {  // the folder or the ranch may become available again
       // Logs an error once. A throttle would use /clock, which may stand still.
       if (fault_ != error.what()) ROS_ERROR("%s", error.what());

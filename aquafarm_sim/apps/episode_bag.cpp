@@ -30,7 +30,14 @@ void Write(const std::string& scenario_path, const std::string& route_path,
     hash = route.at("scenario_hash");
     log.seed = route.at("farm_seed");
     log.episode = route.at("episode");
-    log.actions = route.at("actions").get<std::vector<std::uint8_t>>();
+    for (const nlohmann::json& action : route.at("actions")) {
+      const auto number = action.get<std::int64_t>();
+      if (number < 0 || number > aquafarm::kActionCount) {
+        throw InputError(route_path + ": actions: got " + std::to_string(number) +
+                         ", expected [0, 10]");
+      }
+      log.actions.push_back(static_cast<std::uint8_t>(number));
+    }
   } catch (const nlohmann::json::exception& error) {
     throw InputError(route_path + ": is not a route: " + error.what());
   }
@@ -41,11 +48,6 @@ void Write(const std::string& scenario_path, const std::string& route_path,
   farm.Reset(log.seed, log.episode);
   const std::size_t agents = farm.ships().size();
   for (std::size_t i = 0; i + agents <= log.actions.size() && !farm.over(); i += agents) {
-    for (std::size_t k = i; k < i + agents; ++k) {
-      if (log.actions[k] <= aquafarm::kActionCount) continue;
-      throw InputError(route_path + ": actions: got " + std::to_string(log.actions[k]) +
-                       ", expected [0, 10]");
-    }
     farm.Step(log.actions.data() + i);
   }
   log.record = farm.record();

@@ -80,7 +80,9 @@ TEST(RiskKey, NamesRingsOnlyIfAllAreGiven) {
   EXPECT_EQ(key[1].wind_kt, 50);
   const Course named = scene.course();
   scene.state.disasters.push_back(test::MakeDisaster(1, 5.0F, 5.0F));
-  EXPECT_TRUE(MakeRiskKey(scene.state, {named, CourseOf(scene.spec, scene.state, 1, {})}).empty());
+  const RiskKey mixed = MakeRiskKey(scene.state, {named, CourseOf(scene.spec, scene.state, 1, {})});
+  ASSERT_FALSE(mixed.empty());
+  for (const KeyRing& ring : mixed) EXPECT_EQ(ring.wind_kt, 0);
 }
 
 TEST(RiskKey, ListsRisksOfRingsWithoutNamesOnceTheMildestFirst) {
@@ -90,7 +92,7 @@ TEST(RiskKey, ListsRisksOfRingsWithoutNamesOnceTheMildestFirst) {
   scene.state.disasters[1].radii = {2.0F, 4.0F};
   scene.state.disasters[1].risks = {-8.0F, -5.0F};
   const RiskKey rings =
-      RingsWithoutNames(scene.state, {scene.course(), CourseOf(scene.spec, scene.state, 1, {})});
+      MakeRiskKey(scene.state, {scene.course(), CourseOf(scene.spec, scene.state, 1, {})});
   ASSERT_EQ(rings.size(), 3U);
   EXPECT_EQ(rings[0].risk, -5.0);
   EXPECT_EQ(rings[1].risk, -8.0);

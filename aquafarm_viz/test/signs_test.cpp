@@ -54,15 +54,18 @@ TEST(Signs, HaveOneLineOfTheKeyEach) {
               SignSpan(sign) * (layout.panel.width - 16) / 2 - 20)
         << SignWords(sign) << " fits";
   }
-  EXPECT_EQ(words, (std::set<std::string>{"at risk", "first hit", "danger: worst ring", "in port",
-                                          "loaded", "empty", "to centre", "heading", "legal move",
-                                          "sensors", "fetched"}));
+  EXPECT_EQ(words,
+            (std::set<std::string>{"at risk", "hit first", "in danger, colour by risk", "in port",
+                                   "loaded", "empty", "to centre", "heading", "legal move",
+                                   "sensors", "fetched", "port", "rock", "health"}));
   const RiskKey key{{34, -5.0, aquafarm_msgs::DisasterState::TYPHOON}};
   EXPECT_EQ(SignsOf(spec, state, overlays, outlook, key, layout).size() + 1, signs.size())
       << "the key of risks shows the pattern";
   overlays.layers = ParseLayers("none");
   state.disasters.clear();
   state.devices.clear();
+  spec.rocks.clear();
+  spec.ports.clear();
   EXPECT_TRUE(SignsOf(spec, state, overlays, {}, {}, layout).empty());
 }
 

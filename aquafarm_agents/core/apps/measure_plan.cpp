@@ -122,10 +122,16 @@ std::shared_ptr<const Scenario> Load(const Arguments& arguments) {
   return std::make_shared<const Scenario>(FindScenario(arguments.ranch, arguments.scenarios));
 }
 
+constexpr std::size_t kMinFixes = 4;  // shorter tracks are not used
+
 std::vector<StormTrack> Tracks(const Arguments& arguments) {
   std::vector<StormTrack> tracks;
   for (const StormTrack& track : LoadStormFile(arguments.archive).tracks) {
-    if (track.fixes.size() >= 4) tracks.push_back(track);
+    if (track.fixes.size() >= kMinFixes) tracks.push_back(track);
+  }
+  if (tracks.empty()) {
+    throw InputError("archive: got no track with " + std::to_string(kMinFixes) +
+                     " or more fixes in " + arguments.archive + "; use another file");
   }
   return tracks;
 }

@@ -59,6 +59,11 @@ double Seconds(const std::string& option, const std::string& text) {
 
 std::shared_ptr<const Scenario> LoadRanch(Arguments& arguments) {
   if (!arguments.ranch.empty()) {
+    if (!arguments.coast.empty() || !arguments.place.empty() || !arguments.ports.empty()) {
+      throw InputError("ranch: got " + arguments.ranch +
+                       " with --coast, --place or --ports, expected either a ranch or a chart: the "
+                       "ranch has its own coast and ports; leave out one of them");
+    }
     return std::make_shared<const Scenario>(FindScenario(arguments.ranch, arguments.scenarios));
   }
   if (arguments.coast.empty() || arguments.place.empty() || arguments.request.devices.empty()) {

@@ -140,7 +140,10 @@ int Run(Arguments& arguments, char** argv) {
     CheckRanks(arguments.options.algorithm, ranks, is_started ? variables.launcher : "ranks");
     if (!is_started) return RunLocalRanks(ranks, argv);
   }
-  if (arguments.ranks == 1 && arguments.options.options.find("shards=") == std::string::npos) {
+  const bool has_ranks = arguments.options.algorithm != kAutoAlgorithm &&
+                         FindAlgorithm(arguments.options.algorithm).make_rank != nullptr;
+  if (arguments.ranks == 1 && has_ranks &&
+      arguments.options.options.find("shards=") == std::string::npos) {
     arguments.options.options += " shards=" + std::to_string(kDefaultShards);
   }
   std::unique_ptr<ProcessGroup> group;

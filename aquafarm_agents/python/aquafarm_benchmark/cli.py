@@ -111,7 +111,7 @@ def parse(arguments):
             raise BadInput(f"algorithms: got '{name}', expected some of: {', '.join(names)}")
     options.learners = [_external(text, number) for number, text in enumerate(
         text for text in options.learner if text != "none")]
-    taken = [*names, *(one.name for one in options.learners)]
+    taken = [*names, OPTIMUM.name, human.HUMAN.name, *(one.name for one in options.learners)]
     for one in options.learners:
         if taken.count(one.name) > 1:
             raise BadInput(f"learner: got '{one.name}', expected a name that no other row has")

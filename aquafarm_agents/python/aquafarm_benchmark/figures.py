@@ -7,9 +7,11 @@ import numpy as np
 from matplotlib import ticker
 
 from aquafarm_benchmark import measures
+from aquafarm_benchmark.curves import (columns_of_runs, describe_shading, most_common_count,
+                                       moving_means)
 from aquafarm_benchmark.protocol import PRINTED
 from aquafarm_benchmark.style import (explain, label_axes, legible, line_style, name_ends, number,
-                                      plt, save, shade, write_note)
+                                      plt, save, shade)
 
 _NBSP = "\N{NO-BREAK SPACE}"
 _REACHED = 0.9  # a learner has learnt once it reaches this fraction of the best reference
@@ -42,20 +44,6 @@ def _with_values(contestants, ends, digits=0):
     labels = {one.label for one in contestants}
     return [(x, y, colour, f"{name}{_NBSP}{number(y, digits)}" if name in labels else name)
             for x, y, colour, name in ends]
-
-
-def _shading(contestants, runs):
-    """Returns the note about lines and shades over all runs."""
-    count = _count(contestants, runs)
-    return ("One run of each learner." if count == 1 else
-            f"Median of {count} runs, shaded from the lowest to the highest run.")
-
-
-def _smooth(values):
-    """Returns (episodes, means). means: moving means over 50 episodes; episodes: the last episode of
-    each mean, counted from 1."""
-    window = min(measures.WINDOW, len(values))
-    return np.arange(window, len(values) + 1), measures.moving_mean(values, window)
 
 
 def _range_of(axes):
@@ -129,18 +117,12 @@ def _plot_references(axes, references, end, digits=0):
     return ends
 
 
-def _count(contestants, runs):
-    """Returns the number of runs that most contestants have."""
-    counts = [len(runs[one.name]) for one in contestants]
-    return max(set(counts), key=counts.count)
-
-
 def _plot_one_run(axes, one, curve, x):
     """Plots the 50-episode mean return of a run. Returns the end of the line.
 
     x: position of each episode on the x axis
     """
-    episodes, means = _smooth(curve["return"])
+    episodes, means = moving_means(curve["return"])
     axes.plot(x[episodes - 1], means, linewidth=1.2, **line_style(one), label=one.label)
     return x[episodes[-1] - 1], means[-1], one.colour, one.label
 
@@ -261,7 +243,7 @@ def _learning_times(contestants, runs, references):
     found = []
     for one in _learners(contestants):
         curve = runs[one.name][0]["curve"]
-        episodes, means = _smooth(curve["return"])
+        episodes, means = moving_means(curve["return"])
         reached = means >= _REACHED * references[best]
         steps = np.cumsum(curve["steps"])[episodes[np.argmax(reached)] - 1] if reached.any() else np.inf
         found.append((steps, one.label))
@@ -276,7 +258,7 @@ def draw_average_rewards(path, contestants, runs, references):
     _draw_returns(
         path, contestants,
         lambda ends: _highest(contestants, ends, "mean return of all episodes"),
-        f"Fig. 12b: mean return of all episodes so far. {_shading(contestants, runs)}",
+        f"Fig. 12b: mean return of all episodes so far. {describe_shading(contestants, runs)}",
         "mean return so far",
         [(lambda axes: plot_average_rewards(axes, contestants, runs, references), "episode", True)])
 
@@ -286,108 +268,33 @@ def plot_average_rewards(axes, contestants, runs, references):
     lowest and highest value. Returns the ends of the lines."""
     ends = []
     for one in contestants:
-        curves = _curves(runs[one.name], "return")
+        curves = columns_of_runs(runs[one.name], "return")
         episodes = np.arange(1, curves.shape[1] + 1)
         ends.append(_plot_shaded(axes, episodes, np.cumsum(curves, axis=1) / episodes, one, one.label))
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
 
 
-def draw_square_error(path, contestants, runs):
-    """Draws Fig. 12c: the mean square error of the value estimates, a chart for each learner, over
-    all runs. Omits contestants without updates, such as RANDOM."""
-    learners = [one for one in contestants
-                if np.isfinite(_curves(runs[one.name], "loss")).any()]
-    columns = min(3, max(1, len(learners)))
-    rows = max(1, -(-len(learners) // columns))
-    figure, all_axes = plt.subplots(rows, columns, figsize=(3.3 * columns, 1.2 + 2.5 * rows),
-                                    squeeze=False, sharex=True, layout="constrained")
-    changes = []
-    for axes, one in zip(all_axes.flat, learners):
-        ends = plot_square_error(axes, [one], runs)
-        label_axes(axes, "", "", "episode")
-        axes.tick_params(labelbottom=True)
-        if ends:
-            first, last = axes.lines[0].get_ydata()[[0, -1]]
-            axes.set_title(f"{one.label}: {_significant(first)} → {_significant(last)} "
-                           f"(×{last / first:.1f})", fontsize=11, color=legible(one.colour))
-            changes.append((last / first, one.label))
-    _equal_decades(all_axes.flat[:len(learners)])
-    for axes in all_axes[:, 0]:
-        axes.set_ylabel("error [reward²]")
-    changes = [f"×{ratio:.1f} ({name})" for ratio, name in sorted(changes)]
-    found = f"{changes[0]} to {changes[-1]}" if len(changes) > 1 else ", ".join(changes)
-    note = (f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic; the titles "
-            f"give the first and the last value and their ratio. {_shading(contestants, runs)} The error is relative "
-            "to each learner's own targets and cannot be compared between learners. A policy that "
-            "fails can have a low error too.")
-    unused = all_axes.flat[len(learners):]
-    for axes in unused:
-        axes.axis("off")
-    if len(unused):
-        write_note(unused[0], note)
-    explain(figure, f"In the training, the error of the value estimates changes by {found}",
-            "" if len(unused) else note)
-    save(figure, path)
-
-
-def _equal_decades(charts):
-    """Gives logarithmic axes the same number of decades, so that slopes can be compared."""
-    limits = [np.log10(axes.get_ylim()) for axes in charts]
-    half = max((high - low for low, high in limits), default=0.0) / 2.0
-    for axes, (low, high) in zip(charts, limits):
-        axes.set_ylim(*10.0 ** ((low + high) / 2.0 + np.array([-half, half])))
-
-
-def _significant(value):
-    return f"{value:,.0f}" if value >= 100.0 else f"{value:.2g}"
-
-
-def plot_square_error(axes, contestants, runs):
-    """Plots the 50-episode mean of the squared TD error: the median of the runs, shaded between
-    their lowest and highest value. Omits contestants without updates, such as RANDOM. Returns the
-    ends of the lines."""
-    ends = []
-    for one in contestants:
-        errors = _curves(runs[one.name], "loss")
-        window = min(measures.WINDOW, errors.shape[1])
-        smooth = np.array([measures.known_moving_mean(row, window) for row in errors])
-        episodes = np.arange(window, errors.shape[1] + 1)
-        smooth = smooth[np.isfinite(smooth).any(axis=1)]  # omits runs without an update
-        known = np.isfinite(smooth).all(axis=0) & (smooth > 0.0).all(axis=0)
-        if not len(smooth) or not known.any():
-            continue
-        logs = np.log(smooth[:, known])
-        low, median, high = np.exp(np.quantile(logs, (0.0, 0.5, 1.0), axis=0))
-        axes.plot(episodes[known], median, **line_style(one), linewidth=2.2, label=one.label)
-        if len(smooth) > 1:
-            shade(axes, episodes[known], low, high, one.colour)
-        ends.append((episodes[known][-1], float(median[-1]), one.colour, one.label))
-    axes.set_yscale("log")
-    axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.6g}")
-    axes.yaxis.set_minor_formatter(ticker.NullFormatter())
-    return ends
-
-
 def draw_mean_score(path, contestants, runs, references):
     """Draws Fig. 13: the mean return per step by episode: (a) LSTM-DQN, (b) SARSA, (c) all
-    contestants.
+    contestants. If several contestants have the algorithm of (a) or (b), the one with its name is
+    shown, or the first.
 
     references: {name: return per step}, drawn for comparison
     """
-    panels = [("a", [one for one in contestants if one.algorithm_name == "lstm_dqn"]),
-              ("b", [one for one in contestants if one.algorithm_name == "sarsa"])]
-    panels = [(letter, panel) for letter, panel in panels if panel]
+    panels = []
+    for letter, algorithm in (("a", "lstm_dqn"), ("b", "sarsa")):
+        rows = [one for one in contestants if one.algorithm_name == algorithm]
+        panels += [(letter, [one]) for one in sorted(rows, key=lambda one: one.name != algorithm)[:1]]
     figure = plt.figure(figsize=(9, 8.4 if panels else 4.9), layout="constrained")
     places = [[letter for letter, _ in panels], ["c"] * len(panels)] if panels else [["c"]]
     all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)
     is_shaded = len(contestants) <= _MOST_SHADED
     note = (f"Fig. 13: means of {measures.WINDOW} episodes. " +
-            (_shading(contestants, runs) if is_shaded or panels else
-             f"Median of {_count(contestants, runs)} runs.") +
+            (describe_shading(contestants, runs) if is_shaded or panels else
+             f"Median of {most_common_count(contestants, runs)} runs.") +
             ("" if is_shaded or not panels else " The lower chart shows the medians only."))
     for letter, panel in [("c", contestants), *panels]:
-        whose = panel[0].label if len(panel) == 1 else "All"
+        whose = "All" if letter == "c" else panel[0].label
         label_axes(all_axes[letter], f"{whose} (Fig. 13{letter})", "return per step")
         limits = None if letter == "c" else all_axes["c"].get_ylim()
         ends = plot_mean_score(all_axes[letter], panel, runs, references, limits)
@@ -412,7 +319,8 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
     """
     ends = []
     for one in contestants:
-        returns, steps = _curves(runs[one.name], "return"), _curves(runs[one.name], "steps")
+        returns = columns_of_runs(runs[one.name], "return")
+        steps = columns_of_runs(runs[one.name], "steps")
         window = min(measures.WINDOW, returns.shape[1])
         scores = np.array([measures.return_per_step(*pair, window)
                            for pair in zip(returns, steps)])
@@ -464,7 +372,7 @@ def draw_repeated(path, contestants, runs, references):
         path, contestants,
         lambda ends: _highest(contestants, ends, "return at the end of the training"),
         f"Fig. 14: repeated trainings, means of {measures.WINDOW} episodes. "
-        f"{_shading(contestants, runs)}", f"{measures.WINDOW}-episode mean return",
+        f"{describe_shading(contestants, runs)}", f"{measures.WINDOW}-episode mean return",
         [(lambda axes: plot_repeated(axes, contestants, runs, references), "episode", True)])
 
 
@@ -473,7 +381,7 @@ def plot_repeated(axes, contestants, runs, references):
     highest value. Returns the ends of the lines."""
     ends = []
     for one in contestants:
-        smooth = [_smooth(curve) for curve in _curves(runs[one.name], "return")]
+        smooth = [moving_means(curve) for curve in columns_of_runs(runs[one.name], "return")]
         values = np.array([curve for _, curve in smooth])
         ends.append(_plot_shaded(axes, smooth[0][0], values, one, one.label))
     return ends + _plot_references(axes, references, max(end[0] for end in ends))
@@ -491,10 +399,3 @@ def _plot_shaded(axes, episodes, values, one, label):
     Returns the end of the line."""
     shade(axes, episodes, values.min(axis=0), values.max(axis=0), one.colour)
     return _plot_median(axes, episodes, values, one, label)
-
-
-def _curves(of_one, column):
-    """Returns a column of all runs, [runs, episodes]. Longer runs are cut to the shortest one, as
-    lengths may differ slightly."""
-    length = min(len(run["curve"][column]) for run in of_one)
-    return np.array([run["curve"][column][:length] for run in of_one])

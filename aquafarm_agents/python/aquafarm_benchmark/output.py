@@ -41,7 +41,7 @@ def tabulate(folder, contestants, found, settings, people):
 def draw(folder, everyone, found, rows):
     """Writes the figures of the results."""
     # Imported here, because matplotlib takes a second to load, which would delay --help.
-    from aquafarm_benchmark import figures, loss_figures, route_figure
+    from aquafarm_benchmark import error_figure, figures, loss_figures, route_figure
 
     pictures = folder / "figures"
     pictures.mkdir(exist_ok=True)
@@ -51,7 +51,7 @@ def draw(folder, everyone, found, rows):
     if trained:
         figures.draw_rewards(pictures / "rewards.png", trained, found, references)
         figures.draw_average_rewards(pictures / "average_rewards.png", trained, found, references)
-        figures.draw_square_error(pictures / "mean_square_error.png", trained, found)
+        error_figure.draw_square_error(pictures / "mean_square_error.png", trained, found)
         figures.draw_repeated(pictures / "repeated_trainings.png", trained, found, references)
         per_step = {one.label: row["return_per_step"] for one, row in zip(everyone, rows)
                     if one.name == OPTIMUM.name}

@@ -28,8 +28,11 @@ _SEA = "#eaf3f9"
 _LAND = "#c9b98a"
 _STOPS = {"pickup": ("P", "pickup"), "drop_off": ("X", "drop-off")}
 _STOP_STYLE = {"s": 130, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 7}
-_BEFORE = {120: "#f0b4b4", 60: "#dd7d7d"}  # steps before the end whose rings are drawn, and colours
 _RING = "#b22222"
+_LAST_RING = "ring of a disaster in the last step"
+# Steps before the end whose rings are drawn, and their colour and label.
+_BEFORE = {120: ("#f0b4b4", "the same ring 120 steps before"),
+           60: ("#dd7d7d", "the same ring 60 steps before")}
 
 
 def draw_route(path, label, route_file):
@@ -106,8 +109,11 @@ def draw_unfinished(path, routes, title):
         empty.axis("off")
     figure.suptitle(title, fontsize=13.5, weight="bold", x=0.01, ha="left")
     symbols = _symbols(charts)
-    all_axes[-1].legend(symbols.values(), symbols.keys(), loc="center", frameon=False, fontsize=11,
-                        labelspacing=0.9)
+    rings = [label for label in (_LAST_RING, *(label for _, label in reversed(_BEFORE.values())))
+             if label in symbols]
+    labels = [*(label for label in symbols if label not in rings), *rings]
+    all_axes[-1].legend([symbols[label] for label in labels], labels, loc="center", frameon=False,
+                        fontsize=11, labelspacing=0.9)
     save(figure, path)
 
 
@@ -123,16 +129,16 @@ def plot_unfinished(axes, name, route, size):
     for i, disaster in enumerate(at_end):
         rings = list(_rings(disaster))
         covering = [k for k, ring in enumerate(rings) if _covers_any(ring, left)]
-        for steps, colour in _BEFORE.items() if covering else ():
+        for steps, (colour, label) in _BEFORE.items() if covering else ():
             then = len(route["steps"]) - 2 - steps
             before = route["steps"][then]["disasters"] if then >= 0 else []
             if len(before) == len(at_end):  # else one has ended, and the order is another
                 _plot_ring(axes, list(_rings(before[i]))[covering[-1]], sea, colour, linewidth=2.0,
-                           label=f"the same ring {steps} steps before")
+                           label=label)
         for ring in rings:
             inside = axes.add_patch(Polygon(ring, color=_RING, alpha=0.12, zorder=1))
             inside.set_clip_path(sea)
-            _plot_ring(axes, ring, sea, linewidth=1.6, label="ring of a disaster in the last step")
+            _plot_ring(axes, ring, sea, linewidth=1.6, label=_LAST_RING)
     *before, (loaded, last_leg) = legs(route["steps"])
     for _, cells in before:
         axes.plot(*np.array(cells, dtype=float).T, color="#5b6b78", linewidth=1.0, zorder=4,
@@ -147,7 +153,8 @@ def plot_unfinished(axes, name, route, size):
                  label="ship at the end")
     result = f"{route['return']:.0f}".replace("-", "−")
     end = len(route["steps"]) - 1
-    stop = f"last stop at {end - len(last_leg) + 1}" if before else "no stop"
+    # The action of step t is complete in step t + 1, as in plot_route.
+    stop = f"last stop at {end - len(last_leg) + 2}" if before else "no stop"
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
                    f"return {result}\n"
                    f"{route['reason'].replace('_', ' ')} at step {end}, {stop}",
@@ -297,6 +304,7 @@ def _explain(empty, charts, stops, has_moves):
                             colLoc="left", edges="horizontal",
                             bbox=(0.02, 0.5 - 0.06 * (len(stops) + 1), 0.6, 0.06 * (len(stops) + 1)))
         table.auto_set_font_size(False)
+        table.auto_set_column_width(range(len(stops[0])))
         table.set_fontsize(11)
 
 

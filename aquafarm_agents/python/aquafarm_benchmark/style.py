@@ -27,9 +27,20 @@ def save(figure, path, dpi=_DPI):
 
 def explain(figure, finding, note):
     """Writes the finding above a figure, in bold, and the note below it."""
-    lines = textwrap.wrap(finding, _LETTERS, break_on_hyphens=False)
-    figure.suptitle("\n".join(lines), fontsize=12.5, weight="bold", x=0.01, ha="left")
+    figure.suptitle("\n".join(_wrap_evenly(finding)), fontsize=12.5, weight="bold", x=0.01, ha="left")
     figure.supxlabel("\n".join(textwrap.wrap(note, 1.25 * _LETTERS)), x=0.01, ha="left", **_NOTE)
+
+
+def _wrap_evenly(text):
+    """Wraps a text into as few lines as possible, of about the same length."""
+    width, lines = _LETTERS, textwrap.wrap(text, _LETTERS, break_on_hyphens=False)
+    while len(lines) > 1:
+        width -= 1
+        narrower = textwrap.wrap(text, width, break_on_hyphens=False)
+        if len(narrower) > len(lines):
+            break
+        lines = narrower
+    return lines
 
 
 def write_note(axes, note):
@@ -43,6 +54,8 @@ def label_axes(axes, title, ylabel, xlabel="episode"):
     axes.set_title(title)
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)
+    if xlabel == "episode":
+        axes.xaxis.set_major_formatter(lambda value, _: number(value))
     axes.grid(alpha=0.3)
 
 

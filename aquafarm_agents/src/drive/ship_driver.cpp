@@ -91,6 +91,7 @@ class ShipDriver::Impl {
       }
       policy.Act(results, actions_);
       Send();
+      if (stale_.exchange(false)) seen_.reset();  // a new state may have the same episode and step
       if (!again_.exchange(false)) continue;
       seen_.reset();
       ros::WallDuration(kRetryPeriod_s).sleep();
@@ -161,6 +162,7 @@ class ShipDriver::Impl {
     if (!usual) {
       throw EnvironmentLost("sim node: command refused: " + command.response.result.message);
     }
+    if (code == Outcome::STALE) stale_ = true;
     if (code == Outcome::TIMEOUT || code == Outcome::PAUSED) {
       again_ = true;  // the command was dropped
       warning_.Say("ship " + std::to_string(ships_[i]) + ": " + command.response.result.message);
@@ -188,6 +190,7 @@ class ShipDriver::Impl {
   std::unique_ptr<LocalEnvironment> mirror_;
   std::vector<std::uint8_t> actions_;
   std::atomic<bool> again_{};  // a command was dropped: Drive must send it again
+  std::atomic<bool> stale_{};  // a command was meant for another state
   std::atomic<std::uint64_t> token_{ros::WallTime::now().toNSec()};  // token of the last command
   SlowWarning warning_;
   std::optional<std::pair<std::uint64_t, std::uint64_t>> seen_;  // episode and step

@@ -247,8 +247,8 @@ void RosEnvironment::Restart(const std::string& why) {
     throw EnvironmentLost("sim node: another client keeps changing the farms: " + why);
   }
   const std::uint64_t next = NextRound();
-  Notice("the farms are not as they were left (" + why +
-         "); continuing with fresh episodes from number " + std::to_string(next));
+  Notice("the farms have changed since the last step (" + why +
+         "); continuing with new episodes from number " + std::to_string(next));
   Reset(seed_, next);
   restarted_ = true;
 }

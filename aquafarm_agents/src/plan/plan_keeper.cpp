@@ -72,8 +72,9 @@ PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin) {
   if (inputs.fleet) agents::UseFleet(request, *inputs.fleet, rescue);
   const bool is_done = rescue.problem.devices.empty();
   const bool has_others =
-      inputs.fleet && std::any_of(inputs.fleet->devices.begin(), inputs.fleet->devices.end(),
-                                  [](const auto& one) { return one.self_propelled; });
+      inputs.fleet &&
+      std::any_of(inputs.fleet->devices.begin(), inputs.fleet->devices.end(),
+                  [](const auto& one) { return one.self_propelled && one.is_deployed; });
   const agents::Ensemble ensemble(rescue.forecast, rescue.ensemble, rescue.Sites());
   const agents::PlanReport report = agents::MakeReport(rescue, ensemble);
   agents::PlanProvenance provenance;
@@ -86,11 +87,10 @@ PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin) {
   if (is_done && messages.plan.result != RescuePlan::STORM_UNKNOWN) {
     // The core reports this case as a storm that reaches no device.
     messages.plan.result = has_others ? RescuePlan::NOTHING_SAVED : RescuePlan::PLAN;
-    messages.plan.text =
-        has_others
-            ? "Ships have nothing left to fetch. Self-propelled devices are not planned: bring "
-              "those that are at sea to a port."
-            : "Every device is in port: there is nothing left to fetch.";
+    messages.plan.text = has_others ? "Ships have nothing left to fetch. The plan contains no "
+                                      "self-propelled devices: bring "
+                                      "those that are at sea to a port."
+                                    : "Every device is in port: there is nothing left to fetch.";
     auto& warnings = messages.plan.warnings;
     warnings.erase(std::remove_if(warnings.begin(), warnings.end(),
                                   [](const auto& one) { return one.code == "storm_stays_away"; }),

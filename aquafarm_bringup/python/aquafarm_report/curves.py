@@ -103,9 +103,9 @@ def show(labels, columns, notes=(), players=()):
         if name == "return":
             chart.update(lines=lines, marks=marks, bend=bend(rows, lines, marks))
             if marks:
-                chart["title"] += "; at the right edge: mean of greedy play after the training, 95 % interval"
+                chart["title"] += ", in training and at the right in greedy play (95 % interval)"
             if chart["bend"]:
-                chart["title"] += " (logarithmic below 0)"
+                chart["title"] += ", logarithmic below 0"
         charts.append(chart)
     if not charts:
         return ""

@@ -245,11 +245,14 @@ class Checker {
     return !simulation_ || Compared(Step(), simulation_->Check(*grid, is_chart));
   }
 
+  /// @param starts_again true: the next state is the start of the same episode, so that a summary
+  ///     belongs to the next run if this one is not over
   /// @returns false if there is a difference
-  bool EndEpisode() {
+  bool EndEpisode(bool starts_again = false) {
     if (!simulation_) return true;
     const Farm& farm = simulation_->farm();
-    if (const auto found = summaries_.find(key_); found != summaries_.end()) {
+    const auto found = summaries_.find(key_);
+    if (found != summaries_.end() && (farm.over() || !starts_again)) {
       const EpisodeSummary summary = found->second;
       summaries_.erase(found);
       if (summary.steps > farm.step()) {
@@ -303,7 +306,7 @@ class Checker {
   /// Continues an episode or starts it. A step 0 after other steps restarts it.
   bool Enter(const Key& key, std::uint64_t step) {
     if (simulation_ && key == key_ && (step != 0 || Step() == 0)) return true;
-    if (!EndEpisode()) return false;
+    if (!EndEpisode(/*starts_again=*/key == key_)) return false;
     key_ = key;
     const auto spec = specs_.find(key);
     if (spec == specs_.end()) return Compared(step, "the bag contains no spec of this episode");

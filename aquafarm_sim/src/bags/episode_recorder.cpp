@@ -155,7 +155,9 @@ void EpisodeRecorder::Enqueue(EpisodeLog log) {
   while (is_full() && lock.WaitUntil(changed_, end)) {
   }
   if (is_full()) {
-    fault_ = "the disk is too slow";
+    fault_ = std::to_string(waiting_bytes_) + " bytes of actions wait for the disk after " +
+             std::to_string(limits_.wait.count()) + " ms, expected less than " +
+             std::to_string(limits_.waiting_bytes) + "; use a faster disk or record fewer episodes";
     ROS_ERROR("episode recording stopped: %s", fault_.c_str());
   }
   if (!fault_.empty()) return;

@@ -90,6 +90,7 @@ aquafarm_msgs::CommandResult FarmServer::Command(const ShipCommand& command) {
   } catch (const std::exception& error) {
     ++state_id_;  // the farm may have stepped
     DropCommands();
+    Changed();
     return Refuse(command.ship, Outcome::INTERNAL_ERROR, error.what());
   }
 }
@@ -326,6 +327,7 @@ void FarmServer::Tick() {
     DropCommands();
     clock_.SetPaused(true);  // a farm that cannot continue must not fail at every tick
     counters_.fault = error.what();
+    Changed();
   }
 }
 

@@ -80,6 +80,7 @@ const aquafarm_msgs::Step::Response& FarmServer::Step(const aquafarm_msgs::Step:
   } catch (const std::exception& error) {
     ++state_id_;  // some farms may have stepped
     DropCommands();
+    Changed();
     Answer(Outcome::INTERNAL_ERROR, error.what(), step_refusal_);
     return step_refusal_;
   }

@@ -18,24 +18,20 @@ using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
 // Sizes in design units.
-constexpr double kSymbolRow = 57.0;  // height of the last row of symbols above the end of the panel
-constexpr double kRow = 17.0;        // distance of two rows of symbols
-constexpr double kKeyRow = 15.0;     // height of a row of the keys
-constexpr double kKeyScale = 24.0;   // height of the scale of risks with its texts
-constexpr double kWide = 230.0;      // a panel at least this wide has all symbols in one row
+constexpr double kFoot = 45.0;      // height of the north arrow and the scale bar
+constexpr double kHeading = 18.0;   // height of the heading
+constexpr double kKeyRow = 16.0;    // height of a row of the keys
+constexpr double kKeyScale = 24.0;  // height of the scale of risks with its texts
 
 constexpr std::size_t kMaxColors = 4;  // max number of risks in the key
 constexpr double kMildRisk = -5.0;     // risk of the sample for Sign::kAtRisk
 
-bool IsWide(const Layout& layout) { return layout.panel.width >= layout.Px(kWide); }
+bool HasNames(const RiskKey& key) { return !key.empty() && key.front().wind_kt > 0; }
 
-// Returns the distance from the bottom of the panel to the lower end of the keys [pixels].
-int FootPx(const Layout& layout) {
-  return layout.Px(kSymbolRow + (IsWide(layout) ? 0.0 : kRow) + 9.0);
-}
-
+// Returns the height of the key of risks [pixels]. Rings with names have a row each.
 int KeyPx(const RiskKey& key, const Layout& layout) {
-  return key.empty() ? layout.Px(kKeyScale) : static_cast<int>(key.size()) * layout.Px(kKeyRow);
+  if (key.empty()) return layout.Px(kKeyScale);
+  return (HasNames(key) ? static_cast<int>(key.size()) : 1) * layout.Px(kKeyRow);
 }
 
 int SignColumns(const Layout& layout) { return layout.panel.width >= layout.Px(245.0) ? 3 : 2; }
@@ -54,9 +50,7 @@ std::vector<cv::Point> SignCells(const std::vector<Sign>& signs, const Layout& l
 }
 
 int SignsPx(const std::vector<Sign>& signs, const Layout& layout) {
-  if (signs.empty()) return 0;
-  const int rows = SignCells(signs, layout).back().y + 1;
-  return rows * layout.Px(kKeyRow) + layout.Px(3);
+  return signs.empty() ? 0 : (SignCells(signs, layout).back().y + 1) * layout.Px(kKeyRow);
 }
 
 // Draws a scale bar with a round length of at most `room_px` pixels.
@@ -94,44 +88,12 @@ void DrawNorthArrow(cv::Mat& image, cv::Point at, const Layout& layout, const Fo
                   Bgr(layout.style->words));
 }
 
-void DrawHealth(cv::Mat& image, int left, int bar_left, int y, const Layout& layout,
-                const Fonts& fonts) {
-  const cv::Rect health(bar_left, y - layout.Px(2),
-                        layout.panel.x + layout.panel.width - layout.Px(10) - bar_left,
-                        layout.Px(5));
-  for (int i = 0; i < health.width; ++i) {
-    cv::rectangle(image, cv::Rect(health.x + i, health.y, 1, health.height),
-                  Bgr(HealthColor(double(i) / health.width)), cv::FILLED);
-  }
-  fonts.small.Draw(image, "health", {left, y + fonts.small.cap_height() / 2},
-                   Bgr(layout.style->words));
-}
-
 }  // namespace
 
 void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
   if (layout.panel.empty()) return;
-  const bool is_wide = IsWide(layout);
   const int left = layout.panel.x + layout.Px(10);
-  const int bottom = layout.panel.y + layout.panel.height;
-  const int last = bottom - layout.Px(kSymbolRow);
-  const int first = is_wide ? last : last - layout.Px(kRow);
-  const int port = is_wide ? left + layout.Px(72) : left + layout.panel.width / 2 - layout.Px(8);
-  const auto write = [&](const char* word, int x) {
-    fonts.small.Draw(image, word, {x, first + fonts.small.cap_height() / 2},
-                     Bgr(layout.style->words));
-  };
-  DrawRock(image, cv::Point2d(left + layout.Px(7), first), 5.5 * layout.unit);
-  write("rock", left + layout.Px(22));
-  FillCircle(image, cv::Point2d(port, first), 5.5 * layout.unit, Bgr(kPort));
-  StrokeCircle(image, cv::Point2d(port, first), 5.5 * layout.unit, Bgr(kInk), layout.Px(1.2));
-  write("port", port + layout.Px(11));
-  if (is_wide) {
-    DrawHealth(image, left + layout.Px(128), left + layout.Px(172), last, layout, fonts);
-  } else {
-    DrawHealth(image, left, left + layout.panel.width / 2 - layout.Px(15), last, layout, fonts);
-  }
-  const int foot = bottom - layout.Px(18);
+  const int foot = layout.panel.y + layout.panel.height - layout.Px(14);
   DrawNorthArrow(image, {left + layout.Px(8), foot - layout.Px(6)}, layout, fonts);
   DrawScaleBar(image, {left + layout.Px(30), foot}, layout.panel.width - layout.Px(46),
                spec.cell_size_m, layout, fonts);
@@ -148,23 +110,40 @@ bool HasRing(const Course& course, std::size_t ring) {
   });
 }
 
-}  // namespace
-
-RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) {
+// Returns the rings that have a radius now or later, of all drawn disasters, each once. Without
+// names, rings with the same rounded risk count as the same ring.
+RiskKey ListRings(const FarmState& state, const std::vector<Course>& courses, bool has_names) {
   RiskKey key;
   for (std::size_t i = 0; i < courses.size(); ++i) {
-    if (!IsDrawn(state.disasters[i])) continue;
-    const std::vector<std::int32_t>& winds = courses[i].ring_winds_kt;
-    if (winds.empty()) return {};  // its rings have no names
-    for (std::size_t ring = winds.size(); ring-- > 0;) {
+    const auto& disaster = state.disasters[i];
+    if (!IsDrawn(disaster)) continue;
+    for (std::size_t ring = disaster.risks.size(); ring-- > 0;) {
       if (!HasRing(courses[i], ring)) continue;
-      const NamedRing one{winds[ring], std::round(courses[i].ahead.front().risks[ring]),
-                          state.disasters[i].kind};
-      const auto is_same = [&one](const NamedRing& other) {
-        return other.wind_kt == one.wind_kt && other.risk == one.risk && other.kind == one.kind;
+      const std::vector<std::int32_t>& winds = courses[i].ring_winds_kt;
+      const KeyRing one{has_names && ring < winds.size() ? winds[ring] : 0,
+                        std::round(double(disaster.risks[ring])), disaster.kind};
+      const auto is_same = [&](const KeyRing& other) {
+        return other.wind_kt == one.wind_kt && other.risk == one.risk &&
+               (!has_names || other.kind == one.kind);
       };
       if (std::none_of(key.begin(), key.end(), is_same)) key.push_back(one);
     }
+  }
+  return key;
+}
+
+}  // namespace
+
+RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) {
+  bool has_names = true;
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    has_names = has_names && (!IsDrawn(state.disasters[i]) || !courses[i].ring_winds_kt.empty());
+  }
+  RiskKey key = ListRings(state, courses, has_names);
+  if (has_names && key.size() > kMaxColors) key = ListRings(state, courses, false);
+  if (!HasNames(key)) {
+    std::stable_sort(key.begin(), key.end(),
+                     [](const KeyRing& a, const KeyRing& b) { return a.risk > b.risk; });
   }
   return key.size() > kMaxColors ? RiskKey() : key;
 }
@@ -235,6 +214,9 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
   add(has_heading, Sign::kHeading);
   add(layers.directions, Sign::kDirection);
   add(layers.sight && spec.view_mode == FarmSpec::PARTIAL, Sign::kSight);
+  add(!spec.ports.empty(), Sign::kPort);
+  add(!spec.rocks.empty(), Sign::kRock);
+  add(!state.devices.empty(), Sign::kHealth);
   return signs;
 }
 
@@ -245,9 +227,9 @@ const char* SignWords(Sign sign) {
     case Sign::kAtRisk:
       return "at risk";
     case Sign::kFirstReached:
-      return "first hit";
+      return "hit first";
     case Sign::kInDanger:
-      return "danger: worst ring";
+      return "in danger, colour by risk";
     case Sign::kDelivered:
       return "in port";
     case Sign::kFetched:
@@ -266,6 +248,12 @@ const char* SignWords(Sign sign) {
       return "legal move";
     case Sign::kSight:
       return "sensors";
+    case Sign::kPort:
+      return "port";
+    case Sign::kRock:
+      return "rock";
+    case Sign::kHealth:
+      return "health";
   }
   return "";
 }
@@ -283,6 +271,16 @@ void DrawRiskSamples(cv::Mat& image, cv::Point2d at, const FarmState& state, con
   for (const std::uint8_t kind : kinds) {
     DrawRiskSample(image, box, kind, kMildRisk, layout);
     box.x += width;
+  }
+}
+
+// Draws the colours of a bar of health, from 0 to 100 %.
+void DrawHealthSample(cv::Mat& image, cv::Point2d at, const Layout& layout) {
+  const int width = layout.Px(15);
+  const cv::Point left(cvRound(at.x) - width / 2, cvRound(at.y) - layout.Px(2));
+  for (int i = 0; i < width; ++i) {
+    cv::rectangle(image, cv::Rect(left.x + i, left.y, 1, layout.Px(5)),
+                  Bgr(HealthColor((i + 0.5) / width)), cv::FILLED);
   }
 }
 
@@ -330,20 +328,30 @@ void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
       StrokeCircle(image, at, 6.0 * unit, Bgr(kInk), layout.Px(2.5));
       StrokeCircle(image, at, 6.0 * unit, Bgr(kPaper), layout.Px(1.5));
       break;
+    case Sign::kPort:
+      FillCircle(image, at, 5.5 * unit, Bgr(kPort));
+      StrokeCircle(image, at, 5.5 * unit, Bgr(kInk), layout.Px(1.2));
+      break;
+    case Sign::kRock:
+      DrawRock(image, at, 5.5 * unit);
+      break;
+    case Sign::kHealth:
+      DrawHealthSample(image, at, layout);
+      break;
   }
 }
 
 }  // namespace
 
 int LegendPx(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout) {
-  return FootPx(layout) + SignsPx(signs, layout) + KeyPx(key, layout) + layout.Px(4);
+  return layout.Px(kFoot) + SignsPx(signs, layout) + KeyPx(key, layout) + layout.Px(kHeading);
 }
 
 void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs, const FarmState& state,
                const Layout& layout, const Fonts& fonts) {
   const int columns = SignColumns(layout);
   const int left = layout.panel.x + layout.Px(10);
-  const int top = layout.panel.y + layout.panel.height - FootPx(layout) - SignsPx(signs, layout);
+  const int top = layout.panel.y + layout.panel.height - layout.Px(kFoot) - SignsPx(signs, layout);
   const int width = (layout.panel.width - layout.Px(16)) / columns;
   const std::vector<cv::Point> cells = SignCells(signs, layout);
   for (std::size_t i = 0; i < signs.size(); ++i) {
@@ -357,23 +365,6 @@ void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs, const FarmState& 
   }
 }
 
-RiskKey RingsWithoutNames(const FarmState& state, const std::vector<Course>& courses) {
-  RiskKey rings;
-  for (std::size_t i = 0; i < courses.size(); ++i) {
-    const auto& disaster = state.disasters[i];
-    if (!IsDrawn(disaster)) continue;
-    for (std::size_t ring = 0; ring < disaster.risks.size(); ++ring) {
-      const NamedRing one{0, std::round(double(disaster.risks[ring])), disaster.kind};
-      const bool is_known = std::any_of(
-          rings.begin(), rings.end(), [&one](const auto& other) { return other.risk == one.risk; });
-      if (HasRing(courses[i], ring) && !is_known) rings.push_back(one);
-    }
-  }
-  std::sort(rings.begin(), rings.end(),
-            [](const NamedRing& a, const NamedRing& b) { return a.risk > b.risk; });
-  return rings;
-}
-
 namespace {
 
 // Draws a sample of each ring, and the risk next to it.
@@ -383,7 +374,7 @@ void DrawRisks(cv::Mat& image, const RiskKey& rings, cv::Rect row, const Layout&
   int x = row.x;
   x += fonts.small.Draw(image, "risk", {x, base}, Bgr(layout.style->words)) + layout.Px(10);
   const int step = (row.br().x - x) / std::max(1, static_cast<int>(rings.size()));
-  for (const NamedRing& ring : rings) {
+  for (const KeyRing& ring : rings) {
     const cv::Rect box(x, row.y + layout.Px(1.5), layout.Px(17), row.height - layout.Px(3));
     DrawRiskSample(image, box, ring.kind, ring.risk, layout);
     fonts.small.Draw(image, Number(ring.risk, 0), {box.br().x + layout.Px(4), base},
@@ -394,16 +385,21 @@ void DrawRisks(cv::Mat& image, const RiskKey& rings, cv::Rect row, const Layout&
 
 }  // namespace
 
-void DrawRiskKey(cv::Mat& image, const RiskKey& key, const RiskKey& unnamed,
-                 const std::vector<Sign>& signs, const Layout& layout, const Fonts& fonts) {
+void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
+                 const Layout& layout, const Fonts& fonts) {
   const int left = layout.panel.x + layout.Px(10);
   const int right = layout.panel.x + layout.panel.width - layout.Px(10);
-  int y = layout.panel.y + layout.panel.height - FootPx(layout) - SignsPx(signs, layout) -
-          KeyPx(key, layout);
+  int y = layout.panel.y + layout.panel.height - LegendPx(key, signs, layout);
+  fonts.bold.Draw(image, "KEY", {left, y + (layout.Px(kHeading) + fonts.bold.cap_height()) / 2},
+                  Bgr(layout.style->faint));
+  y += layout.Px(kHeading);
   const auto at_right = [&](const std::string& text, int base, Rgb color) {
     fonts.small.Draw(image, text, {right - fonts.small.Width(text), base}, Bgr(color));
   };
-  for (const NamedRing& ring : key) {
+  if (!key.empty() && !HasNames(key)) {
+    return DrawRisks(image, key, {left, y, right - left, layout.Px(kKeyRow)}, layout, fonts);
+  }
+  for (const KeyRing& ring : key) {
     const int base = y + (layout.Px(kKeyRow) + fonts.small.cap_height()) / 2;
     const cv::Rect box(left, y + layout.Px(1.5), layout.Px(15), layout.Px(12));
     DrawRiskSample(image, box, ring.kind, ring.risk, layout);
@@ -416,10 +412,6 @@ void DrawRiskKey(cv::Mat& image, const RiskKey& key, const RiskKey& unnamed,
     y += layout.Px(kKeyRow);
   }
   if (!key.empty()) return;
-  if (!unnamed.empty() && unnamed.size() <= kMaxColors) {
-    const cv::Rect row(left, y + layout.Px(5), right - left, layout.Px(kKeyRow));
-    return DrawRisks(image, unnamed, row, layout, fonts);
-  }
   const cv::Rect scale(left, y, right - left, layout.Px(7));
   for (int i = 0; i < scale.width; ++i) {
     cv::rectangle(image, cv::Rect(scale.x + i, scale.y, 1, scale.height),

@@ -2,7 +2,7 @@
 #pragma once
 
 /// The legend at the bottom of the panel. From top to bottom: the key of risks, the key of signs,
-/// symbols, and the north arrow with the scale bar. Private to this package.
+/// and the north arrow with the scale bar. Private to this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -22,21 +22,21 @@ struct Fonts;
 struct Layout;
 struct Overlays;
 
-/// A ring whose wind is given.
-struct NamedRing {
-  std::int32_t wind_kt{};  ///< min wind within the ring [kn]
+/// A ring of a disaster in the key of risks.
+struct KeyRing {
+  std::int32_t wind_kt{};  ///< min wind within the ring [kn]; 0: not given
   double risk{};           ///< rounded risk within the ring
-  std::uint8_t kind{};     ///< kind of the storm (DisasterState.kind)
+  std::uint8_t kind{};     ///< kind of the disaster (DisasterState.kind)
 };
 
-/// The rings that the key of risks names. An empty list: the key shows the risks of all rings
-/// without names.
-using RiskKey = std::vector<NamedRing>;
+/// The rings that the key of risks shows. An empty list: the key shows the colours of all risks.
+using RiskKey = std::vector<KeyRing>;
 
-/// Returns the rings that have a radius now or later, of all drawn disasters. The rings of one
-/// disaster are in order, the weakest first. Equal rings of several disasters are listed once.
-/// Returns an empty key if a drawn disaster has no given winds, or if there are more than four
-/// rings.
+/// Returns the rings that have a radius now or later, of all drawn disasters, each once. If every
+/// drawn disaster has given winds and there are at most four rings, the rings have their winds; the
+/// rings of one disaster are in order, the weakest first. Else the rings have no winds, those with
+/// the same rounded risk are listed once, and the mildest is first. Returns an empty key if these
+/// are more than four.
 RiskKey MakeRiskKey(const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses);
 
 /// Returns the name of a ring and its wind, "hurricane force (64 kt)". If that is wider than
@@ -56,7 +56,10 @@ enum class Sign {
   kHeading,       ///< arrow along the motion of a disaster
   kPointer,       ///< triangle towards a centre outside the map
   kDirection,     ///< arrow of a legal move at a port
-  kSight          ///< sensor range of a ship
+  kSight,         ///< sensor range of a ship
+  kPort,          ///< circle of a port
+  kRock,          ///< rock
+  kHealth         ///< bar above a device: its health
 };
 
 /// Returns the signs that a picture contains, each once.
@@ -74,7 +77,7 @@ int SignSpan(Sign sign);
 /// Returns the height of the whole legend [pixels].
 int LegendPx(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout);
 
-/// Draws the constant part of the legend: symbols, north arrow and scale bar.
+/// Draws the constant part of the legend: north arrow and scale bar.
 void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                 const Fonts& fonts);
 
@@ -82,14 +85,9 @@ void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layou
 void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs,
                const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
 
-/// Returns the rings of all drawn disasters that have a radius now or later, without their winds,
-/// the mildest first. Of several rings with the same rounded risk, the first is listed.
-RiskKey RingsWithoutNames(const aquafarm_msgs::FarmState& state,
-                          const std::vector<Course>& courses);
-
-/// Draws the key of risks above the key of signs. With an empty key it shows the rings `unnamed` in
-/// one row, or the colour scale of all risks if there are none or more than four.
-void DrawRiskKey(cv::Mat& image, const RiskKey& key, const RiskKey& unnamed,
-                 const std::vector<Sign>& signs, const Layout& layout, const Fonts& fonts);
+/// Draws the key of risks and its heading above the key of signs. Rings with winds have a row each,
+/// others are in one row. An empty key: draws the colour scale of all risks.
+void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
+                 const Layout& layout, const Fonts& fonts);
 
 }  // namespace aquafarm_viz

@@ -275,7 +275,8 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
     const DisasterState& disaster = state.disasters[index];
     const std::vector<std::int32_t>& winds = courses[index].ring_winds_kt;
     if (!IsDrawn(disaster)) continue;
-    const std::string whose = are_several ? NameNow(disaster, courses[index]) + ", " : "";
+    const std::string disaster_name = NameNow(disaster, courses[index]);
+    const std::string whose = are_several ? disaster_name + ", " : "";
     for (std::size_t ring = 0; ring < std::min(disaster.radii.size(), disaster.risks.size());
          ++ring) {
       const std::string name = ring < winds.size() ? aquafarm::RingName(winds[ring]) + ", " : "";
@@ -283,20 +284,19 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
       const auto points = PointsOnMap(disaster, ring, map.size(), layout);
       FreeSpace water = space.space(Cover::kNothing);
       BlockOtherRings(state, disaster, ring, map.size(), water, layout);
+      std::vector<std::vector<std::string>> candidates{{whose + name + "risk " + risk},
+                                                       {whose + "risk " + risk}};
+      if (are_several) candidates.push_back({disaster_name, "risk " + risk});
       std::optional<cv::Rect> place;
-      std::string text;
-      for (const std::string& candidate :
-           {whose + name + "risk " + risk, whose + "risk " + risk, "risk " + risk}) {
-        text = candidate;
-        const cv::Size size(fonts.bold.Width(text) + layout.Px(kPlateMargins),
-                            layout.Px(kPlateRow));
-        place = PlaceBesideRing(points, size, water, layout);
+      std::vector<std::string> lines;
+      for (const auto& candidate : candidates) {
+        lines = candidate;
+        place = PlaceBesideRing(points, PlateSize(lines, layout, fonts), water, layout);
         if (place) break;
       }
       if (!place) continue;  // only the key of risks explains it
       space.Add(*place);
-      DrawPlate(map, *place, {text}, RiskColor(double(disaster.risks[ring]), layout), layout,
-                fonts);
+      DrawPlate(map, *place, lines, RiskColor(double(disaster.risks[ring]), layout), layout, fonts);
     }
   }
 }

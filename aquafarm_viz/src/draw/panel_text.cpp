@@ -407,7 +407,7 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   const RiskKey key = MakeRiskKey(state, forecasts.courses);
   const std::vector<Sign> signs = SignsOf(spec, state, overlays, forecasts.outlook, key, layout);
   DrawSigns(image, signs, state, layout, fonts);
-  DrawRiskKey(image, key, RingsWithoutNames(state, forecasts.courses), signs, layout, fonts);
+  DrawRiskKey(image, key, signs, layout, fonts);
   Panel panel(image, LegendPx(key, signs, layout), layout, fonts);
   const Trail* trail = overlays.trail != nullptr ? overlays.trail : overlays.route;
   ListDevices(panel, spec, state, trail, forecasts.outlook, layout);

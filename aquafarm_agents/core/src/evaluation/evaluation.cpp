@@ -273,15 +273,22 @@ std::string Describe(const Evaluation& evaluation) {
 std::string DescribeLosses(const Evaluation& evaluation) {
   if (!evaluation.losses) return "";
   const Losses& losses = *evaluation.losses;
-  char text[400];
-  std::snprintf(text, sizeof(text),
-                "loss %.2f ± %.2f %s of %.2f insured, operating cost %.2f, VaR 5 %% %.2f "
-                "[95 %%: %.2f, %.2f], CVaR 5 %% %.2f [95 %%: %.2f, %.2f]",
-                losses.mean_loss, losses.standard_error, losses.currency.c_str(),
-                losses.Mean(losses.Total().insured), losses.Mean(losses.operating_cost),
-                losses.var.value, losses.var.low, losses.var.high, losses.cvar.value,
-                losses.cvar.low, losses.cvar.high);
-  return text;
+  const auto number = [](const char* format, double value) {
+    char text[60];
+    std::snprintf(text, sizeof(text), format, value);
+    return std::string(text);
+  };
+  const auto interval = [&number](const auto& of) {  // NaN with fewer than two distinct starts
+    return number("%.2f", of.value) +
+           (std::isnan(of.low)
+                ? ""
+                : " [95 %: " + number("%.2f", of.low) + ", " + number("%.2f", of.high) + "]");
+  };
+  return "loss " + number("%.2f", losses.mean_loss) +
+         (std::isnan(losses.standard_error) ? "" : " ± " + number("%.2f", losses.standard_error)) +
+         " " + losses.currency + " of " + number("%.2f", losses.Mean(losses.Total().insured)) +
+         " insured, operating cost " + number("%.2f", losses.Mean(losses.operating_cost)) +
+         ", VaR 5 % " + interval(losses.var) + ", CVaR 5 % " + interval(losses.cvar);
 }
 
 }  // namespace aquafarm::agents

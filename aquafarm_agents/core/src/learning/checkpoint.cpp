@@ -149,7 +149,11 @@ Checkpoint Parse(std::string_view bytes) {
                      " bytes after the header, expected " +
                      std::to_string(header.index_bytes + header.section_bytes));
   }
-  if (HashBytes(bytes) != header.checksum || header.zero != 0) {
+  if (header.zero != 0) {
+    throw InputError("damaged: byte 12 and the next ones are " + std::to_string(header.zero) +
+                     ", expected 0");
+  }
+  if (HashBytes(bytes) != header.checksum) {
     throw InputError("damaged: the checksum is " + Hex(HashBytes(bytes)) + ", expected " +
                      Hex(header.checksum));
   }

@@ -25,13 +25,28 @@ Checkpoint::Number SavedNumber(const Value& value) {
 }
 inline Checkpoint::Number SavedNumber(const RandomStream& stream) { return stream.position(); }
 
+// Converts a number. A double outside the range of an integer cannot be converted.
+// @throws InputError if the number does not fit
+template <typename Value, typename Number>
+Value Converted(Number number) {
+  if constexpr (std::is_floating_point_v<Number> && std::is_integral_v<Value>) {
+    constexpr double kLargest = 9007199254740992.0;  // 2^53; up to it doubles contain all integers
+    if (!(number >= (std::is_signed_v<Value> ? -kLargest : 0.0) && number <= kLargest)) {
+      throw InputError("checkpoint: got " + std::to_string(number) + ", expected " +
+                       (std::is_signed_v<Value> ? "an integer" : "an integer from 0") +
+                       ": damaged, use another checkpoint");
+    }
+  }
+  return static_cast<Value>(number);
+}
+
 template <typename Number, typename Value>
 void LoadNumber(Number number, Value& value) {
-  value = static_cast<Value>(number);
+  value = Converted<Value>(number);
 }
 template <typename Number>
 void LoadNumber(Number number, RandomStream& stream) {
-  stream.Seek(static_cast<std::uint64_t>(number));
+  stream.Seek(Converted<std::uint64_t>(number));
 }
 
 template <typename Fields>
@@ -43,7 +58,7 @@ void SaveNumbers(Checkpoint& checkpoint, const std::string& section, const Field
 
 // Loads the numbers from `section`. Checkpoints of older versions have the array `positional`
 // instead, with values of type `Positional` in the order of the fields.
-// @throws InputError if a number or both sections are missing
+// @throws InputError if a number or both sections are missing, or a number does not fit
 template <typename Positional, typename Fields>
 void LoadNumbers(const Checkpoint& checkpoint, const std::string& section,
                  const std::string& positional, const Fields& fields) {

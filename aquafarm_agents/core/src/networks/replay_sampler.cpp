@@ -37,7 +37,8 @@ void ReplaySampler<Scalar>::Add() {
 
 template <typename Scalar>
 void ReplaySampler<Scalar>::Mark(std::size_t row, bool begins) {
-  beginning_count_ += (begins ? 1U : 0U) - beginnings_[row];
+  beginning_count_ -= beginnings_[row];
+  beginning_count_ += begins ? 1 : 0;
   beginnings_[row] = begins ? 1 : 0;
   if (priorities_) priorities_->Set(row, begins ? largest_priority_ : 0.0F);
 }

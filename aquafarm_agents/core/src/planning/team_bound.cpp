@@ -78,7 +78,9 @@ class Trip {
     }
     if (!device_.self_propelled) {
       const double pickup = static_cast<double>(scenario_.rewards.pickup);
-      best_case = std::max(best_case, pickup + value() + drop_off() + 2.0 * move * to_port_[site_]);
+      const double way = move * to_port_[site_];
+      best_case = std::max({best_case, pickup + value() + drop_off() + 2.0 * way,
+                            pickup + way});  // the last one without a delivery
     }
     return best_case <= best_;
   }

@@ -159,6 +159,12 @@ void Rollout::Load(const Checkpoint& checkpoint) {
   load("values", loaded.values_, 1);
   load("rewards", loaded.rewards_, 1);
   load("ends", loaded.ends_, 1);
+  for (const std::uint8_t action : loaded.actions_) {
+    if (action < kActionCount) continue;
+    throw InputError("rollout.actions: got " + std::to_string(action) + ", expected at most " +
+                     std::to_string(kActionCount - 1) +
+                     ": damaged, resume from another checkpoint");
+  }
   // Older checkpoints contain no labels. Their samples are not imitated.
   if (!labels_.empty() && checkpoint.Has("rollout.labels")) load("labels", loaded.labels_, 1);
   for (const std::uint8_t label : loaded.labels_) {

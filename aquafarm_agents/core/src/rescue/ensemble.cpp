@@ -260,9 +260,13 @@ Ensemble::Ensemble(const CentralForecast& forecast, const EnsembleOptions& optio
   require("members", options.members, 1, 60000);
   require("steps of the plan", options.steps, 1, 4000);
   require("rings of the storm", rings_, 1, static_cast<std::int64_t>(kMaxStormRings));
-  constexpr std::int64_t kMaxArrivals = 400'000'000;
-  require("members times cells times rings",
-          std::int64_t{options.members} * options.width * options.height * rings_, 1, kMaxArrivals);
+  constexpr std::int64_t kMaxNumbers = 400'000'000;  // of one array
+  const std::int64_t cells = std::int64_t{options.width} * options.height;
+  const std::int64_t steps = options.steps;
+  const auto devices = static_cast<std::int64_t>(sites.size());
+  require("members times cells times rings", options.members * cells * rings_, 1, kMaxNumbers);
+  require("members times steps times devices", options.members * steps * devices, 0, kMaxNumbers);
+  require("rings times steps times cells", rings_ * steps * cells, 1, kMaxNumbers);
   AQUAFARM_CHECK_LE(std::size_t{1}, forecast.path.points.size());
   EnsembleBuilder(forecast, sites, *this).Run();
 }

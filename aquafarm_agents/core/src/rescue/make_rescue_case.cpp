@@ -61,13 +61,13 @@ void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
   if (rescue.storm.held > 0) {
     add("Radii between two points of the track if the wind cannot be interpolated",
         "the larger radii of the two points", "assumed",
-        "On the safe side: radii can be estimated from a wind alone");
+        "Chosen to be safe: radii can be estimated only from a wind");
   }
   add("Position errors along and across the track", "normal, equal, correlated by exp(-dt / 48 h)",
-      "assumed", "The published statistics give mean distances alone");
+      "assumed", "The published statistics contain only mean distances");
   add("Damage of a device at its site",
       Short(100.0 * static_cast<double>(rescue.scenario->damage.exposure_damage), 3) +
-          " % of its value per unit of risk and " + Short(rescue.scenario->step_duration_s, 0) +
+          " % of its value per unit of risk and per " + Short(rescue.scenario->step_duration_s, 0) +
           " s",
       "assumed",
       rescue.scenario->damage.DependsOnKinds()

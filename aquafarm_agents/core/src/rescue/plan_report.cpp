@@ -115,8 +115,12 @@ void SetNothingSavedResult(RescueCase& rescue, const Ensemble& ensemble, PlanRep
                 advice + " Ships could still save devices: check the values and prices.", report,
                 rescue);
   }
-  report.text = problem.ships.empty()
-                    ? "There is no ship, so nothing can be saved."
+  const bool has_value =
+      std::any_of(problem.devices.begin(), problem.devices.end(),
+                  [](const RescueDevice& device) { return HasValueLeft(device); });
+  report.text = problem.ships.empty() ? "There is no ship, so nothing can be saved."
+                : !has_value
+                    ? "No device has value left: nothing can be saved."
                     : "No ship can bring a device to a port before the winds that stop ships: "
                       "nothing can be saved.";
   Warn("nothing_can_be_saved", "stop", advice, report, rescue);

@@ -106,14 +106,15 @@ Json LeftBehindOf(const RescueCase& rescue, const PlanReport& report) {
     const DeviceOutcome& outcome = report.plan.devices[d];
     if (outcome.ship != kNone) continue;
     const char* reason = "too_late";
-    std::string text = "no ship can bring it to port before the winds with a chance of 50 %.";
+    std::string text =
+        "no ship can bring it to port before the winds with a chance of at least 50 %.";
     if (report.result == PlanResult::kStormUnknown) {
       reason = "winds_unknown";
       text = "the storm's winds are unknown, so that no trip can be judged.";
     } else if (problem.CarrierOf(d) != kNone) {
       reason = "unreachable";
       text = "it is aboard a ship that can bring it to no open port.";
-    } else if (problem.devices[d].value <= 0.0 || problem.devices[d].damage_before >= 1.0) {
+    } else if (!HasValueLeft(problem.devices[d])) {
       reason = "not_worth_it";
       text = "it has no value left to save.";
     } else if (outcome.mean_loss_idle <= 0.0) {

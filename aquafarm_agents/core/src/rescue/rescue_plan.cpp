@@ -38,12 +38,13 @@ void RequireValid(const RescueProblem& problem) {
               std::to_string(kMaxRescueDevices));
   require(!problem.ports.empty(), "ports", "got none, expected at least one");
   require(problem.risk_averse >= 0.0 && problem.risk_averse <= 1.0, "risk averse",
-          "expected a share in [0, 1]");
+          "got " + std::to_string(problem.risk_averse) + ", expected a share in [0, 1]");
   for (const RescueDevice& device : problem.devices) {
     require(std::isfinite(device.value) && device.value >= 0.0, device.name,
-            "value: expected a number of at least 0");
-    require(device.damage_before >= 0.0 && device.damage_before <= 1.0, device.name,
-            "damaged: expected a share in [0, 1]");
+            "value: got " + std::to_string(device.value) + ", expected a number of at least 0");
+    require(
+        device.damage_before >= 0.0 && device.damage_before <= 1.0, device.name,
+        "damaged: got " + std::to_string(device.damage_before) + ", expected a share in [0, 1]");
   }
   std::vector<std::int32_t> carriers(problem.devices.size(), 0);
   for (const RescueShip& ship : problem.ships) {
@@ -53,9 +54,12 @@ void RequireValid(const RescueProblem& problem) {
               "aboard: expected devices of the problem, each aboard one ship");
     }
     require(ship.speed_kn > 0.0 && std::isfinite(ship.speed_kn), ship.name,
-            "speed: expected more than 0 knots");
-    require(ship.capacity >= 1, ship.name, "capacity: expected at least 1");
-    require(ship.ready_s >= 0.0, ship.name, "ready: expected a time after the start of the plan");
+            "speed: got " + std::to_string(ship.speed_kn) + " knots, expected more than 0");
+    require(ship.capacity >= 1, ship.name,
+            "capacity: got " + std::to_string(ship.capacity) + ", expected at least 1");
+    require(ship.ready_s >= 0.0, ship.name,
+            "ready: got " + std::to_string(ship.ready_s) +
+                " s, expected a time after the start of the plan");
   }
 }
 

@@ -388,13 +388,19 @@ void Run::Summarise() {
             Count(progress.episodes) + " episodes in " + FormatDuration(progress.elapsed_s) + "\n";
   }
   if (progress.episodes > 0) {
+    const auto count =
+        static_cast<int>(std::min<std::uint64_t>(progress.episodes, TrainingProgress::kWindow));
     char line[120];
-    std::snprintf(line, sizeof(line),
-                  "last %d   return %.1f, success %.1f %% (exploring); best mean return %.1f\n",
-                  TrainingProgress::kWindow, static_cast<double>(progress.mean_return),
-                  100.0 * static_cast<double>(progress.success_rate),
-                  static_cast<double>(progress.best_mean_return));
+    std::snprintf(line, sizeof(line), "last %-3d   return %.1f, success %.1f %% (exploring)", count,
+                  static_cast<double>(progress.mean_return),
+                  100.0 * static_cast<double>(progress.success_rate));
     text += line;
+    if (!std::isnan(progress.best_mean_return)) {
+      std::snprintf(line, sizeof(line), "; best mean return %.1f",
+                    static_cast<double>(progress.best_mean_return));
+      text += line;
+    }
+    text += "\n";
   }
   if (report_.status.has_evaluation) {
     text += "greedy     " + agents::Describe(report_.status.evaluation) + "\n";

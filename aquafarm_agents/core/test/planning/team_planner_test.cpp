@@ -138,6 +138,9 @@ TEST(TeamBound, CountsAPickupThatNeverGetsHome) {
   scenario.step_limit = 5;
   Farm farm = aquafarm::test::MakeFarm(scenario);
   EXPECT_DOUBLE_EQ(TeamBound(farm), 20 - 3);
+  scenario.rewards.drop_off = -100.0F;  // no delivery is worth its reward
+  Farm other = aquafarm::test::MakeFarm(scenario);
+  EXPECT_DOUBLE_EQ(TeamBound(other), 20 - 3);
 }
 
 TEST(TeamBound, ChargesARiskOnceWhereDevicesShareAShip) {

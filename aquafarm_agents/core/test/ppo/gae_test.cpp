@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "agents_fixture.h"
 #include "aquafarm/base/rng.h"
 #include "aquafarm/grid/action.h"
 #include "ppo/rollout.h"
@@ -123,6 +124,17 @@ TEST(Rollout, LearnsFromStepsOfActiveAgentsOnly) {
   // The farm was lost during the episode and replaced by another one.
   rollout = Recorded(going, Outcome(EndReason::kNone, true, {1, 1}));
   EXPECT_FALSE(rollout.IsValid(0));
+}
+
+TEST(Rollout, RefusesActionsThatDoNotExist) {
+  const StepResults going = Outcome(EndReason::kNone, false, {1, 1});
+  Checkpoint checkpoint;
+  Recorded(going, going).Save(checkpoint);
+  Rollout loaded({1, 2, 2, 1, 0, 1, false});
+  loaded.Load(checkpoint);
+  checkpoint.SetArray("rollout.actions", std::vector<std::uint8_t>{0, kActionCount});
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { loaded.Load(checkpoint); }),
+                  "rollout.actions: got 10, expected at most 9");
 }
 
 TEST(Rollout, KeepsTheLabelsOfTheStepsThatHaveThem) {

@@ -6,7 +6,8 @@ const LINES = [[2, 3], [8, 4], [1, 0]];  // of references
 const DASHES = [null, [9, 4], [2, 3], [12, 4, 2, 4], [5, 5], [1, 6], [14, 6]];
 // Width for the marks of greedy play at the right edge [pixels]. All charts have the same episodes.
 const MARKS = Math.max(...CURVES.charts.map(chart => (chart.marks || []).length));
-const PAD = MARKS ? Math.max(56, 12 + 20 * MARKS) : 0;  // has space for "greedy"
+const STEP = MARKS <= 4 ? 40 : 20;  // distance of two marks; up to four have their value above them
+const PAD = MARKS ? Math.max(56, 12 + STEP * MARKS) : 0;  // has space for "greedy"
 let moving = false;
 for (const chart of CURVES.charts) {
   const unit = chart.bend;
@@ -180,11 +181,12 @@ function mark(canvas, area, dygraph, marks, onScale) {
   canvas.lineWidth = 2;
   marks.forEach(([mean, low, high], i) => {
     if (mean === null) return;
-    const x = middle + 20 * (i - (marks.length - 1) / 2);
+    const x = middle + STEP * (i - (marks.length - 1) / 2);
     canvas.strokeStyle = canvas.fillStyle = CURVES.colours[i];
     canvas.beginPath();
     canvas.arc(x, at(mean), 4, 0, 2 * Math.PI);
     canvas.fill();
+    if (STEP > 20) canvas.fillText(inWords(mean, 0), x, at(high ?? mean) - 8);
     if (low === null) return;
     canvas.beginPath();
     canvas.moveTo(x, at(low));

@@ -157,8 +157,8 @@ MapImage ParseWithStb(const std::string& bytes, const ParseContext& place) {
   };
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) refuse();
   // Rejects a size that the file is too short for. Deflate compresses at most 1032 to 1 (zlib,
-  // technical details), so a PNG with 8 bits per pixel stays below this limit.
-  constexpr std::size_t kMaxPacking = 2048;
+  // technical details), and a byte contains at most 8 pixels.
+  constexpr std::size_t kMaxPacking = 8 * 1032;
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   if (width > kMaxMapSide || height > kMaxMapSide || pixels / kMaxPacking > bytes.size()) {
     place.Fail("got a size of " + std::to_string(width) + " x " + std::to_string(height) +

@@ -59,7 +59,7 @@ class Builder {
     const bool storm = !request.track.empty() || !request.archive.files.empty();
     if (!request.center && (storm || !request.port_places.empty())) {
       throw InputError(
-          "center: got none, expected the position of the ranch, which a storm requires");
+          "center: got none, expected the position of the ranch, which storms and ports require");
     }
   }
 
@@ -113,8 +113,8 @@ class Builder {
     } catch (const InputError&) {
       return false;
     }
-    const std::string many = states == 0 ? "more than 268435456" : std::to_string(states);
-    Say("states: " + many + ", slow to learn in a table; networks get routes by water as features");
+    const std::string many = states == 0 ? "too many for a table" : std::to_string(states);
+    Say("states: " + many + "; slow to learn in a table, so networks get routes by water");
     return true;
   }
 
@@ -284,7 +284,7 @@ class Builder {
     }
     track = Continued(track, file.format);
     if (track.fixes.size() == 1) {
-      Fail(track.fixes[0], "got the only point of " + (track.name.empty() ? track.id : track.name) +
+      Fail(track.fixes[0], "got only one point of " + (track.name.empty() ? track.id : track.name) +
                                ", expected at least two, which define its motion");
     }
     const FineRings fine = ToFineRings(track, request_.reduction, track.fixes[0].time);
@@ -313,7 +313,8 @@ class Builder {
           "time: %g s per step; a storm is nearest 18 to 30 h after the start and lasts %d steps",
           plan_.step_s, duration_));
     }
-    if (request_.track.empty()) return Say(Text("time: %g s per step; no storm", plan_.step_s));
+    if (request_.track.empty())
+      return Say(Text("time: %g s per step; no storm track", plan_.step_s));
     const StormTrack track = ReadTrack();
     const double half_diagonal_km =
         std::hypot(width(), height()) / 2.0 * plan_.cell_size_m / 1000.0;

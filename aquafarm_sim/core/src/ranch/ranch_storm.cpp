@@ -28,7 +28,7 @@ const StormTrack& OfThatName(const std::string& option, const StormFile& file,
     return first;
   }
   for (const StormTrack& other : file.tracks) {
-    if (other.id == track.id) return other;
+    if (other.id == track.id && other.id != kUnknownStormId) return other;
   }
   try {
     return FindTrack(file, NameOfStorm(track));
@@ -147,7 +147,7 @@ std::vector<StormForecast> ForecastsDuring(const std::vector<StormForecast>& for
   if (!kept.empty() && ends(kept.front()) <= start) {
     warnings.push_back("forecasts: the forecast of " + FormatTime(kept.front().issued) +
                        " ends at " + FormatTime(ends(kept.front())) +
-                       ", before the start, and is ignored");
+                       ", not after the start, and is ignored");
     kept.erase(kept.begin());
   }
   return kept;

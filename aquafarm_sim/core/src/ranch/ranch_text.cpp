@@ -37,6 +37,8 @@ class Writer {
          InQuotes("A ranch" +
                   (request_.chart.empty() ? "" : " on the chart " + FileName(request_.chart)) +
                   (plan_.archive_steps > 0 ? " with another recorded storm in every episode."
+                   : request_.track.empty() && !plan_.presets.empty()
+                       ? " with disasters that are not recorded."
                    : request_.track.empty()
                        ? " in calm weather."
                        : " while " + plan_.storm_text + " passes." + ForecastNote())));

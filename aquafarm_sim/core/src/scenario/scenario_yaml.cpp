@@ -65,8 +65,8 @@ void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path
   waypoint.step = ToStep(fix.time, frame, path);
   if (!frame->grid->Faces(fix.point)) {
     throw FieldError(path,
-                     "got a place on the far side of the globe, expected one within 60 "
-                     "degrees of grid.origin");
+                     "got a position more than 60 degrees from grid.origin, expected one within 60 "
+                     "degrees");
   }
   const std::array<double, 2> place = frame->grid->ToGrid(fix.point);
   waypoint.x = static_cast<float>(place[0]);

@@ -227,16 +227,17 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
           ListOf<Interval<std::int32_t>>{{1, 200}, 0, kMaxRings});
   a.Always();
   a.Field("duration", disaster.duration, Interval<std::int32_t>{1, kMaxSteps});
-  a.When(!tracked, "'track' is not set");
+  const char* unset = drawn ? "'storms' is not set" : "'track' is not set";
+  a.When(!tracked, unset);
   a.Field("grade", disaster.grade, kGrade);
-  a.When(!tracked && !by_quadrant, tracked ? "'track' is not set" : "'quadrants' is not set");
+  a.When(!tracked && !by_quadrant, tracked ? unset : "'quadrants' is not set");
   a.Field("radii", disaster.radii, ListOf<Interval<float>>{kRadius, 1, kMaxRings});
-  a.When(!tracked && by_quadrant, tracked ? "'track' is not set" : "'quadrants' is set");
+  a.When(!tracked && by_quadrant, tracked ? unset : "'quadrants' is set");
   a.Field("quadrants", disaster.quadrants, ListOf<Interval<float>>{kRadius, 0, kMaxRings});
   if constexpr (Archive::kReads) {
     if (by_quadrant) disaster.radii = Largest(disaster.quadrants);
   }
-  a.When(!tracked, "'track' is not set");
+  a.When(!tracked, unset);
   a.Field("speed", disaster.speed, Interval<float>{0.0F, 1000.0F});
   a.Field("heading_deg", disaster.heading_deg, Interval<std::int32_t>{0, 359});
   a.Field("turn_probability", disaster.turn_probability, kShare);

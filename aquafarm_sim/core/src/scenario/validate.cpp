@@ -57,9 +57,10 @@ void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& q
                     const std::vector<float>& radii, bool expected) {
   const std::string here = internal::Join(path, "quadrants");
   if (quadrants.empty() == expected || (expected && quadrants.size() != radii.size())) {
-    throw FieldError(here,
-                     "got " + std::to_string(quadrants.size()) +
-                         " rings, expected as many as the disaster has, or no quadrants at all");
+    throw FieldError(
+        here, "got " + std::to_string(quadrants.size()) +
+                  " rings, expected quadrants for every ring at every point of the disaster, "
+                  "or at no point");
   }
   for (std::size_t i = 0; i < quadrants.size(); ++i) {
     for (std::size_t q = 0; q < quadrants[i].size(); ++q) {

@@ -173,8 +173,8 @@ TEST(Quadrants, ThatDoNotFitAreRefused) {
   Scenario scenario = Crossed();
   scenario.disasters[0].track[1].quadrants.clear();
   EXPECT_EQ(Refused(scenario),
-            "disasters[0].track[1].quadrants: got 0 rings, expected as many as the disaster has, "
-            "or no quadrants at all");
+            "disasters[0].track[1].quadrants: got 0 rings, expected quadrants for every ring at "
+            "every point of the disaster, or at no point");
   scenario = Crossed();
   scenario.disasters[0].track[1].quadrants[1][0] = 0.5F;
   EXPECT_EQ(Refused(scenario),

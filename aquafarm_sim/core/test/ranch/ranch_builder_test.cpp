@@ -25,7 +25,7 @@ TEST(Ranch, OfManyDevicesHasRoutesForNetworks) {
   const BuiltRanch ranch = BuildRanch(request);
   EXPECT_TRUE(ranch.scenario.view.routes);
   // 24 x 20 cells; each device is waiting or delivered, or one of them is aboard.
-  EXPECT_TRUE(Says(ranch.decided, "states: 13762560, slow to learn in a table"));
+  EXPECT_TRUE(Says(ranch.decided, "states: 13762560; slow to learn in a table"));
   EXPECT_NE(ranch.yaml.find("#   states: 13762560"), std::string::npos);
 }
 
@@ -128,7 +128,7 @@ TEST(Ranch, IsRefusedWithTheReason) {
   RanchRequest request = Request();
   request.center.reset();
   EXPECT_EQ(Refused(request),
-            "center: got none, expected the position of the ranch, which a storm requires");
+            "center: got none, expected the position of the ranch, which storms and ports require");
   request.track.clear();
   EXPECT_EQ(Refused(request), "center: got none, expected the position of the ranch on the chart");
   request = Request();

@@ -94,7 +94,7 @@ TEST(Ranch, LeavesOutAForecastThatEndsBeforeItsStart) {
   const BuiltRanch ranch = WithBulletins(request, 2021, {{-6, 20}, {0, 2}, {4, 22}});
   EXPECT_TRUE(Says(ranch.warnings,
                    "forecasts: the forecast of 2021-07-25T00:00:00Z ends at 2021-07-25T02:00:00Z, "
-                   "before the start, and is ignored"));
+                   "not after the start, and is ignored"));
   EXPECT_EQ(ranch.scenario.disasters[0].forecasts.size(), 1U);
   try {
     WithBulletins(request, 2021, {{-6, 20}, {0, 1}});
@@ -150,7 +150,7 @@ TEST(Ranch, RefusesAFixFarAwayWithItsLine) {
   std::ofstream(path) << R"([{"tfbh": "1", "ename": "In-fa", "points": [
     {"time": "2021-07-25T14:00:00", "lat": 30, "lng": 122.2, "speed": 30}]}])";
   EXPECT_EQ(Refused(request), path.string() +
-                                  ": 2021-07-25T06:00:00Z: got the only point of "
+                                  ": 2021-07-25T06:00:00Z: got only one point of "
                                   "In-fa, expected at least two, which define its "
                                   "motion");
   fs::remove(path);

@@ -293,7 +293,7 @@ TEST(StormsKey, IsRefusedInOneLine) {
   EXPECT_EQ(Refused("    duration: 360\n", "    duration: 360\n    track: []\n"),
             "ranch.yaml:7: disasters[0].track: is used only if 'storms' is not set");
   EXPECT_EQ(Refused("    duration: 360\n", "    duration: 360\n    speed: 1\n"),
-            "ranch.yaml:7: disasters[0].speed: is used only if 'track' is not set");
+            "ranch.yaml:7: disasters[0].speed: is used only if 'storms' is not set");
 }
 
 TEST(StormsKey, NamesAnArchiveThatIsNotThere) {

@@ -100,12 +100,15 @@ struct Landfall {
   std::string place;  ///< as written, UTF-8
 };
 
+/// Id of a track whose source gives no id.
+inline constexpr const char* kUnknownStormId = "storm";
+
 /// One storm.
 struct StormTrack {
-  std::string id;               ///< unique in its file, such as "2106" or "WP082014"
-  std::string name;             ///< as written; empty if not given
-  std::string local_name;       ///< in the agency's language; empty if not given
-  std::string agency;           ///< agency whose positions these are
+  std::string id;          ///< unique in its file, such as "2106"; kUnknownStormId if not given
+  std::string name;        ///< as written; empty if not given
+  std::string local_name;  ///< in the agency's language; empty if not given
+  std::string agency;      ///< agency whose positions these are
   std::vector<StormFix> fixes;  ///< sorted by time, each time once
   std::vector<StormForecast> forecasts;
   std::vector<Landfall> landfalls;  ///< sorted by time

@@ -138,7 +138,7 @@ std::vector<StormTrack> ReadWeatherService(std::string_view text, ParseContext& 
   const bool alone = std::string_view(key) == "forecast" && now == nullptr;
   StormTrack track;
   track.id = answer.Text({"id", "stormid"});
-  if (track.id.empty()) track.id = "storm";
+  if (track.id.empty()) track.id = kUnknownStormId;
   track.name = answer.TryText({"name"});
   track.agency = "weather service";
   const Json* points = std::string_view(key) == "track" || alone ? answer.List({key}) : nullptr;

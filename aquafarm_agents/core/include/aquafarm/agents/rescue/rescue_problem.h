@@ -47,6 +47,11 @@ struct RescueDevice {
   double damage_factor{1.0};  ///< factor of its kind in a typhoon (DamageSpec::kinds)
 };
 
+/// Returns whether a rescue can save a part of the value of a device.
+inline bool HasValueLeft(const RescueDevice& device) {
+  return device.value > 0.0 && device.damage_before < 1.0;
+}
+
 /// A port of the ranch.
 struct RescuePort {
   std::string name;

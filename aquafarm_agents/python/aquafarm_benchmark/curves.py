@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The curves of runs in the form in which figures show them."""
+import numpy as np
+
+from aquafarm_benchmark import measures
+
+
+def columns_of_runs(of_one, column):
+    """Returns a column of all runs, [runs, episodes]. Longer runs are cut to the shortest one, as
+    lengths may differ slightly."""
+    length = min(len(run["curve"][column]) for run in of_one)
+    return np.array([run["curve"][column][:length] for run in of_one])
+
+
+def moving_means(values):
+    """Returns (episodes, means). means: moving means over 50 episodes; episodes: the last episode of
+    each mean, counted from 1."""
+    window = min(measures.WINDOW, len(values))
+    return np.arange(window, len(values) + 1), measures.moving_mean(values, window)
+
+
+def most_common_count(contestants, runs):
+    """Returns the number of runs that most contestants have."""
+    counts = [len(runs[one.name]) for one in contestants]
+    return max(set(counts), key=counts.count)
+
+
+def describe_shading(contestants, runs):
+    """Returns the note about lines and shades over all runs."""
+    count = most_common_count(contestants, runs)
+    return ("One run of each learner." if count == 1 else
+            f"Median of {count} runs, shaded from the lowest to the highest run.")

@@ -51,8 +51,9 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Compares the recorded actions of a bag with those that a saved policy chooses in the same\n"
       "states, and prints the policy's expected return (V, discounted). Needs no ROS master.\n"
-      "Exit code 0: compared; 1: a state does not follow from its actions, or steps are missing;\n"
-      "2: the bag or the policy cannot be used; 3: the bag could not be written.",
+      "Exit code 0: compared; 1: a recorded state differs from the simulated one, or steps are "
+      "missing;\n"
+      "2: the bag or the policy cannot be used; 3: the output bag could not be written.",
       "bag_policy");
   app.add_option("bag", bag, "bag with the topic spec and every message of the topic state")
       ->required();

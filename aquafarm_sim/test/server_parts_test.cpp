@@ -221,8 +221,11 @@ TEST_F(TwoShips, AWaitEndsWhenDroppedAtItsDeadlineAndAtTheEnd) {
   EXPECT_EQ(CommandBarrier::WaitEnd::kTimedOut,
             barrier.Wait(lock, call, steady_clock::now() + kLong, ending));
   barrier.Drop();
+  CommandBarrier::Call newer;
+  barrier.Add({0, 2}, &newer);
   EXPECT_EQ(CommandBarrier::WaitEnd::kDropped,
-            barrier.Wait(lock, call, steady_clock::now() + kLong, ending));
+            barrier.Wait(lock, call, steady_clock::now() + kLong, ending))
+      << "also if the ship has a newer command";
 }
 
 TEST_F(TwoShips, AWithdrawnCommandIsNotCarriedOut) {

@@ -204,7 +204,7 @@ TEST(RegionWords, AreAboutTheStormThatComesAndNotTheFirst) {
   storms.state.disasters[1].heading_deg = 270;
   storms.state.disasters[1].speed = 1.0F;
   EXPECT_EQ(storms.words().heading, "REGION");
-  EXPECT_EQ(storms.words().lines[1], "reaches it in about 24 min");
+  EXPECT_EQ(storms.words().lines[1], "reaches the ranch in about 24 min");
   storms.state.disasters[1].x = 212.0F;  // comes nearer, but does not arrive while it is known
   storms.state.disasters[1].steps_left = 90;
   EXPECT_EQ(storms.words().heading, "REGION");

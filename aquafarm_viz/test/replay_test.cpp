@@ -231,7 +231,7 @@ TEST_F(Replay, ABagThatCannotBeShownHasItsLine) {
   EXPECT_EQ(FaultOf(path_),
             path_ +
                 ": topic /aquafarm/state has another aquafarm_msgs/FarmState than this "
-                "version; use the version that it was recorded by");
+                "version; use the version that recorded the bag");
 }
 
 }  // namespace

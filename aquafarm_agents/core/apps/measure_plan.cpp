@@ -314,7 +314,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
 
 int Main(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app("Compares rescue plans with what storms do.", "aquafarm_measure_plan");
+  CLI::App app("Compares rescue plans with simulated and recorded storms.",
+               "aquafarm_measure_plan");
   AddOptions(app, arguments);
   app.require_subcommand(1);
   app.fallthrough();

@@ -159,7 +159,9 @@ int Main(int argc, char** argv) {
   Arguments arguments;
   RunOptions& options = arguments.options;
   arguments.environment.farms = 0;
-  CLI::App app("Trains an agent on the farm in this process. Ctrl-C saves; --resume continues.");
+  CLI::App app(
+      "Trains an agent without ROS, in one or several processes. Ctrl-C saves the run; --resume "
+      "continues it.");
   app.option_defaults()->always_capture_default();
   AddOptions(app, arguments);
   return RunWithExitCodes(app, [&] {

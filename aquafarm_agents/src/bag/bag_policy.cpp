@@ -285,7 +285,7 @@ std::map<Key, FarmSpec> ReadSpecs(const rosbag::Bag& bag, const std::string& top
     if (!spec) continue;
     if (spec->version != aquafarm::kVersion) {
       throw InputError(path + ": " + aquafarm_sim::RecordedBy(spec->version) + ", this is " +
-                       aquafarm::kVersion + "; use the version that it was recorded by");
+                       aquafarm::kVersion + "; use the version that recorded the bag");
     }
     specs.insert({{spec->seed, spec->episode}, *spec});
   }

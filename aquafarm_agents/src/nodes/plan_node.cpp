@@ -295,8 +295,8 @@ class PlanNode {
     const bool may_be_silent =
         last_state_->pace == aquafarm_msgs::FarmState::LOCKSTEP || last_state_->paused;
     if (may_be_silent && ros::service::exists("get_state", false)) return "";
-    return name + ": the ranch is gone or hangs; the last state is of step " +
-           std::to_string(inputs.step) + ": start it again";
+    return name + ": the ranch has ended or hangs (last state: step " +
+           std::to_string(inputs.step) + "); start the ranch again";
   }
 
   void Work(const PlanInputs& inputs) {

@@ -9,8 +9,10 @@ namespace py = pybind11;
 std::string Given(py::handle argument) {
   constexpr std::size_t kLongest = 60;
   std::string text = py::repr(argument);
-  if (text.size() > kLongest) text = text.substr(0, kLongest) + "…";
-  return text;
+  if (text.size() <= kLongest) return text;
+  std::size_t end = kLongest;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;  // UTF-8
+  return text.substr(0, end) + "…";
 }
 
 std::uint64_t WholeNumber(py::handle argument, const std::string& where, std::uint64_t low,

@@ -222,6 +222,12 @@ std::unique_ptr<Batch> Batch::FromState(const py::tuple& state) {
   if (!state[4].cast<bool>()) return batch;
   batch->Load(state[5].cast<std::string>());
   const auto strides = state[6].cast<std::vector<std::uint64_t>>();
+  if (strides.size() != static_cast<std::size_t>(batch->batch_.farms()) ||
+      std::count(strides.begin(), strides.end(), 0U) > 0) {
+    throw InputError(
+        "FarmBatch: got a pickled state with wrong strides, expected one above 0 for "
+        "each farm; pickle it again with this version");
+  }
   for (std::size_t i = 0; i < strides.size(); ++i) {
     batch->batch_.set_stride(static_cast<std::int32_t>(i), strides[i]);
   }
@@ -236,7 +242,9 @@ bool Batch::Equals(const Batch& other) const {
   for (std::int32_t i = 0; i < batch_.farms(); ++i) {
     if (batch_.stride(i) != other.batch_.stride(i)) return false;
   }
+  if (this == &other) return true;
   const Turn turn(busy_);
+  const Turn turn_of_other(other.busy_);
   return batch_.Save() == other.batch_.Save();
 }
 

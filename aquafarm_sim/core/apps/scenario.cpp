@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include "aquafarm/base/check.h"
@@ -15,6 +14,7 @@
 #include "aquafarm/ranch/ranch_builder.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm/storms/presets.h"
+#include "base/files.h"
 #include "base/text.h"
 
 namespace aquafarm {
@@ -133,19 +133,6 @@ RanchRequest Finished(const Arguments& arguments) {
   return ranch;
 }
 
-void WriteFile(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".part";
-  std::ofstream file(temporary, std::ios::trunc);
-  file << text;
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(temporary, path, error);
-  if (!file || error) {
-    std::filesystem::remove(temporary, error);
-    throw InputError(path + ": cannot be written");
-  }
-}
-
 // Rejects --size and --cell if the chart defines other values. A chart in metres has its own size
 // and cells.
 void RefuseUnused(const Arguments& arguments, const Scenario& made) {
@@ -191,7 +178,7 @@ void Run(const Arguments& arguments) {
   for (const std::string& line : ranch.decided) std::printf("%s\n", line.c_str());
   if (!arguments.map.empty()) SaveMap(ToMap(ranch.scenario), arguments.map);
   if (arguments.output.empty()) return;
-  WriteFile(arguments.output, ranch.yaml);
+  internal::WriteFile(arguments.output, ranch.yaml);
   std::printf("written: %s\n%s", arguments.output.c_str(),
               NextSteps(arguments.output, ranch.scenario).c_str());
 }
@@ -294,7 +281,7 @@ int Main(int argc, char** argv) {
   CLI::App app(
       "Makes a ranch from a chart, a place and a storm, and shows it with the chosen defaults.",
       "aquafarm scenario");
-  app.footer("exit codes: 0 made, 2 bad argument or file");
+  app.footer("exit codes: 0 made, 2 bad argument or file, 3 not written");
   app.option_defaults()->always_capture_default();
   AddPlaceOptions(app, arguments);
   AddStormOptions(app, arguments);
@@ -310,6 +297,9 @@ int Main(int argc, char** argv) {
     arguments.own_cell = app.count("--cell") > 0;
     Run(arguments);
     return 0;
+  } catch (const internal::WriteError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 3;
   } catch (const InputError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

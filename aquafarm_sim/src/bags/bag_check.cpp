@@ -367,7 +367,7 @@ void CheckVersions(const std::map<Key, FarmSpec>& specs, const std::string& path
   for (const auto& [key, spec] : specs) {
     if (spec.version == aquafarm::kVersion) continue;
     throw InputError(path + ": " + RecordedBy(spec.version) + ", this is " + aquafarm::kVersion +
-                     "; use the version that it was recorded by");
+                     "; use the version that recorded the bag");
   }
 }
 

@@ -125,7 +125,7 @@ void CheckMessages(const rosbag::Bag& bag, const std::string& path,
     if (std::none_of(types.begin(), types.end(), is_other)) continue;
     throw aquafarm::InputError(path + ": topic " + connection->topic + " has another " +
                                connection->datatype +
-                               " than this version; use the version that it was recorded by");
+                               " than this version; use the version that recorded the bag");
   }
 }
 

@@ -117,7 +117,7 @@ void SimNode::KeepEpisodes() {
   const Keep keep = ParseKeep(params_.keep);
   if (keep.which == Keep::Which::kNone) return;
   BagFormat format;
-  format.ns = node_.resolveName(names::kState);
+  format.ns = node_.resolveName(names::kState, /*remap=*/false);
   format.ns.resize(format.ns.size() - std::string(names::kState).size());
   format.map_frame = params_.map_frame;
   format.rate_hz = params_.ranch.rate_hz;

@@ -32,9 +32,9 @@ CommandBarrier::WaitEnd CommandBarrier::Wait(aquafarm::MutexLock& lock, const Ca
   Slot& slot = *slots_[Index(call.ship)];
   bool in_time = true;
   while (true) {
-    if (call.answer) return WaitEnd::kAnswered;  // even if the ship has newer commands
+    if (call.answer) return WaitEnd::kAnswered;     // even if the ship has newer commands
+    if (call.is_dropped) return WaitEnd::kDropped;  // even if the ship has newer commands
     if (slot.number != call.number) return WaitEnd::kSuperseded;
-    if (!slot.pending) return WaitEnd::kDropped;
     if (ending || !in_time) return WaitEnd::kTimedOut;
     in_time = lock.WaitUntil(slot.changed, deadline);
   }
@@ -49,6 +49,7 @@ void CommandBarrier::Withdraw(const Call& call) {
 void CommandBarrier::Drop() {
   for (const auto& slot : slots_) {
     if (!slot->pending) continue;
+    if (slot->call != nullptr) slot->call->is_dropped = true;
     slot->pending.reset();
     slot->call = nullptr;
     slot->changed.notify_all();

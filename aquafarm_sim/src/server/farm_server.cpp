@@ -89,7 +89,7 @@ aquafarm_msgs::CommandResult FarmServer::Command(const ShipCommand& command) {
     return clock_.context().paced ? AcceptPaced(command) : StepTogether(command, lock);
   } catch (const std::exception& error) {
     ++state_id_;  // the farm may have stepped
-    DropCommands();
+    DropCommands(std::string("the step failed: ") + error.what());
     Changed();
     return Refuse(command.ship, Outcome::INTERNAL_ERROR, error.what());
   }
@@ -198,8 +198,7 @@ aquafarm_msgs::CommandResult FarmServer::RefuseAfter(CommandBarrier::WaitEnd end
   if (ending_) return Refuse(call.ship, Outcome::SHUTTING_DOWN, "the sim node is shutting down");
   if (end == CommandBarrier::WaitEnd::kDropped) {
     return Refuse(call.ship, Outcome::STALE,
-                  episodes == episode_count_ ? "another client has stepped the farm"
-                                             : "a new episode has started");
+                  episodes == episode_count_ ? drop_reason_ : "a new episode has started");
   }
   ++counters_.barrier_timeouts;
   return Refuse(call.ship, Outcome::TIMEOUT,
@@ -273,7 +272,8 @@ void FarmServer::StepPublishedFarm() {
 
 // Drops the waiting commands, whose calls then return STALE. The last answers are forgotten,
 // because step numbers may repeat.
-void FarmServer::DropCommands() {
+void FarmServer::DropCommands(const std::string& reason) {
+  drop_reason_ = reason;
   barrier_.Drop();
   barrier_.ForgetAnswers();
 }
@@ -324,7 +324,7 @@ void FarmServer::Tick() {
     StepPublishedFarm();
   } catch (const std::exception& error) {
     ++state_id_;  // the farm may have stepped
-    DropCommands();
+    DropCommands(std::string("the step failed: ") + error.what());
     clock_.SetPaused(true);  // a farm that cannot continue must not fail at every tick
     counters_.fault = error.what();
     Changed();

@@ -79,7 +79,7 @@ const aquafarm_msgs::Step::Response& FarmServer::Step(const aquafarm_msgs::Step:
     return answer;
   } catch (const std::exception& error) {
     ++state_id_;  // some farms may have stepped
-    DropCommands();
+    DropCommands(std::string("the step failed: ") + error.what());
     Changed();
     Answer(Outcome::INTERNAL_ERROR, error.what(), step_refusal_);
     return step_refusal_;

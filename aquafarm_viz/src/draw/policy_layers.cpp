@@ -176,6 +176,7 @@ void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
   for (const auto& ship : state.ships) {
     const auto id = static_cast<std::size_t>(ship.id);
     if (ship.id < 0 || id >= choice.actions.size() || !ship.active) continue;
+    if (!ship.visible || !InGrid(spec, ship.x, ship.y)) continue;
     const int bearing = MoveBearingDeg(choice.actions[id]);
     const cv::Point2d at = ShipPlace(spec, state, ship, layout);
     const double radius = layout.ship_radius_px();

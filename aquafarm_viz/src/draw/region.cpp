@@ -216,7 +216,7 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
       DisasterName(disaster.kind) + ", centre " + PlaceText(spec, disaster.x, disaster.y);
   words.lines[1] = subject->danger == 0.0 ? RiskOverFarm(spec, course) + " over a part of the ranch"
                    : std::isfinite(subject->danger)
-                       ? "reaches it in about " + AheadText(spec, subject->danger)
+                       ? "reaches the ranch in about " + AheadText(spec, subject->danger)
                        : SourceText(spec, disaster, course);
   return words;
 }

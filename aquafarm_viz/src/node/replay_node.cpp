@@ -18,6 +18,7 @@ namespace {
 using aquafarm_msgs::Outcome;
 
 constexpr double kTick_s = 0.01;
+constexpr double kMinSpeed = 0.001;
 constexpr double kMaxSpeed = 1000.0;
 constexpr std::uint32_t kQueue = 100;
 
@@ -41,7 +42,7 @@ ReplayParams ReadReplayParams(const ros::NodeHandle& node) {
   ReplayParams params;
   aquafarm_sim::Params reader(node);
   reader.Text("bag", params.bag);
-  reader.Number("speed", 0.001, kMaxSpeed, params.speed);
+  reader.Number("speed", kMinSpeed, kMaxSpeed, params.speed);
   reader.Number("start_s", 0.0, 1e9, params.start_s);
   reader.Int("start_episode", -1, INT_MAX, params.start_episode);
   reader.Int("start_step", 0, INT_MAX, params.start_step);
@@ -154,7 +155,10 @@ void ReplayNode::GoOn(std::uint32_t steps) {
 bool ReplayNode::OnPause(aquafarm_msgs::Pause::Request& request,
                          aquafarm_msgs::Pause::Response& response) {
   paused_ = request.paused != 0;
-  if (paused_) GoOn(request.steps);
+  if (paused_ && request.steps > 0) {
+    if (!begun_) Begin();  // also during delay_s
+    GoOn(request.steps);
+  }
   response.ok = true;
   response.paused = paused_;
   return true;
@@ -168,9 +172,10 @@ bool ReplayNode::OnSetPace(aquafarm_msgs::SetPace::Request& request,
   response.rate_hz = speed_ / period_s;
   if (!request.pace.empty() && request.pace != "paced") {
     Refuse("pace: got " + request.pace + ", expected paced: a replay has no other pace", response);
-  } else if (!(request.rate_hz >= 0.0) || !(speed <= kMaxSpeed)) {
-    Refuse("rate_hz: got " + std::to_string(request.rate_hz) + ", expected [0, " +
-               std::to_string(kMaxSpeed / period_s) + "]",
+  } else if (!(request.rate_hz >= 0.0) || !(speed >= kMinSpeed && speed <= kMaxSpeed)) {
+    Refuse("rate_hz: got " + std::to_string(request.rate_hz) + ", expected 0 or [" +
+               std::to_string(kMinSpeed / period_s) + ", " + std::to_string(kMaxSpeed / period_s) +
+               "]",
            response);
   } else {
     speed_ = speed;

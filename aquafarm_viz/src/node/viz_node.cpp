@@ -113,9 +113,12 @@ void VizNode::OnMarkerSubscriber(const ros::SingleSubscriberPublisher& subscribe
 }
 
 visualization_msgs::MarkerArray VizNode::MarkersOf(const Shown& shown) {
-  const auto array = StateMarkers(*shown.spec, *shown.state, &trail_, layers_);
-  if (!layers_.risk) return array;
-  return Joined(array, danger_.Of(*shown.spec, *shown.state, layers_.trail ? &trail_ : nullptr));
+  auto array = StateMarkers(*shown.spec, *shown.state, &trail_, layers_);
+  if (layers_.risk) {
+    array = Joined(array, danger_.Of(*shown.spec, *shown.state, layers_.trail ? &trail_ : nullptr));
+  }
+  if (choice_ == nullptr) return array;
+  return Joined(array, ChoiceMarkers(*choice_, *shown.spec, *shown.state));
 }
 
 void VizNode::FollowValues() {
@@ -169,9 +172,6 @@ void VizNode::PublishMarkers(const Shown& shown) {
   auto array = MarkersOf(shown);
   if (marked_episode_.spec != shown.spec)
     array = Joined(SpecMarkers(*shown.spec, true, layers_), array);
-  if (choice_ != nullptr) {
-    array = Joined(array, ChoiceMarkers(*choice_, *shown.spec, *shown.state));
-  }
   markers_.publish(array);
   marked_episode_ = shown;
   marked_ = true;

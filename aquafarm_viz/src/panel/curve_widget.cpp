@@ -47,6 +47,7 @@ CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve) {
   const auto [low, high] = std::minmax_element(
       curve.begin(), curve.end(),
       [](const auto& a, const auto& b) { return a.mean_return < b.mean_return; });
+  if (low->mean_return == 0.0 && high->mean_return == 0.0) return {0.0, 1.0};
   const double margin = 0.06 * std::max(high->mean_return - low->mean_return, 1e-6);
   if (low->mean_return < 0.0 && high->mean_return > 0.0) {
     return {low->mean_return - margin, 1.06 * high->mean_return};
@@ -110,7 +111,7 @@ void CurveWidget::paintEvent(QPaintEvent*) {
   painter.fillRect(rect(), kBack);
   painter.setPen(kWords);
   if (curve_.size() < 2) {
-    painter.drawText(rect(), Qt::AlignCenter, "the curve of a training comes here");
+    painter.drawText(rect(), Qt::AlignCenter, "no training curve yet");
     return;
   }
   const int row = painter.fontMetrics().height();

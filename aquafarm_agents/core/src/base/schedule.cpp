@@ -83,7 +83,7 @@ Schedule ParseSchedule(const std::string& text, const std::string& what, double 
     throw InputError(what + ": fraction: got " + parts[3] + ", expected (0, 1]");
   }
   if (schedule.kind != ScheduleKind::kLinear && (schedule.start <= 0.0 || schedule.end <= 0.0)) {
-    throw InputError(what + ": got '" + text + "', expected start and end above 0 when " +
+    throw InputError(what + ": got '" + text + "', expected start and end above 0 for kind " +
                      parts[0]);
   }
   return schedule;

@@ -78,7 +78,8 @@ TabularModel::TabularModel(const Scenario& scenario) : not_finite_(WhyNotFinite(
   const Encoder encoder(*endless);
   if (encoder.state_count() == 0) {
     throw InputError("matrices: got too many tabular states for an index, expected at most " +
-                     std::to_string(Encoder::kMaxStates) + "; fewer devices or cells are needed");
+                     std::to_string(Encoder::kMaxStates) +
+                     "; choose a scenario with fewer devices or cells");
   }
   Farm farm(endless);
   farm.Reset(1, 0);

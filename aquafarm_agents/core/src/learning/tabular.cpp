@@ -24,7 +24,7 @@ QTable::QTable(const EnvironmentSpec& spec, float initial_value)
   if (states == 0 || bytes > kMaxBytes) {
     throw InputError("scenario " + spec.scenario_name +
                      ": too many states for a table (devices, cells or agents), expected a learner "
-                     "with a network, as auto chooses");
+                     "with a network; use algorithm auto");
   }
   values.assign(bytes / sizeof(float), initial_value);
 }

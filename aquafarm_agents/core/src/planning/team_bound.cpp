@@ -221,7 +221,7 @@ double TeamBound(const Farm& farm) {
                                     {"collision", rewards.collision}}) {
     if (value <= 0.0F) continue;
     throw InputError("bound: rewards." + std::string(name) +
-                     ": got more than 0, expected at most 0");
+                     ": got more than 0, expected at most 0; evaluate without the bound");
   }
   if (rewards.drop_off < 0.0F && scenario.ships.capacity > 1) {
     // Each device is charged one drop-off below, but ships can drop several off in one action.

@@ -18,7 +18,8 @@ namespace aquafarm::agents {
 namespace {
 
 std::string Where(GeoPoint place) {
-  return Short(place.latitude, 4) + " N " + Short(place.longitude, 4) + " E";
+  return Short(std::abs(place.latitude), 4) + (place.latitude < 0.0 ? " S " : " N ") +
+         Short(std::abs(place.longitude), 4) + (place.longitude < 0.0 ? " W" : " E");
 }
 
 // Returns the water cell nearest to a cell.

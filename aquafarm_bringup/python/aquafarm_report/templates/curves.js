@@ -6,7 +6,7 @@ const LINES = [[2, 3], [8, 4], [1, 0]];  // of references
 const DASHES = [null, [9, 4], [2, 3], [12, 4, 2, 4], [5, 5], [1, 6], [14, 6]];
 // Width for the marks of greedy play at the right edge [pixels]. All charts have the same episodes.
 const MARKS = Math.max(...CURVES.charts.map(chart => (chart.marks || []).length));
-const STEP = MARKS <= 4 ? 40 : 20;  // distance of two marks; up to four have their value above them
+const STEP = MARKS <= 4 ? 40 : 20;  // distance of two marks; up to four have their value next to them
 const PAD = MARKS ? Math.max(56, 12 + STEP * MARKS) : 0;  // has space for "greedy"
 let moving = false;
 for (const chart of CURVES.charts) {
@@ -168,7 +168,8 @@ function mark(canvas, area, dygraph, marks, onScale) {
   const at = value => dygraph.toDomYCoord(onScale(value));
   if (!marks.length) return;
   canvas.save();
-  const strip = {left: area.x + area.w - PAD + 6, width: PAD - 6};
+  const pad = PAD * area.w / (area.w + 2 * PAD);  // dygraphs scales the space of xRangePad
+  const strip = {left: area.x + area.w - pad + 2, width: pad - 2};
   const middle = strip.left + strip.width / 2;
   canvas.fillStyle = "rgba(128, 128, 128, 0.16)";
   canvas.fillRect(strip.left, area.y, strip.width, area.h);
@@ -186,7 +187,11 @@ function mark(canvas, area, dygraph, marks, onScale) {
     canvas.beginPath();
     canvas.arc(x, at(mean), 4, 0, 2 * Math.PI);
     canvas.fill();
-    if (STEP > 20) canvas.fillText(inWords(mean, 0), x, at(high ?? mean) - 8);
+    if (STEP > 20) {  // below the interval, because references are above; else above "greedy"
+      const below = at(low ?? mean) + 17;
+      canvas.fillText(inWords(mean, 0), x,
+        below < area.y + area.h - 54 ? below : at(high ?? mean) - 8);
+    }
     if (low === null) return;
     canvas.beginPath();
     canvas.moveTo(x, at(low));

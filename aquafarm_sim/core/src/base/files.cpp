@@ -7,8 +7,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "aquafarm/base/check.h"
-
 namespace aquafarm::internal {
 
 void NeedRegularFile(const std::string& path) {
@@ -52,6 +50,20 @@ std::string ReadTextFile(const std::string& path) {
                      ": cannot read: " + (errno != 0 ? std::strerror(errno) : "ended early"));
   }
   return text;
+}
+
+void WriteFile(const std::string& path, std::string_view bytes) {
+  const std::string temporary = path + ".part";
+  errno = 0;
+  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  std::error_code error(file ? 0 : errno, std::generic_category());
+  if (file) std::filesystem::rename(temporary, path, error);
+  if (file && !error) return;
+  std::error_code ignored;
+  std::filesystem::remove(temporary, ignored);
+  throw WriteError(path + ": cannot be written: " + error.message());
 }
 
 }  // namespace aquafarm::internal

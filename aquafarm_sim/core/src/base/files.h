@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Reads complete files.
+/// Reads and writes complete files.
 
 #include <string>
+#include <string_view>
+
+#include "aquafarm/base/check.h"
 
 namespace aquafarm::internal {
 
@@ -18,5 +21,16 @@ void NeedRegularFile(const std::string& path);
 ///   JSON if its first non-blank character is { or [. (The complete IBTrACS file has about 300
 ///   MiB.)
 std::string ReadTextFile(const std::string& path);
+
+/// Thrown if a file cannot be written.
+class WriteError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Writes a file. Writes to a temporary file first, so that `path` never contains an incomplete
+/// file.
+/// @throws WriteError "path: cannot be written: reason"
+void WriteFile(const std::string& path, std::string_view bytes);
 
 }  // namespace aquafarm::internal

@@ -160,8 +160,8 @@ class CoastReader {
     }
     const std::string fault = FaultOf(ring, comparisons_left_);
     if (!fault.empty()) {
-      place_.WarnValue(
-          path, "the ring " + fault + "; an area that it encloses an odd number of times is land");
+      place_.WarnValue(path, "the ring " + fault +
+                                 "; an area that the ring encloses an odd number of times is land");
     }
     return ring;
   }

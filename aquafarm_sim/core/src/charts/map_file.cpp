@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/layout.h"
@@ -73,20 +72,6 @@ std::int8_t Occupancy(const MapYaml& map, std::uint8_t grey, bool opaque) {
   return static_cast<std::int8_t>(1.0 + 98.0 * (occupied - map.free) / (map.occupied - map.free));
 }
 
-// Writes to a temporary file first, so that `path` never contains an incomplete file.
-void WriteFile(const std::string& path, const std::string& bytes) {
-  const std::string temporary = path + ".part";
-  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code error;
-  if (file) fs::rename(temporary, path, error);
-  if (!file || error) {
-    std::remove(temporary.c_str());
-    throw InputError(path + ": cannot be written");
-  }
-}
-
 }  // namespace
 
 MapFile LoadMap(const std::string& yaml_path) {
@@ -121,12 +106,13 @@ void SaveMap(const MapFile& map, const std::string& yaml_path) {
       bytes += static_cast<char>(static_cast<unsigned char>(grey));
     }
   }
-  WriteFile(picture.string(), bytes);
+  internal::WriteFile(picture.string(), bytes);
   using internal::Format;
-  WriteFile(yaml_path, "image: " + picture.filename().string() + "\nresolution: " +
-                           Format(map.cell_size_m) + "\norigin: [" + Format(map.origin[0]) + ", " +
-                           Format(map.origin[1]) + ", " + Format(map.origin[2]) +
-                           "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  internal::WriteFile(yaml_path, "image: " + picture.filename().string() +
+                                     "\nresolution: " + Format(map.cell_size_m) + "\norigin: [" +
+                                     Format(map.origin[0]) + ", " + Format(map.origin[1]) + ", " +
+                                     Format(map.origin[2]) +
+                                     "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
 }
 
 LandShare ShareOfLand(const MapFile& map) {

@@ -85,7 +85,7 @@ MapImage ParsePgm(const std::string& bytes, ParseContext& place) {
   PgmHeader header(bytes, place);
   const std::int32_t width = header.Next("width", kMaxMapSide);
   const std::int32_t height = header.Next("height", kMaxMapSide);
-  const std::int32_t white = header.Next("greatest value", 65535);
+  const std::int32_t white = header.Next("max value (maxval)", 65535);
   const auto columns = static_cast<std::size_t>(width);
   const auto rows = static_cast<std::size_t>(height);
   const bool text = bytes[1] == '2';

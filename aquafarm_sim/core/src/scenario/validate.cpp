@@ -305,7 +305,8 @@ void CheckForecast(const Scenario& scenario) {
   if (scenario.view.disaster_slots == 0 &&
       std::none_of(scenario.disasters.begin(), scenario.disasters.end(),
                    [](const DisasterSpec& one) { return !one.track.empty(); })) {
-    throw FieldError(path, "is used only if a disaster has a track");
+    throw FieldError(path,
+                     "is used only if a disaster has a track or view.disaster_slots is above 0");
   }
   for (std::size_t i = 0; i < scenario.disasters.size(); ++i) {
     if (scenario.disasters[i].forecasts.empty()) continue;

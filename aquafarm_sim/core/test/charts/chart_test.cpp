@@ -136,7 +136,8 @@ TEST(Coast, WarnsOfARingThatRunsAlongItself) {
     return coast.warnings.empty() ? "" : coast.warnings[0];
   };
   const std::string along =
-      "x:2: geometry.coordinates[0]: the ring overlaps itself; an area that it encloses an odd "
+      "x:2: geometry.coordinates[0]: the ring overlaps itself; an area that the ring encloses an "
+      "odd "
       "number of times is land";
   EXPECT_EQ(said("[[0,0],[2,0],[2,2],[3,3],[2,2],[0,2],[0,0]]"), along) << "out and back";
   EXPECT_EQ(said("[[0,0],[4,0],[4,1],[4,-1],[4,2],[0,2],[0,0]]"), along) << "upright";
@@ -183,7 +184,7 @@ TEST(Coast, SpendsItsComparisonsOnTheWholeFile) {
   EXPECT_EQ(coast.warnings[0],
             "x:4: coordinates[2][0]: the ring of 6116 lines was not fully checked for crossings, "
             "nor are the rings after it: the limit of 50000000 comparisons per file is reached; "
-            "an area that it encloses an odd number of times is land");
+            "an area that the ring encloses an odd number of times is land");
 }
 
 TEST(Coast, RefusesOtherDataThanCoasts) {

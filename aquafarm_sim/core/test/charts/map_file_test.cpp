@@ -164,7 +164,8 @@ TEST_F(MapFiles, RefusePicturesThatAreNot) {
   Write("m.pgm", "P2\n2 2\n255\n1 2 three 4\n");
   EXPECT_EQ(Refused(), "m.pgm:4: pixel: got 'three', expected a whole number in [0, 255]");
   Write("m.pgm", "P5\n2 2");
-  EXPECT_EQ(Refused(), "m.pgm:2: greatest value: got '', expected a whole number in [1, 65535]");
+  EXPECT_EQ(Refused(),
+            "m.pgm:2: max value (maxval): got '', expected a whole number in [1, 65535]");
   Write("m.pgm", "GIF89a");
   EXPECT_EQ(Refused().substr(0, 40), "m.pgm:1: got an unreadable image (unknow");
   // The fuzz test found these: a chunk that states 1.9 GB in a file of 75 bytes, and one without

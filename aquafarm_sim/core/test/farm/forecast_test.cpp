@@ -194,7 +194,8 @@ TEST(Forecasts, AreAskedForInWords) {
             "view.forecast_error_km: got an error that shrinks with time, expected ascending "
             "numbers");
   EXPECT_EQ(Refused("[69, 121, 175]", false),
-            "view.forecast_error_km: is used only if a disaster has a track");
+            "view.forecast_error_km: is used only if a disaster has a track or "
+            "view.disaster_slots is above 0");
 }
 
 TEST(Forecasts, AreWrittenBackAndPartOfTheHash) {

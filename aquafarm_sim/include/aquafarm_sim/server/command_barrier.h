@@ -29,6 +29,7 @@ class CommandBarrier {
   struct Call {
     std::int32_t ship{};
     std::uint64_t number{};  ///< number of its command
+    bool is_dropped{};       ///< Drop was called before an answer
     std::optional<aquafarm_msgs::CommandResult> answer;
   };
   enum class WaitEnd { kAnswered, kSuperseded, kDropped, kTimedOut };

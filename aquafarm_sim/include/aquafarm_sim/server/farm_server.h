@@ -213,7 +213,8 @@ class FarmServer {
       AQUAFARM_REQUIRES(mutex_);
   void MarkMissingAbsent() AQUAFARM_REQUIRES(mutex_);
   void StepPublishedFarm() AQUAFARM_REQUIRES(mutex_);
-  void DropCommands() AQUAFARM_REQUIRES(mutex_);
+  void DropCommands(const std::string& reason = "another client has stepped the farm")
+      AQUAFARM_REQUIRES(mutex_);
   void Describe(std::int32_t ship, aquafarm_msgs::CommandResult& result) const
       AQUAFARM_REQUIRES(mutex_);
   aquafarm_msgs::CommandResult ResultOf(std::int32_t ship) const AQUAFARM_REQUIRES(mutex_);
@@ -258,6 +259,7 @@ class FarmServer {
   mutable aquafarm::Mutex mutex_;
   std::unique_ptr<aquafarm::FarmBatch> batch_ AQUAFARM_GUARDED_BY(mutex_);
   CommandBarrier barrier_ AQUAFARM_GUARDED_BY(mutex_);
+  std::string drop_reason_ AQUAFARM_GUARDED_BY(mutex_);  // why the last commands were dropped
   ClaimTable claims_ AQUAFARM_GUARDED_BY(mutex_);
   PaceClock clock_ AQUAFARM_GUARDED_BY(mutex_);
   StepLog steps_ AQUAFARM_GUARDED_BY(mutex_);

@@ -134,11 +134,25 @@ StormTrack ReadHeader(std::string_view line, std::int32_t& averaging_min, ParseC
 
 }  // namespace
 
+// Replaces what ends a line, because a storm's heading is one line.
+std::string OneLine(std::string text) {
+  const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
+  std::replace_if(text.begin(), text.end(), ends_line, ' ');
+  return text;
+}
+
+// Replaces blanks, because words of a heading are separated by blanks.
+std::string OneWord(std::string text) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+  std::replace_if(text.begin(), text.end(), is_blank, '_');
+  return text;
+}
+
 StormTrack Archived(const StormTrack& track) {
   StormTrack archived;
-  archived.id = track.id;
-  archived.name = track.name;
-  archived.agency = track.agency.empty() ? "unknown" : track.agency;
+  archived.id = OneWord(track.id);
+  archived.name = OneLine(track.name);
+  archived.agency = track.agency.empty() ? "unknown" : OneWord(track.agency);
   for (const StormFix& from : track.fixes) {
     StormFix fix;
     fix.time = from.time - ((from.time % 60) + 60) % 60;

@@ -243,7 +243,9 @@ std::vector<StormTrack> ReadBulletin(std::string_view text, ParseContext& place)
     return tracks;
   }
   if (!document.is_array() || document.empty()) {
-    place.FailValue("bulletin", "got an empty list, expected a list of storms");
+    place.FailValue(
+        "bulletin",
+        "got no list of storms or an empty one, expected a list with at least one storm");
   }
   for (std::size_t i = 0; i < document.size(); ++i) {
     tracks.push_back(ReadStorm(JsonObject(document[i], At("", i), place), place));

@@ -51,7 +51,8 @@ def scenario_of(ships, folder):
 def train_network(scenario, folder):
     """Trains a DQN of the default size for 6,000 steps; returns its run folder.
 
-    More training would not change the speed, but a good policy ends episodes within a round."""
+    More training would not change the speed of the network. A good policy, however, would end
+    episodes within a round, which `measure` then repeats."""
     run = pathlib.Path(folder) / "dqn"
     subprocess.run([program("aquafarm_agents", "aquafarm_train"), scenario, "-a", "dqn", "-n",
                     "6000", "-o", "device=cpu", "--random", "0", "--evaluate", "0", "-d", run],
@@ -62,8 +63,8 @@ def train_network(scenario, folder):
 def measure(get_state, rounds, round_s):
     """Returns the joint steps per second of `rounds` rounds of `round_s` seconds each.
 
-    Waits for step 100 first. Repeats a round in which an episode ends. Ends this program if either
-    takes longer than LIMIT_S."""
+    First waits for step 100 of an episode. Repeats a round in which an episode ends. Ends this
+    program if the wait takes longer than LIMIT_S, or if all rounds together do."""
     rates = []
     end = time.monotonic() + LIMIT_S
     while get_state().state.step < 100:
@@ -83,7 +84,7 @@ def measure(get_state, rounds, round_s):
 
 
 def end_all(children):
-    """Interrupts processes, the newest first, and kills those that do not end within 10 s."""
+    """Interrupts processes, the last one first, and kills each that does not end within 10 s."""
     for child in reversed(children):
         child.send_signal(signal.SIGINT)
     for child in reversed(children):
@@ -95,7 +96,7 @@ def end_all(children):
 
 
 def measure_agents(name, policy, scenario, arguments):
-    """Starts a sim node and its agents, measures and prints their speed, and ends them."""
+    """Starts a sim node and its agents, prints the median of their speed, and ends them."""
     space = f"/bench_agents_{name}_{socket.gethostname().replace('-', '_')}"
     children = []
     try:

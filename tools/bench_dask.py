@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compares the wall time of a benchmark on Dask with that of the pool of processes that Dask replaced.
 
-Usage: bench_dask.py [--programs FOLDER] [--repetitions N] [--jobs N] [-- BENCHMARK ARGUMENTS]
+Usage: bench_dask.py [--programs FOLDER] [--repetitions N] [--jobs N] [--before COMMIT]
+                     [-- BENCHMARK ARGUMENTS]
 
-The pool of processes is Python code of an earlier commit, taken from git. Both versions call the
-same programs. Each repetition runs both, in alternating order. By default it runs the quick
-benchmark, which takes minutes. Prints one line per repetition, then the ratio Dask / pool with its
-95 % interval and the number of repetitions. Exit code 1: a benchmark failed, or the two versions
-wrote different tables.
+The code with the pool is that of an earlier commit (--before), taken from git. Both versions call
+the same C++ programs. Each repetition runs the benchmark with both versions, in alternating order.
+The default is the quick benchmark of `paper`, which takes minutes. Prints one line per repetition,
+then the ratio Dask / pool with its 95 % interval and the number of repetitions. Exit code 1: a
+benchmark failed, the two versions wrote different tables, or git lacks the earlier commit.
 """
 import argparse
 import os

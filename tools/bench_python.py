@@ -3,9 +3,10 @@
 
 usage: bench_python.py [REPETITIONS]      (with the Python of an environment that has aquafarm_gym)
 
-Each figure is the median of the repetitions, per second of processor time; min and max follow in
-parentheses. The actions are drawn before the measurement. Figures that need PettingZoo or
-Stable-Baselines3 are left out if these packages are not installed.
+Each figure is a number of steps or states per second of processor time: the median of the
+repetitions (default: 7). Min and max follow in parentheses. The actions are drawn before the
+measurement. Figures that need PettingZoo or Stable-Baselines3 are left out if these packages are
+not installed.
 """
 import importlib.util
 import sys
@@ -19,7 +20,7 @@ STEPS = 200
 
 
 def measure(name, unit, count, repetitions, call):
-    """Prints the rate of `call`, which makes `count` steps. Calls it once before to warm up."""
+    """Prints the rate of `call`, which makes `count` steps. First calls it once to warm up."""
     call()
     rates = []
     for _ in range(repetitions):

@@ -4,11 +4,12 @@
 
 Usage: bench_ranks.py AQUAFARM_TRAIN [--steps N] [--repetitions N]
 
+A rank is one of the processes that train one policy together; the ranks exchange their gradients.
 The trainings with one, two and four ranks alternate, so that other programs disturb all of them
-alike. Prints a table; then, for each batch size, whether two ranks meet the targets for speed and
-for the share of time in exchanges, with 95 % intervals; then one line `name value unit` per figure.
-Exit code 1: a training failed, or trainings with different numbers of ranks wrote different
-policies.
+alike. First prints a table. Then prints for each batch size whether two ranks meet the targets for
+speed and for the share of time in exchanges, with 95 % intervals. Then prints one line `name value
+unit` per figure. Exit code 1: a training failed, or trainings with different numbers of ranks wrote
+different policies.
 """
 
 import argparse
@@ -37,9 +38,10 @@ MAX_EXCHANGE = 0.08  # target: share of the training time of two ranks in exchan
 
 
 def train(program, ranks, batch, steps, folder):
-    """Runs one training on as many cores as ranks, if there are so many. Returns (training time
-    [s], fraction of it in exchanges, peak memory of the largest process [MiB], processor time of
-    all processes including their start [s]). Ends this program if the training fails."""
+    """Runs one training with one core per rank, or with all cores if there are more ranks than
+    cores. Returns (training time [s], fraction of it in exchanges, peak memory of the largest
+    process [MiB], processor time of all processes including their start [s]). Ends this program if
+    the training fails."""
     cores = sorted(os.sched_getaffinity(0))[:ranks]
     command = ["taskset", "-c", ",".join(map(str, cores)), "/usr/bin/env", "OMP_NUM_THREADS=1",
                program, "paper", "-a", "ppo", "--ranks", str(ranks), "-n", str(steps),
@@ -60,8 +62,8 @@ def train(program, ranks, batch, steps, folder):
 
 
 def peak_memory(process):
-    """Waits for a process to end. Returns the max of the peak resident memories of the process and
-    of each of its children [MiB]."""
+    """Waits for a process to end. Returns the peak resident memory [MiB] of the process or of one
+    of its children, whichever is largest."""
     peak = 0
     while True:
         try:
@@ -131,8 +133,8 @@ def main():
         middle = {ranks: [statistics.median(column) for column in zip(*results[ranks])]
                   for ranks in RANKS}
         compute = middle[1][0] / arguments.steps
-        # The model has one exchange of gradients per minibatch and per doubling of the ranks. The
-        # time of other exchanges is negligible.
+        # The predicted speed assumes that each minibatch needs log2(ranks) exchanges of gradients,
+        # and neglects the time of other exchanges.
         per_step = EPOCHS / batch
         exchange = middle[2][0] * middle[2][1] / arguments.steps / per_step
         for ranks in RANKS:

@@ -58,7 +58,7 @@ def train(folder, keep, steps, environment):
     """Runs one training. Returns the wall time of its steps [s], the processor time of sim node and
     learner [s], and the number of bags.
 
-    The processor time includes the bags that the sim node writes after the training."""
+    The processor time includes the time in which the sim node writes bags after the training."""
     namespace = f"/bench_{folder.name}"
     common = {"env": environment, "stderr": subprocess.DEVNULL}
     log = folder / "train.log"

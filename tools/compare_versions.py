@@ -13,7 +13,7 @@ import sys
 import paired_ratio
 from verbs.bench import FIGURE
 
-# The program of a benchmark, relative to the workspace, and its options.
+# For each benchmark: its program, relative to the workspace, and the options of the program.
 BENCHES = {"sim": ["core/aquafarm_sim/bench_sim"],
            "tabular": ["core/aquafarm_agents/bench_tabular"],
            "dqn": ["core/aquafarm_agents/bench_deep", "--benchmark_filter=^Dqn"],
@@ -41,7 +41,8 @@ def measure(workspace, words):
 
 
 def describe(name, pairs):
-    """Returns the line of a figure: pairs of the results of the old and the new version."""
+    """Returns the printed line of a figure. @param pairs for each round, the results of measure()
+    of the old and of the new version"""
     if any(name not in one for pair in pairs for one in pair):
         return f"{name:44} only in one of them"
     unit = pairs[0][1][name][1]

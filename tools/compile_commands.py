@@ -9,7 +9,8 @@ INCLUDED = re.compile(r'^#include "(.*\.cpp)"$', re.MULTILINE)
 
 
 def split(entry):
-    """Returns an entry for each source that a file of CMake's unity build includes."""
+    """Returns one entry for each source of a compilation. A file of CMake's unity build includes
+    several sources."""
     path = pathlib.Path(entry["file"])
     if path.parent.name != "Unity":
         return [entry]

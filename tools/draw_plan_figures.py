@@ -68,7 +68,7 @@ def draw_reliability(data, path):
 
 def finding(storms):
     """Returns a sentence about the results of the back-test."""
-    staked = [s for s in storms if s["at_risk"] > 0.5]  # other storms cost nothing with any plan
+    staked = [s for s in storms if s["at_risk"] > 0.5]  # in others, no plan loses value
     as_good = sum(s["saved"] > s["clairvoyant"] - 0.5 for s in staked)
     share = sum(s["saved"] for s in storms) / sum(s["clairvoyant"] for s in storms)
     less = sum(s["promised"] < s["saved"] for s in storms)
@@ -85,8 +85,8 @@ def name_of(storm):
 
 
 def draw_back_test(data, path):
-    """Draws three values for each recorded storm: saved by the plan, promised by the plan, and
-    saved by a clairvoyant."""
+    """Draws four values for each recorded storm: at stake, saved by the plan, promised by the plan,
+    and saved by a clairvoyant."""
     storms = sorted(data["storms"], key=lambda storm: -storm["at_risk"])
     figure, axes = plt.subplots(figsize=(8.2, 0.27 * len(storms) + 1.2))
     places = range(len(storms), 0, -1)

@@ -21,7 +21,8 @@ ON_BOARD_KW = 2.0
 
 
 def energy_block(text, weight):
-    """Returns the scenario with a block `energy` that has the weight."""
+    """Returns the text of the scenario with the weight in its block `energy`. Adds the block if the
+    scenario has none."""
     lines = text.splitlines()
     for i, line in enumerate(lines):
         if line.startswith("energy: {"):

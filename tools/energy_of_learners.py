@@ -6,14 +6,14 @@ usage: energy_of_learners.py SCENARIO.yaml ALGORITHM OUT.csv [--seeds N] [--weig
                              [--episodes N] [--from-first] [-- OPTION OF aquafarm_train ...]
 
 There is one training for each weight and seed. With --from-first, trainings of later weights start
-with the policy of the first weight. This weight must be above 0, as the features contain the energy
-only then. The return excludes the term of energy. OUT.csv has a row per training. The same command
-resumes an interrupted run.
+with the policy of the first weight. The first weight must then be above 0, because the features
+contain the energy only for weights above 0. The return excludes the term of energy. OUT.csv has a
+row per training. The same command resumes an interrupted run.
 
 The printed table has the means over the seeds. It also has the change of return and energy relative
-to the first weight, with 95 % intervals (bootstrap over seeds, pairs of the same seed). The run
-folders are in a folder with the name of OUT.csv without .csv. aquafarm_train and aquafarm_evaluate
-must be on the PATH.
+to the first weight, with 95 % intervals (bootstrap over seeds; each change compares two trainings
+of the same seed). The run folders are in a folder with the name of OUT.csv without .csv.
+aquafarm_train and aquafarm_evaluate must be on the PATH.
 """
 import argparse
 import csv
@@ -38,7 +38,7 @@ def run_folder(weight, seed, arguments):
 def train(text, weight, seed, arguments):
     """Trains on the scenario with a weight; returns the row of its policy."""
     run = run_folder(weight, seed, arguments)
-    shutil.rmtree(run, ignore_errors=True)  # of an interrupted run
+    shutil.rmtree(run, ignore_errors=True)  # the folder of an interrupted training
     run.parent.mkdir(parents=True, exist_ok=True)
     scenario = run.parent / f"{run.name}.yaml"
     scenario.write_text(energy_block(text, weight), encoding="utf-8")
@@ -74,7 +74,7 @@ def interval(values):
 
 
 def changes(rows, weight, first, column):
-    """Returns the change of a column by seed [%], relative to the first weight."""
+    """Returns for each seed the change of a column relative to the first weight [%]."""
     by_seed = {row["seed"]: float(row[column]) for row in rows if float(row["weight"]) == first}
     return [100 * (float(row[column]) / by_seed[row["seed"]] - 1) for row in rows
             if float(row["weight"]) == weight and row["seed"] in by_seed]

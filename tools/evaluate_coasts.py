@@ -4,13 +4,14 @@
 
 usage: evaluate_coasts.py CHART ARCHIVE OUTPUT [--ranches N] [--episodes N] [--seed SEED] [--policy P]
 
-`aquafarm_scenario` cuts each ranch from the chart: place, size (12 to 60 cells a side), cell (300
-to 1,200 m), 1 to 10 devices and 1 to 6 ports are drawn from the seed. A place without enough water
-or without a shore is replaced by the next random place. Episodes draw the archive's storms since
-2010. The ranches and ranches.csv are written to OUTPUT. The same command resumes an interrupted
-run. The last line is the share of the clairvoyant optimum over the episodes whose plan has at most
-400,000 states, with a 95 % interval (bootstrap over ranches). aquafarm_scenario and
-aquafarm_evaluate must be on the PATH.
+`aquafarm_scenario` cuts each ranch from the chart. The seed determines its place, width and height
+(12 to 60 cells each), cell size (300 to 1,200 m), number of devices (1 to 10) and number of ports
+(1 to 6). A place without enough water or without a shore is replaced by the next random place.
+Episodes draw the archive's storms since 2010. The ranches, the results of each ranch and the
+table ranches.csv are written to OUTPUT. The same command resumes an interrupted run. The last line
+contains the return as a share of the clairvoyant optimum, with a 95 % interval (bootstrap over
+ranches). This share covers only the episodes whose plan has at most 400,000 states.
+aquafarm_scenario and aquafarm_evaluate must be on the PATH.
 """
 import argparse
 import csv
@@ -52,7 +53,8 @@ def bounds(chart):
 
 
 def cut(random, box, arguments, path):
-    """Cuts a ranch at a random place. Returns the row's values, or None if the place is refused."""
+    """Cuts a ranch at a random place. Returns its columns `place` to `ports` of ranches.csv,
+    or None if the place is refused."""
     place = f"{random.uniform(*box[:2]):.4f},{random.uniform(*box[2:]):.4f}"
     size = "x".join(map(str, random.integers(12, 61, 2)))
     cell, devices, ports = (int(random.integers(*limits)) for limits in ((300, 1201), (1, 11), (1, 7)))
@@ -69,7 +71,7 @@ def cut(random, box, arguments, path):
 
 
 def evaluate(policy, path, episodes):
-    """Plays the episodes of a ranch; returns the last columns of its row."""
+    """Plays the episodes of a ranch. Returns its last columns of ranches.csv, from `return` on."""
     written = path.with_suffix("")
     played = subprocess.run(
         ["aquafarm_evaluate", policy, path, "--episodes", str(episodes), "--optimum", str(STATES),
@@ -84,7 +86,7 @@ def evaluate(policy, path, episodes):
 
 
 def summarize(rows):
-    """Prints the share of the optimum and the solved episodes."""
+    """Prints the return as a share of the optimum, and the number of solved episodes."""
     planned = [row for row in rows if int(row["planned"]) > 0]
     if not planned:
         sys.exit("evaluate_coasts: no plan has few enough states; raise --ranches")

@@ -4,10 +4,11 @@
 
   tools/fit_wind_radii.py ../shared/data
 
-The relation is ln r = a + b sqrt(V / w - 1) + c (|latitude| - 25), where r is the radius of a
-circle with the area of the ring. b and c are fitted to rings of the JMA (30 and 50 kt). With these
-slopes, a is fitted to the rings of each authority. For the CMA, a is also computed from the median
-errors of the former estimate over 24,494 bulletin rings (see docs/data.md).
+The relation is ln r = a + b sqrt(V / w - 1) + c (|latitude| - 25). A ring of the wind w is the area
+with winds of at least w; r is the radius of a circle with the same area. V is the storm's max wind.
+b and c are fitted to rings of the JMA (30 and 50 kt). With these slopes, a is fitted to the rings
+of each authority. For the CMA, a is also computed from the median errors of the former estimate
+(the function `holland`) over 24,494 bulletin rings; see docs/data.md.
 """
 import csv
 import json
@@ -20,9 +21,9 @@ import numpy as np
 
 NM_KM = 1.852
 KT_MPS = 0.514444
-CLASSES = ((0, 48), (48, 64), (64, 200))  # wind of the storm [kt]
-# Medians of (former estimate / recorded radius) over the bulletin rings (docs/data.md): of 34 kt in
-# storms below 48 kt, and of 34, 50 and 64 kt in all storms.
+CLASSES = ((0, 48), (48, 64), (64, 200))  # classes of storms by max wind [kt]
+# Medians of (former estimate / recorded radius) over the bulletin rings (docs/data.md): for 34 kt
+# in storms below 48 kt; for 34, 50 and 64 kt in all storms.
 FORMER_34_TS, FORMER_34, FORMER_50, FORMER_64 = 0.47, 0.68, 1.27, 1.79
 
 
@@ -31,7 +32,8 @@ def rms(quadrants):
 
 
 def jma(path):
-    """Yields (authority, storm, w [kt], V [kt], latitude, radius [km], pressure [hPa])."""
+    """Yields (authority, storm, w [kt], V [kt], latitude, radius [km], pressure [hPa]) of each
+    ring."""
     storm = ""
     for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
         if line.startswith("66666"):
@@ -41,7 +43,7 @@ def jma(path):
         if len(line) < 62 or wind == 0:
             continue
         for w, far, near in ((50, line[42:46], line[47:51]), (30, line[53:57], line[58:62])):
-            if int(far.strip() or 0) > 0:  # a circle whose centre is next to the storm's centre
+            if int(far.strip() or 0) > 0:  # a circle, which need not be centred on the storm
                 radius = (int(far) + int(near)) / 2 * NM_KM
                 yield "JMA", storm, w, wind, int(line[15:18]) / 10, radius, float(line[24:28])
 
@@ -99,8 +101,8 @@ def holland(w, wind, latitude, pressure):
 
 
 def knaff_zehr(w, wind, latitude):
-    """Returns the radius [km] in the Rankine vortex of Knaff and Zehr (2007, Wea. Forecasting 22,
-    71-88), V in kt."""
+    """Returns the radius [km] of the wind w in the Rankine vortex of Knaff and Zehr (2007, Wea.
+    Forecasting 22, 71-88); w and wind in kt."""
     rmax = 66.785 - 0.09102 * wind + 1.0619 * (latitude - 25)
     return rmax * (wind / w) ** (1 / (0.1147 + 0.0055 * wind - 0.001 * (latitude - 25)))
 
@@ -155,7 +157,8 @@ def main():
             errors("relation", np.exp(rest.mean() - rest))
             errors("former", [holland(w, *row[3:5], row[6]) / row[5] for row in some])
             errors("Knaff, Zehr", [knaff_zehr(w, *row[3:5]) / row[5] for row in some])
-    # The storms of the bulletins are assumed to have the winds and latitudes of those of the JMA.
+    # The storms of the 24,494 bulletin rings are assumed to have the winds, latitudes and pressures
+    # of the JMA's storms.
     storms = sorted({(row[3], row[4], row[6]) for row in rows if row[0] == "JMA"})
     for w, former, chosen in ((34, FORMER_34_TS, lambda v: v < 48), (50, FORMER_50, lambda v: True),
                               (64, FORMER_64, lambda v: True)):

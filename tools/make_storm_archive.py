@@ -4,8 +4,8 @@
 
   tools/make_storm_archive.py --center 30.165 122.70 CH*BST.txt > storms.txt
 
-aquafarm_sim/scenarios/archives/zhoushan_cma.txt is made with these options from all years that the
-developers have. docs/data.md describes the format.
+aquafarm_sim/scenarios/archives/zhoushan_cma.txt is made with this --center from the files of all
+years that the developers have. docs/data.md describes the format.
 """
 import argparse
 import math
@@ -27,7 +27,7 @@ CREDIT = (
 
 
 def distance_km(a, b):
-    """Returns the great-circle distance between two (latitude, longitude)."""
+    """Returns the great-circle distance between two points (latitude, longitude) [degrees]."""
     lat1, lon1, lat2, lon2 = (math.radians(x) for x in (*a, *b))
     half = (math.sin((lat2 - lat1) / 2) ** 2 +
             math.cos(lat1) * math.cos(lat2) * math.sin((lon2 - lon1) / 2) ** 2)
@@ -35,7 +35,9 @@ def distance_km(a, b):
 
 
 def read(path):
-    """Yields (id, name, fixes) of each storm; a fix is (YYYYMMDDHH, latitude, longitude, ...)."""
+    """Yields (id, name, fixes) of each storm. A fix is (YYYYMMDDHH, latitude, longitude, code
+    of the grade, pressure [hPa], wind [m/s]). 0 is a missing pressure or wind; the wind 9 means
+    below 10 m/s."""
     with open(path, encoding="utf-8", errors="replace") as file:
         lines = [line.split() for line in file if line.strip()]
     at = 0
@@ -58,7 +60,8 @@ def read(path):
 
 
 def grade_of(code, wind):
-    """Returns the grade of a fix. Code 9 (extratropical) gives the grade of the wind, as in C++."""
+    """Returns the grade of a fix. If the code is not in GRADES, such as 9 (extratropical), the wind
+    determines the grade, as in tracks/formats/cma.cpp."""
     if code in GRADES:
         return GRADES[code]
     reached = [name for name, lowest in LOWEST_WIND if 0 < lowest <= wind and wind != 9]
@@ -72,7 +75,7 @@ def text_of(fix):
 
 
 def near(fixes, center, km):
-    """Returns the fixes from the first to the last one within `km` of the center."""
+    """Returns the fixes from the first to the last that is within `km` of the center."""
     inside = [i for i, fix in enumerate(fixes) if distance_km(fix[1:3], center) <= km]
     return fixes[inside[0]:inside[-1] + 1] if inside else []
 

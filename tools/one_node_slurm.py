@@ -20,7 +20,7 @@ import time
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "squeue", "sinfo")
 START_S = 120.0
 LIMIT_S = 600.0  # max time of a command that `call` runs [s]
-CPUS = 8  # number that Slurm assigns; the machine may have fewer
+CPUS = 8  # number that Slurm can assign to jobs; the machine may have fewer
 
 CONFIGURATION = """ClusterName=aquafarm_test
 SlurmctldHost={host}(127.0.0.1)
@@ -52,11 +52,11 @@ PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 
 
 class NoSlurm(RuntimeError):
-    """Slurm cannot be started here. The message is one line."""
+    """Slurm cannot be started here. The message states the reason."""
 
 
 def require():
-    """Raises NoSlurm if a program is missing or this process may not start Slurm."""
+    """Raises NoSlurm if a program is missing or this process is not root."""
     os.environ["PATH"] += ":/usr/sbin:/sbin"
     missing = [name for name in PROGRAMS if shutil.which(name) is None]
     if missing:
@@ -67,7 +67,7 @@ def require():
 
 
 class OneNodeSlurm:
-    """The cluster, used as a context. Programs with `environment` use it."""
+    """The cluster, as a context manager. Programs with the variables `environment` use it."""
 
     def __init__(self):
         require()

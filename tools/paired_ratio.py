@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Means, and ratios of two quantities that are measured alternately, with 95 % intervals."""
+"""Computes means, and ratios of two alternately measured quantities, with 95 % intervals."""
 import math
 import statistics
 
@@ -7,8 +7,8 @@ from scipy import stats
 
 
 def mean(values):
-    """Returns (mean, low, high) with the 95 % interval of Student's t distribution; NaN bounds for a
-    single value."""
+    """Returns (mean, low, high). low and high bound the 95 % interval by Student's t distribution;
+    both are NaN for a single value."""
     middle, count = statistics.fmean(values), len(values)
     if count < 2:
         return middle, math.nan, math.nan
@@ -17,12 +17,12 @@ def mean(values):
 
 
 def paired_ratio(numerators, denominators):
-    """Returns (geometric mean, low, high) of the ratios of pairs, with the interval of the
-    logarithms."""
+    """Returns (geometric mean, low, high) of the ratios of pairs. low and high bound the 95 %
+    interval, which is computed from the logarithms of the ratios."""
     logs = [math.log(a / b) for a, b in zip(numerators, denominators, strict=True)]
     return tuple(map(math.exp, mean(logs)))
 
 
 def describe(result):
-    """Returns '1.860 (1.800 to 1.920)' for (value, low, high)."""
+    """Returns (value, low, high) as text, such as '1.860 (1.800 to 1.920)'."""
     return "{:.3f} ({:.3f} to {:.3f})".format(*result)

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Adds up JUnit-style results (gtest, ctest, rostest, nosetests) under the given folders.
 
-Lists each failed case with the last lines of its report, and ends with one line 'N passed, N failed,
-N skipped'. Exits with 1 if a case failed, a file is not a result file, or no test was run.
+Lists each failed case with the last lines of its report, each skipped case, and the slowest test
+programs. The last line is 'N passed, N failed, N skipped'. Exits with 1 if a case failed, a file is
+not readable XML, or no case passed.
 catkin_test_results is not used because it ignores unreadable files and does not support ctest
 results.
 """
@@ -24,7 +25,7 @@ def outcome(case):
 
 
 def last_lines(case):
-    """Returns the last lines of what a failed <testcase> reports."""
+    """Returns the last lines of the report of a failed <testcase>."""
     texts = [(one.text or "").strip() or one.get("message") or ""
              for kind in ("failure", "error") for one in case.iter(kind)]
     if texts == ["Failed"] or texts == [""]:  # ctest reports the output in another element
@@ -33,8 +34,8 @@ def last_lines(case):
 
 
 def cases_of(path, stems):
-    """Returns (outcome, name, lines) of each case in a result file. lines are empty unless the case
-    failed. An unreadable file is a failure."""
+    """Returns (outcome, name, lines) of each case in a result file. `lines` is empty unless the
+    case failed. An unreadable file counts as one failed case."""
     try:
         root = ElementTree.parse(path).getroot()
     except ElementTree.ParseError as error:
@@ -42,10 +43,11 @@ def cases_of(path, stems):
     found = [(outcome(case), f"{case.get('classname', '')}.{case.get('name', '')}", case)
              for case in root.iter("testcase")]
     # rostest reports the result of a test program in addition to the program's own results in
-    # rosunit-*. Its passes are redundant, but a failure may be the only record.
+    # rosunit-*. A pass in rostest-* is redundant, but a failure may be recorded only there.
     if path.name.startswith("rostest-"):
         found = [entry for entry in found if entry[0] == "failed"]
-    # ctest reports an executable as one case. It counts only if gtest wrote no result of its own.
+    # ctest reports an executable as one case. This case counts only if the executable wrote no
+    # gtest results.
     if path.name.startswith("ctest-"):
         found = [entry for entry in found if entry[2].get("name") not in stems]
     # A failure before the first case (setUpClass) appears only in the suite's counters.

@@ -37,8 +37,8 @@ MOST_S = 120  # max time until a plan arrives [s]
 
 
 def infa():
-    """Returns the fixes of In-Fa in the archive from 0 to 72 hours after 2021-07-24 00:00 UTC:
-    (hours, latitude, longitude, wind)."""
+    """Returns the fixes of In-Fa in the archive from 0 to 72 hours after 2021-07-24 00:00 UTC,
+    each as (hours, latitude, longitude, wind [m/s])."""
     inside, points = False, []
     for line in ARCHIVE.read_text(encoding="utf-8").splitlines():
         if line.startswith("storm "):
@@ -53,7 +53,7 @@ def infa():
 
 
 def bulletin(seed):
-    """Returns a bulletin of 2021-07-24 00:00 UTC with a forecast of 72 hours."""
+    """Returns a bulletin (JSON) of 2021-07-24 00:00 UTC with a forecast of 72 hours."""
     draw = random.Random(seed)
 
     def point(hours, latitude, longitude, wind, moved):
@@ -99,7 +99,7 @@ def processor_s(pid):
 
 
 def measure_node(folder, options, pid):
-    """Writes new bulletins to the folder; returns (wall, processor, compute_s) of each plan."""
+    """Writes new bulletins to the folder; returns (wall, processor, compute_s) [s] of each plan."""
     import rospy
     from aquafarm_msgs.msg import RescuePlan
     plans = []
@@ -107,7 +107,7 @@ def measure_node(folder, options, pid):
     rospy.Subscriber("/aquafarm/plan", RescuePlan, lambda one: plans.append((time.monotonic(), one)))
     rows = []
     for run in range(options.runs + 1):
-        time.sleep(3.0)  # longer than ~min_period_s
+        time.sleep(3.0)  # longer than plan_node's parameter min_period_s
         count, before, began = len(plans), processor_s(pid), time.monotonic()
         part = folder / "part"
         part.write_text(bulletin(run), encoding="utf-8")
@@ -119,7 +119,7 @@ def measure_node(folder, options, pid):
         at, plan = plans[-1]
         if plan.fault:
             sys.exit(f"plan_node: got the fault {plan.fault!r}, expected a plan")
-        if run:  # the first plan includes the start of the node
+        if run:  # without the first plan, which includes the node's start
             rows.append((at - began, processor_s(pid) - before, plan.compute_s))
     return rows
 

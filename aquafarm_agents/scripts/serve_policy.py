@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plays a policy in Python for an aquafarm program, which starts this process.
+"""Runs a Python policy for an aquafarm program, which starts this process.
 
     serve_policy.py SOCKET POLICY
 
-POLICY is FILE.zip, a model saved by Stable-Baselines3 or sb3-contrib; or FILE.py or
-FILE.py:FUNCTION with a function of this form:
+POLICY is either FILE.zip, a model saved by Stable-Baselines3 or sb3-contrib, or it is FILE.py or
+FILE.py:FUNCTION with a function of this form (FUNCTION is `act` by default):
 
     OBSERVATION = "features"            # or "planes" or "index"; default: "features"
 
@@ -16,12 +16,12 @@ The function is called once per step with the observations of all n agents of th
 together. It must not keep a state, because several threads of the program may play different farms
 at the same time.
 
-SOCKET is the descriptor of a socket. Numbers have the byte order of the machine. First this process
-writes one line: the kind of observations, or an error. Then it reads, for each request,
+SOCKET is the file descriptor of a socket. Numbers have the byte order of the machine. First this
+process writes one line: the kind of observations, or an error. Then it reads, for each request,
 
     u32 n, shape[3] | n observations (float32, uint8 or uint32) | n masks (u16, bit a: action a)
 
-where shape is the shape of an observation, followed by ones. It responds with
+where shape is the shape of an observation, padded with ones to three numbers. It responds with
 
     u32 0 | n actions (u8)          or an error:   u32 length in bytes | text
 
@@ -42,7 +42,7 @@ TYPES = {"features": np.float32, "planes": np.uint8, "index": np.uint32}
 ACTIONS = 10
 MAX_WORDS = 4000  # bytes of an error; the program reads at most 4,096
 
-# Modules of the policy classes in saved models, with package and class that load such a model.
+# For the module of a saved model's policy class: the package and the class that load the model.
 MODELS = {
     "stable_baselines3.common.policies": ("stable_baselines3", "PPO"),  # also A2C
     "stable_baselines3.dqn.policies": ("stable_baselines3", "DQN"),
@@ -118,7 +118,7 @@ def load(where):
 
 def choose(act, kind, shape, observations, masks):
     """Calls the function and returns the actions as bytes. Raises BadPolicy if the function returns
-    anything other than n actions in [0, 9]."""
+    anything other than one integer in [0, 9] per observation."""
     shape = {"features": shape[:1], "planes": shape, "index": ()}[kind]
     observations = np.frombuffer(observations, TYPES[kind]).reshape(-1, *shape)
     if kind == "index":
@@ -138,7 +138,7 @@ def words_of(error):
     """Returns the message of an exception as one line of at most MAX_WORDS bytes."""
     text = str(error) if isinstance(error, BadPolicy) else f"{type(error).__name__}: {error}"
     words = " ".join(text.split()).encode(errors="replace")[:MAX_WORDS]
-    return words.decode(errors="ignore").encode()  # without a part of a character at its end
+    return words.decode(errors="ignore").encode()  # drops an incomplete last character
 
 
 def serve(stream, kind, act):

@@ -3,9 +3,9 @@
 
     plain_messages.py MSG_FOLDER OUTPUT_FOLDER
 
-The structs have the names, fields and constants that ROS generates. Code that only reads and fills
-messages therefore compiles with both kinds of structs. Of the types of other packages, only
-std_msgs/Header is defined; the others are declared.
+The structs have the same names, fields and constants as those that ROS generates. Code that only
+reads and fills messages therefore compiles with both kinds of structs. Of the message types of
+other packages, only std_msgs/Header is defined. Those in DECLARED are only declared.
 """
 import pathlib
 import re
@@ -95,7 +95,7 @@ def main():
     for path, text in headers.items():
         header = target / f"{path}.h"
         header.parent.mkdir(parents=True, exist_ok=True)
-        if not header.is_file() or header.read_text("utf-8") != text:  # keeps old dates
+        if not header.is_file() or header.read_text("utf-8") != text:  # keeps the file's date
             header.write_text(text, "utf-8")
 
 

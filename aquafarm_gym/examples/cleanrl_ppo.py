@@ -24,8 +24,8 @@ GAMMA, LAMBDA, CLIP, ENTROPY, RATE, REWARD_SCALE = 0.98, 0.95, 0.2, 0.02, 1e-3, 
 
 
 class Farms:
-    """N farms with one ship each, as torch tensors. If an episode ends, the next one starts in the
-    same step."""
+    """N farms with one ship each, with observations, masks and results as torch tensors. If an
+    episode ends, the next one starts in the same step."""
 
     def __init__(self, scenario, count):
         self.batch = core.FarmBatch(aquafarm_gym.find_scenario(scenario), count,
@@ -69,7 +69,7 @@ class Agent(nn.Module):
         self.actor, self.critic = layers(actions, 0.01), layers(1, 1.0)
 
     def choices(self, features, mask):
-        """Returns the distribution over actions; illegal ones have probability 0."""
+        """Returns the distribution over actions; illegal actions have probability 0."""
         logits = self.actor(features).masked_fill(~mask, -1e9)
         return torch.distributions.Categorical(logits=logits)
 
@@ -87,8 +87,8 @@ def orthogonal(layer, gain):
 
 def advantages(rewards, values, lasts, after):
     """Returns advantages by generalized advantage estimation (Schulman et al. 2016). All arrays are
-    [T, N]. after: V of the state after each step; 0 if the state is terminal, but not if the step
-    limit ended the episode."""
+    [T, N]. after: V of the state after each step, or 0 if the state is terminal. The state at the
+    step limit is not terminal."""
     result, running = torch.zeros_like(rewards), 0.0
     for t in reversed(range(len(rewards))):
         delta = rewards[t] + GAMMA * after[t] - values[t]

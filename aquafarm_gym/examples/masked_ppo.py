@@ -35,9 +35,9 @@ class DecayEntropy(BaseCallback):
 
 
 def make_model(envs, seed, rollout=16384, batch=512):
-    """Returns the learner. Its options are defaults of aquafarm's PPO (docs/algorithms.md), except
-    for the batch size. rollout: number of steps between two updates, summed over all
-    environments."""
+    """Returns the learner. The options given here are the defaults of aquafarm's PPO
+    (docs/algorithms.md), except for the batch size. rollout: number of steps between two updates,
+    summed over all environments."""
     return MaskablePPO("MlpPolicy", envs, seed=seed, n_steps=rollout // envs.num_envs,
                        batch_size=batch, n_epochs=2, gamma=GAMMA,
                        learning_rate=lambda remaining: 1e-3 * remaining,

@@ -28,7 +28,7 @@ GAMMA, HIDDEN, BATCH = 0.98, 128, 4096
 
 
 def make_env(config):
-    """Returns a farm whose observations contain the mask."""
+    """Returns a farm whose observations contain the mask and whose rewards are scaled."""
     env = aquafarm_gym.ActionMaskInObservation(aquafarm_gym.FarmEnv(config["scenario"]))
     return gymnasium.wrappers.TransformReward(env, lambda reward: REWARD_SCALE * reward)
 

@@ -5,9 +5,9 @@
     python3 shared_policy.py [--scenario two_squads] [--steps 2000000] [--seed 1]
 
 Install first: pip install './aquafarm_gym[sb3,pettingzoo]'. In training, each ship of each farm is
-a separate environment for MaskablePPO, as with the vector environments of SuperSuit. Unlike those,
-these farms step in C++ and provide action masks. Gupta et al. 2017 and Terry et al. 2020 describe
-such parameter sharing.
+a separate environment for MaskablePPO, as with the vector environments of SuperSuit. Unlike the
+environments of SuperSuit, the farms step in C++ and provide action masks. Gupta et al. 2017 and
+Terry et al. 2020 describe this method, parameter sharing.
 """
 import argparse
 
@@ -19,7 +19,7 @@ from stable_baselines3.common.vec_env import VecNormalize
 
 
 def play(model, env, seed):
-    """Plays an episode of a PettingZoo environment greedily; returns its summary."""
+    """Plays an episode of a PettingZoo environment greedily; returns the episode's summary."""
     seen, infos = env.reset(seed=seed)
     while env.agents:
         agents = env.agents

@@ -14,7 +14,7 @@ from stable_baselines3.common.monitor import Monitor
 
 STEPS = 15000
 
-# A small ranch near a red tide, for which half a minute of training is enough.
+# A small ranch near a red tide, for which about ten seconds of training are enough.
 SCENARIO = """
 name: small
 grid: {width: 4, height: 4, cell_size_m: 1000}
@@ -38,7 +38,7 @@ disasters:
 def main(steps):
     """Trains for `steps` steps; returns the mean return of episodes not used for training."""
     env = Monitor(aquafarm_gym.FarmEnv(aquafarm_core.Scenario.parse(SCENARIO, "small")))
-    # Rewards are in the tens, so the entropy coefficient must be large to keep exploration.
+    # Rewards are in the tens, so the entropy bonus must be large to keep the policy exploring.
     model = PPO("MlpPolicy", env, seed=1, n_steps=1024, batch_size=128, learning_rate=1e-3,
                 gamma=0.97, gae_lambda=0.9, ent_coef=0.5)
     model.learn(steps)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Watches a folder for bulletins and sends each to the ranch with set_disaster: the track, forecast
-// and rings of a storm. The ranch converts them to a disaster.
+// Watches a folder for bulletins. Sends the track, forecast and rings of the storm in each bulletin
+// to the ranch with set_disaster. The ranch converts them to a disaster.
 #include <aquafarm_msgs/SetDisaster.h>
 #include <ros/ros.h>
 
@@ -26,15 +26,17 @@ namespace {
 
 constexpr double kLookPeriod_s = 0.05;
 constexpr std::chrono::seconds kEndLimit{
-    2};  // from the shutdown of a connection to the end of its call
+    2};  // max time from the shutdown of a connection to the end of its call
 
-/// Thrown if the ranch is away or does not respond. The file is then sent again.
+/// Thrown if the call of set_disaster fails or takes too long. The file is then sent again at the
+/// next check of the folder.
 class NoAnswer : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A service call and the data of its thread. The thread may outlive the wait for the call.
+/// A service call. Send and the thread of the call share this object, because the thread may still
+/// run after Send has returned.
 struct Call {
   ros::ServiceClient client;
   aquafarm_msgs::SetDisaster message;
@@ -43,11 +45,11 @@ struct Call {
 
 struct BulletinParams {
   std::string folder;
-  std::string storm;          // empty: the only storm of the file
+  std::string storm;          // id or name of the storm; empty: the only storm of the file
   double period_s{1.0};       // time between checks of the folder
-  double call_limit_s{10.0};  // time after which an unresponsive ranch counts as away
+  double call_limit_s{10.0};  // max time to wait for the response of the ranch
   int id{0};                  // id of the disaster that the bulletins replace
-  bool forecast_only{false};  // ships receive the forecasts; the disaster keeps its track
+  bool forecast_only{false};  // true: change only the forecast, not the track of the disaster
 };
 
 BulletinParams ReadParams() {
@@ -71,7 +73,7 @@ class BulletinNode {
  public:
   explicit BulletinNode(const BulletinParams& params) : params_(params), folder_(params.folder) {}
 
-  /// Sends the new files of the folder.
+  /// Sends the new and changed files of the folder.
   void Look() {
     try {
       for (const std::string& path : folder_.New()) {
@@ -80,7 +82,7 @@ class BulletinNode {
       }
       fault_.clear();
     } catch (const std::exception& error) {  // the folder or the ranch may become available again
-      // Logs an error once. A throttle would use /clock, which may stand still.
+      // Logs a repeated error once. ROS_ERROR_THROTTLE depends on /clock, which may stand still.
       if (fault_ != error.what()) ROS_ERROR("%s", error.what());
       fault_ = error.what();
     }
@@ -132,7 +134,7 @@ class BulletinNode {
     Report(path, name, storm);
   }
 
-  // Reports the new state of the ranch: how much of the storm is recorded and how much is forecast.
+  // Logs the id of the disaster and the times until which the storm is recorded and forecast.
   void Report(const std::string& path, const std::string& name,
               const aquafarm::StormTrack& storm) const {
     const aquafarm::StormTrack whole =
@@ -168,7 +170,7 @@ class BulletinNode {
 int Run() {
   try {
     const ros::NodeHandle
-        lives;  // ROS closes its console permanently when the last handle is destroyed
+        lives;  // ROS stops its logging permanently when the last handle is destroyed
     const BulletinParams params = ReadParams();
     BulletinNode node(params);
     ros::WallTime next = ros::WallTime::now();

@@ -132,7 +132,7 @@ int ServeEmpty() {
   return 0;
 }
 
-/// Sends random moves to ship 0 of the sim node. Each command names its step.
+/// Sends random moves to ship 0 of the sim node. Each command specifies its episode and step.
 class ShipDriver {
  public:
   explicit ShipDriver(ros::NodeHandle& node)

@@ -11,7 +11,8 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm_sim/bags/bag_check.h"
 
-// An open bag keeps rosbag's plugin for encryption loaded; each input would load it again.
+// Keeps a bag open, so that rosbag's plugin for encryption stays loaded. Else each input would load
+// the plugin again.
 const rosbag::Bag& KeepPlugin() {
   static const std::string path = "/dev/shm/fuzz_bag_open." + std::to_string(getpid());
   static const rosbag::Bag bag(path, rosbag::bagmode::Write);
@@ -25,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(path, std::ios::binary) << std::string(reinterpret_cast<const char*>(data), size);
   try {
     aquafarm_sim::CheckBag(path, "");
-  } catch (const aquafarm::InputError&) {  // expected for invalid input; any other is a bug
+  } catch (const aquafarm::InputError&) {  // expected; any other exception is a bug
   }
   unlink(path.c_str());
   return 0;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target for service requests. The first byte selects the service. The rest is the serialised
-// request, or changes to a saved state that is then loaded, or a ship and its action. The server,
-// which starts with two farms, executes it and must not crash. After every hundredth input, the
-// server's state must be saved and loaded without an error. This check takes most of the time.
+// Fuzz target for service requests. The first byte of an input selects the service. The other bytes
+// are a serialized request, changes to a saved state that is then loaded, or a ship and its action.
+// The server starts with two farms. It executes the request and must not crash. After every
+// hundredth input, the server's state must be saved and loaded without an error. This check takes
+// most of the time.
 #include <ros/serialization.h>
 
 #include <cstddef>
@@ -36,7 +37,7 @@ std::unique_ptr<FarmServer> MakeServer() {
 template <typename Request>
 Request Read(const std::vector<std::uint8_t>& bytes) {
   Request request;
-  // The stream only reads; its interface takes a mutable pointer.
+  // The stream only reads the bytes, but its interface takes a mutable pointer.
   aquafarm_sim::CheckedStream stream(const_cast<std::uint8_t*>(bytes.data()),
                                      static_cast<std::uint32_t>(bytes.size()));
   ros::serialization::deserialize(stream, request);
@@ -47,7 +48,8 @@ void Must(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Applies the bytes as changes (place, value) to a saved state.
+/// Saves the state and changes it: every four bytes are an offset (three bytes) and a value. If one
+/// byte is left over, the saved state is cut off.
 aquafarm_msgs::LoadState::Request Damaged(FarmServer& server,
                                           const std::vector<std::uint8_t>& bytes) {
   aquafarm_msgs::SaveState saved;
@@ -108,13 +110,13 @@ void Execute(FarmServer& server, std::uint8_t service, const std::vector<std::ui
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static std::unique_ptr<FarmServer> server = MakeServer();
   static std::uint64_t inputs = 0;
-  if (++inputs % 1000 == 0) server = MakeServer();  // so a finding depends on few inputs
+  if (++inputs % 1000 == 0) server = MakeServer();  // so that a finding depends on few inputs
   if (size == 0) return 0;
   try {
     std::vector<std::uint8_t> bytes(data + 1, data + size);
-    bytes.reserve(1);  // roscpp adds to the address of the bytes also if there are none
+    bytes.reserve(1);  // roscpp adds to the address of the bytes even if there are none
     Execute(*server, data[0], bytes);
-  } catch (const ros::serialization::StreamOverrunException&) {  // roscpp refuses such a request
+  } catch (const ros::serialization::StreamOverrunException&) {  // roscpp rejects the request
     return 0;
   }
   if (inputs % 100 != 99) return 0;

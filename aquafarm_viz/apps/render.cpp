@@ -42,7 +42,7 @@ constexpr int kStorage = 3;
 
 struct Request {
   std::string bag;
-  std::string asked;  // the original bag if `bag` is a copy with choices of a policy; else empty
+  std::string asked;  // the user's bag if `bag` is a copy with choices of a policy; else empty
   std::string output{"farm.png"};
   std::string ns;                    // empty: the bag must contain only one ranch
   std::vector<std::uint64_t> steps;  // empty: step 0 in a picture, all steps in a video
@@ -56,13 +56,13 @@ struct Request {
   std::string style{"dark"};
 };
 
-// The recorded steps before and after a requested step that is missing, in the first episode that
-// has later steps.
+// The recorded steps before and after a requested step that is missing. They belong to the first
+// episode with a recorded step after the requested one.
 struct Gap {
   std::uint64_t step{};  // the requested step
   std::uint64_t episode{};
-  std::optional<std::uint64_t> before;  // nullopt if the recording starts later
-  std::optional<std::uint64_t> after;   // nullopt until a later step was found
+  std::optional<std::uint64_t> before;  // nullopt if the episode starts later
+  std::optional<std::uint64_t> after;   // nullopt until a later step is found
 
   void See(const FarmState& state) {
     if (after) return;
@@ -82,7 +82,7 @@ struct Found {
   std::uint64_t last_episode{};
   std::uint64_t last_step{};
   std::uint64_t gaps{};                // number of missing steps between recorded ones
-  std::optional<std::string> version;  // version that recorded it, from its spec
+  std::optional<std::string> version;  // aquafarm version that recorded the bag
 };
 
 // Returns the path of the bag that the user has given.

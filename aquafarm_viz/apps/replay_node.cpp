@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
                                          "replay.launch"};
   if (aquafarm_sim::PrintHelpIfRequested(argc, argv, kHelp)) return 0;
   ros::init(argc, argv, "replay");
-  // Without a node handle of this scope, roscpp would shut down and start again between the handles
+  // Without a node handle in this scope, roscpp would shut down and start again between the handles
   // below. It would lose a Ctrl-C in that time.
   const ros::NodeHandle handle;
   try {

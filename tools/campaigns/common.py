@@ -96,7 +96,7 @@ class Campaign:
 
 def execute(*command, seconds=60, **options):
     """Runs a command for at most `seconds`; returns (exit code, output). The exit code is None if
-    the time limit ended the command, and -N if signal N did."""
+    the time limit ended the command, and -N if signal N ended it."""
     try:
         done = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=seconds,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs two trainings at the same time, each with its own sim node on one master. One sim node has 200
-subscribers that read and one that never reads. The memory of this sim node must grow by less than
-64 MiB. The results must equal those of a training that runs alone."""
+"""Runs two trainings at the same time, each with its own sim node on the same master. One sim node
+has 200 subscribers that read and one that never reads. The memory of this sim node must grow by
+less than 64 MiB. The results must equal those of a training that runs alone."""
 import contextlib
 import pathlib
 import select
@@ -22,7 +22,7 @@ TYPE = "aquafarm_msgs/FarmState"
 
 
 class Subscribers:
-    """201 connections to the topic `state` of a sim node. The first one never reads."""
+    """201 connections to the topic `state` of a sim node. The first connection is never read."""
 
     def __init__(self, ranch, namespace, checksum):
         self.bytes_read = 0
@@ -92,7 +92,8 @@ def together(campaign, folder, expected):
 
 
 def run(campaign):
-    """Runs pairs of trainings: campaign.count pairs, or for campaign.seconds if it is 0."""
+    """Runs campaign.count pairs of trainings. If the count is 0, starts pairs for
+    campaign.seconds."""
     with tempfile.TemporaryDirectory(prefix="aquafarm_concurrency_") as place:
         place = pathlib.Path(place)
         expected = alone(campaign, place / "alone")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gives mutated and huge files to readers. The fuzz targets read mutated samples. libFuzzer makes
-them if the targets were built with AQUAFARM_FUZZ; otherwise fuzz/mutate.cpp makes them. The program
-aquafarm_scenario reads huge files."""
+"""Gives mutated and huge files to readers. The fuzz targets read mutated samples. libFuzzer mutates
+the samples if the targets were built with AQUAFARM_FUZZ; otherwise fuzz/mutate.cpp mutates them.
+The program aquafarm_scenario reads the huge files."""
 import json
 import os
 import pathlib
@@ -15,19 +15,20 @@ from campaigns import common
 TARGETS = ("chart", "hazard_file", "map_yaml", "preset", "scenario", "sea", "checkpoint", "fleet",
            "bag", "request")
 ROUND_S = 30        # libFuzzer's time for each target in a round
-CHANGES = 20_000    # mutations of a target in a round, without libFuzzer
-SLOW = {"bag": 500, "checkpoint": 500, "request": 2_000}  # the same for slow targets
+# Argument CHANGES of mutate.cpp: a sixth of the mutated inputs of a target in a round.
+CHANGES = 20_000
+SLOW = {"bag": 500, "checkpoint": 500, "request": 2_000}  # CHANGES for slow targets
 LENGTH = 1024       # max input size of libFuzzer [bytes]; longer inputs take more time
 LENGTHS = {"preset": 96, "map_yaml": 256, "fleet": 400, "request": 400, "bag": 60_000,
            "checkpoint": 16_384}
 # Without -entropic=0, libFuzzer weights inputs by rare features, which takes half of the time of a
-# fast target. halt_on_error makes undefined behaviour end a target, as an invalid address does. Short
+# fast target. With halt_on_error, undefined behaviour ends a target like an invalid address. Short
 # stack traces and a small quarantine save time.
 QUICK = ("-entropic=0", "-reduce_inputs=0")
 SANITIZERS = {"UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
               "ASAN_OPTIONS": "malloc_context_size=2:quarantine_size_mb=8"}
-MOST_S = 20         # max processor time to read one file [s]
-MOST_MEMORY = 1 << 30  # [bytes]
+MOST_S = 20         # max time to read one file [s]: wall time in libFuzzer, else processor time
+MOST_MEMORY = 1 << 30  # max memory to read one file [bytes]
 DATA = common.ROOT / "aquafarm_sim" / "core" / "test"
 
 
@@ -47,9 +48,9 @@ def corpus(name):
 
 
 def run_target(campaign, name, seed, place):
-    """Runs a target for one round and counts the inputs. After a failure, copies the inputs that
-    caused it to the working directory. Rounds share the folder `place`, in which libFuzzer keeps
-    inputs that reach new code."""
+    """Runs a target for one round and counts the inputs. After a failure, moves the inputs that
+    caused the failure to the working directory of this program. Rounds share the folder `place`, in
+    which libFuzzer keeps inputs that reach new code."""
     program = campaign.program(f"fuzz_{name}")
     grown = place / name
     grown.mkdir(exist_ok=True)
@@ -66,7 +67,7 @@ def run_target(campaign, name, seed, place):
                      if inputs else 0)
     if not campaign.check(code == 0, f"fuzz_{name}: seed {seed}: exit code {code}: "
                           f"{output[-600:]}"):
-        # mutate.cpp does not write a file. Targets that read a file leave their input in /dev/shm.
+        # mutate.cpp does not save inputs. Targets that read a file leave their input in /dev/shm.
         left = pathlib.Path("/dev/shm").glob(f"fuzz_{name}.*")
         kinds = ("crash-*", "leak-*", "oom-*", "timeout-*")
         for found in [*(path for kind in kinds for path in place.glob(kind)), *left]:
@@ -83,7 +84,8 @@ def bulletin(points):
 
 
 def huge_files():
-    """Yields (name, arguments, bytes) of files that earlier versions read in minutes or gigabytes."""
+    """Yields (name, arguments, bytes) of files for which earlier versions needed minutes or
+    gigabytes."""
     yield "bulletin.json", ["--track", "--center", "30,122"], bulletin(150_000_000 // 75)
     yield "line.json", ["--track", "--center", "30,122"], b"[" + b" " * 500_000_000 + b"]"
     yield "deep.json", ["--chart", "--center", "30,122"], b"[" * 100_000_000
@@ -96,7 +98,7 @@ def huge_files():
 
 
 def limit_memory():
-    """Limits the address space of this process to MOST_MEMORY; larger allocations fail."""
+    """Limits the address space of this process to MOST_MEMORY. Allocations beyond it fail."""
     resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
 
 
@@ -127,8 +129,8 @@ def read_huge(campaign, name, arguments, content):
 
 
 def run(campaign):
-    """Runs rounds over the targets, then reads the huge files once unless --only is given;
-    campaign.count is the number of rounds."""
+    """Runs campaign.count rounds over the targets. If the count is 0, starts rounds for
+    campaign.seconds. Then reads each huge file once unless --only is given."""
     with tempfile.TemporaryDirectory(prefix="aquafarm_fuzz_") as place:
         number = 0
         while campaign.more(number):

@@ -3,10 +3,10 @@
 result must equal that of an uninterrupted run bit for bit, and no temporary file may be left.
 
 tables, networks   kills a trainer that runs in one process
-sim_node           kills the sim node of a training, either with its trainer or alone. If it is killed
-                   alone, the trainer saves and resumes with new episodes: its result may differ, but
-                   the policy must be readable
-recorder           kills a sim node that keeps every episode as a bag; the bags must pass verify_bag
+sim_node           kills the sim node of a training, either with its trainer or alone. If only the
+                   sim node is killed, the trainer saves a checkpoint and ends. The resumed training
+                   starts new episodes, so its result may differ, but its policy must be readable
+recorder           kills a sim node that saves each episode as a bag; the bags must pass verify_bag
 benchmark          kills a benchmark, alone or with its trainings
 ranks, workers     see kill_cluster.py
 """
@@ -28,7 +28,7 @@ NETWORKS = {"dqn": ["paper", *REPLAY],
             "maddpg": ["two_squads", *REPLAY],
             "mappo": ["two_squads", "-n", "8000", *ROLLOUT],
             "ppo": ["paper", "-n", "8000", *ROLLOUT]}
-MOST_KILLS = 30      # max kills of one run without --kills; after them the run is not disturbed
+MOST_KILLS = 30      # max kills of one run without --kills; then the run may finish undisturbed
 LIMIT_S = 300
 SIM_STEPS = 64_000   # length of a training through a sim node; each call steps 16 farms
 SIM_KILLS = 5
@@ -141,8 +141,9 @@ class SimNode:
                 self.expected = ranch.results("run")
 
     def attempt(self, ranch, alone, last):
-        """Starts both and kills the sim node unless this is the `last` attempt. Returns whether the
-        training is complete, or None after a failure."""
+        """Starts the sim node and the trainer. Kills the sim node, and the trainer unless `alone`,
+        at a random moment. In the `last` attempt, waits for the end of the training first. Returns
+        whether the training is complete, or None after a failure."""
         sim = ranch.sim("aquafarm")
         train = ranch.train("aquafarm", "run", SIM_STEPS, "_checkpoint_period_s:=0.05",
                             "_sim_timeout_s:=1",
@@ -193,8 +194,8 @@ class SimNode:
 
 
 class Recorder:
-    """Kills a sim node that keeps each episode as a bag. A sample of up to 60 bags must pass
-    verify_bag, which simulates them again."""
+    """Kills a sim node that saves each episode as a bag. A sample of up to 60 bags must pass
+    verify_bag, which simulates their episodes again."""
 
     def __init__(self, campaign, place):
         self.campaign = campaign
@@ -202,7 +203,8 @@ class Recorder:
         self.verify = campaign.program("verify_bag")
 
     def session(self, ranch, kill):
-        """Records a training until a new bag is complete. Then kills the sim node or ends it."""
+        """Records a training until a new bag is complete. Then kills the sim node, or ends the
+        trainer and the sim node with SIGTERM."""
         sim = ranch.sim("aquafarm", "_keep:=all", "_keep_dir:=episodes")
         train = ranch.train("aquafarm", f"run_{len(ranch.processes)}", 10**9, "_sim_timeout_s:=1")
         bags = ranch.folder / "episodes"
@@ -286,8 +288,8 @@ KINDS = {
 
 
 def run(campaign):
-    """Runs the kinds in turn until a failure: at most campaign.count runs, or for campaign.seconds if
-    it is 0."""
+    """Makes campaign.count tries of the kinds in turn. If the count is 0, starts tries for
+    campaign.seconds. Ends early after a failure."""
     from campaigns import kill_cluster  # imports this module
     made, all_kinds = {}, {**KINDS, "ranks": kill_cluster.Ranks, "workers": kill_cluster.Workers}
     with tempfile.TemporaryDirectory(prefix="aquafarm_kill_") as place:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Kinds of the campaign kill for programs that consist of several processes.
+"""Kinds of the campaign `kill` for programs that consist of several processes.
 
-ranks      kills one rank of a training in several ranks. The training must then end with exit code
-           6. It is resumed with a random number of ranks
+ranks      kills one rank (process) of a training in several ranks. The training must then end with
+           exit code 6. It is resumed with 2, 4 or 8 ranks
 workers    kills and replaces a worker or the scheduler of a benchmark on two Dask workers while the
-           benchmark continues. Its tables must equal those of an undisturbed benchmark
+           benchmark continues. The tables must equal those of an undisturbed benchmark
 """
 import os
 import signal
@@ -16,9 +16,9 @@ from campaigns import common, kill, ros
 RANK_LOST = 6        # exit code
 BAD_INPUT = 2        # exit code
 NO_SCHEDULER = "which does not answer within"  # error of a client that never reached its scheduler
-KILLS = 5            # max kills of one run without --kills; after them the run is not disturbed
-STOP_S = 30.0        # max time for the other ranks to stop on an idle machine
-BUSY_STOP_S = 180.0  # the same for a busy machine, which starts processes more slowly
+KILLS = 5            # max kills of one run without --kills; then the run may finish undisturbed
+STOP_S = 30.0        # longer stops of the other ranks are counted: the max on an idle machine
+BUSY_STOP_S = 180.0  # longer stops are failures: a busy machine starts processes more slowly
 STARTS = 5           # max starts of a benchmark whose scheduler is killed before the first contact
 LIMIT_S = 600
 ARGUMENTS = ["paper", "-n", "40000", *kill.ROLLOUT, "-o", "shards=8"]
@@ -109,7 +109,7 @@ class Workers(kill.Benchmark):
         self.processes = []  # the scheduler, then its workers
 
     def start(self, number):
-        """Starts the scheduler (0) or a worker."""
+        """Starts the scheduler (`number` 0) or a worker; returns the process."""
         words = (["scheduler", "--host", "127.0.0.1", "--port", str(self.port)] if number == 0 else
                  ["worker", f"tcp://127.0.0.1:{self.port}", "--nthreads", "1", "--no-nanny",
                   "--local-directory", str(self.place)])

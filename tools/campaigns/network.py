@@ -2,8 +2,9 @@
 """Disturbs trainings through ROS. Each command must be applied exactly once: the trained policy and
 the episodes must equal those of an undisturbed training bit for bit.
 
-proxy         a proxy delays and cuts service calls, and repeats them at once or after later ones; a
-              second master passes calls on to the real one and returns the address of the proxy
+proxy         a proxy delays, cuts and repeats service calls. It repeats a call at once or after
+              later calls. The trainer uses a second master, which passes calls on to the real
+              master but returns the proxy's address for services
 stop_sim      the sim node is stopped (SIGSTOP) for --stop-seconds, longer than a call may take
 stop_trainer  the trainer is stopped for the same time
 master        the master is killed and started again at its port. The new master has no registered
@@ -27,7 +28,7 @@ STEPS = 96_000       # of a training; each call steps 16 farms
 LIMIT_S = 1200
 DEADLOCK = "roscpp is in a deadlock"  # part of an error message of train_node
 DELAY_S = 0.2
-# One in this many calls is disturbed in this way:
+# A value of N means that one in N calls is disturbed in this way.
 DELAY, REPEAT, REPEAT_LATE, CUT_BEFORE, CUT_AFTER = 60, 20, 40, 60, 60
 
 
@@ -45,14 +46,14 @@ class Proxy(socketserver.ThreadingTCPServer):
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
     def one_in(self, number, what):
-        """Returns True with probability 1 / `number`; it then counts a disturbed call as `what`."""
+        """Returns True with probability 1 / `number`, and then counts the call as `what`."""
         with self.lock:
             chosen = self.campaign.rng.randrange(number) == 0
             self.campaign.attempt(what, int(chosen))
         return chosen
 
     def call_again(self, greeting, request, delay_s):
-        """Sends a call again over its own connection and ignores the answer."""
+        """Sends a call again over a new connection after `delay_s` and ignores the answer."""
         time.sleep(delay_s)
         with contextlib.suppress(OSError), socket.create_connection(self.target, timeout=30) as line:
             line.sendall(greeting)
@@ -124,7 +125,7 @@ def undisturbed(ranch):
 
 
 def wait_until_training(ranch):
-    """Waits for the first episodes."""
+    """Waits for the end of the first episode."""
     metrics = ranch.folder / "run" / "metrics.csv"
     ranch.wait_for(lambda: metrics.exists() and metrics.read_bytes().count(b"\n") > 1, "an episode")
 
@@ -149,7 +150,8 @@ def stop_a_process(name):
 
 
 def restart_master(ranch):
-    """Restarts the master. Stops the trainer meanwhile, so that it cannot end before."""
+    """Restarts the master. The trainer is stopped meanwhile, so that it cannot end before the
+    restart."""
     wait_until_training(ranch)
     trainer = ranch.processes[-1]
     if stop(ranch, trainer, "master"):
@@ -193,7 +195,8 @@ def train(campaign, folder, kind):
 
 
 def run(campaign):
-    """Runs the kinds in turn: campaign.count disturbed trainings, or for campaign.seconds if it is 0."""
+    """Runs campaign.count disturbed trainings of the kinds in turn. If the count is 0, starts
+    trainings for campaign.seconds. Ends early after a training that failed."""
     kinds = campaign.kinds(DISTURBANCES)
     with tempfile.TemporaryDirectory(prefix="aquafarm_network_") as place:
         place = pathlib.Path(place)

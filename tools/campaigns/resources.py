@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs programs with a full disk, in a read-only folder, or with few descriptors or little memory.
-Each must succeed, or end with an exit code and a readable line. It must leave no partial file."""
+"""Runs programs with a full disk, in a read-only folder, or with limits on file sizes, descriptors
+or memory. Each program must succeed, or end with a nonzero exit code and a readable message. No
+program may leave a partial file."""
 import contextlib
 import os
 import pathlib
@@ -22,8 +23,8 @@ TRAINING = ("-a", "q_learning", "-n", "300000", "--checkpoint-period", "0.05", "
 
 
 def limits(**values):
-    """Returns options of Popen that set limits. A write beyond the max file size then returns an
-    error and sends no signal."""
+    """Returns options of Popen that set resource limits (setrlimit). A write beyond the max file
+    size then returns an error and sends no signal."""
     def apply():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         for name, value in values.items():
@@ -32,8 +33,8 @@ def limits(**values):
 
 
 def as_nobody():
-    """Returns options of Popen for a user without privileges, who cannot write to read-only
-    folders."""
+    """Returns options of Popen that run a program as an unprivileged user. The root user could
+    write to read-only folders."""
     if os.geteuid() != 0:
         return {}
     return {"user": UNPRIVILEGED_ID, "group": UNPRIVILEGED_ID, "extra_groups": []}
@@ -41,7 +42,8 @@ def as_nobody():
 
 @contextlib.contextmanager
 def small_disk(folder, kilobytes):
-    """Mounts a file system of some kilobytes; yields None if this process may not mount."""
+    """Mounts a file system of this size in a new folder; yields the folder, or None if this process
+    may not mount."""
     folder.mkdir()
     done = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", str(folder)],
                           check=False, capture_output=True)
@@ -53,8 +55,9 @@ def small_disk(folder, kilobytes):
 
 
 def of_memory_group():
-    """Returns the folder in which memory_group makes a control group: the root in version 1, the
-    group of this process in version 2. None if neither exists."""
+    """Returns the folder in which memory_group() makes a control group. With cgroup version 1 it is
+    the root of the memory controller, with version 2 the group of this process. None if neither
+    exists."""
     for line in pathlib.Path("/proc/self/cgroup").read_text().splitlines():
         _, controllers, path = line.split(":", 2)
         if controllers == "memory":
@@ -89,8 +92,8 @@ def memory_group(megabytes):
 
 
 def judge(campaign, what, folder, code, words):
-    """Records failures of a program under a limit: it hung, crashed, printed raw text or no text,
-    or left temporary files."""
+    """Records a failure if a program under a limit hung, crashed, printed text that RAW matches,
+    failed without a message, or left temporary files."""
     campaign.attempt("programs under a limit")
     campaign.attempt("hung or crashed" if code is None or code < 0 else
                      "refusals" if code else "successes")
@@ -173,8 +176,9 @@ def memory(campaign, place):
 
 
 def control_group(campaign, place):
-    """The kernel kills a program that needs more memory than its group has. The next start must
-    then read the files of the killed program and remove temporary ones."""
+    """Trains in a control group. The kernel kills a training that needs more memory than its group
+    has. The next start must then read the files of the killed training and remove temporary
+    files."""
     megabytes = campaign.rng.choice([20, 40, 60, 80, 100, 130, 160])
     folder, what = place / "run", f"training in a control group of {megabytes} MB"
     trainer = campaign.program("aquafarm_train")
@@ -194,7 +198,8 @@ def control_group(campaign, place):
 
 
 def run(campaign):
-    """Tries the kinds of limits in turn: campaign.count times, or for campaign.seconds if it is 0."""
+    """Makes campaign.count tries of the kinds of limits in turn. If the count is 0, starts tries
+    for campaign.seconds."""
     kinds = [disk_full, read_only, descriptors, file_size, memory, control_group]
     number = 0
     while campaign.more(number):

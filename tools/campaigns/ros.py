@@ -20,7 +20,7 @@ SIM_LOST = 4         # exit code of a trainer whose sim node is gone
 START_LIMIT_S = 120
 FARMS = 16  # of a sim node; a call of a trainer steps all of them
 
-# The first line of a report of a sanitizer, with which the programs may be built.
+# Matches the first line of a sanitizer's report. The programs may be built with sanitizers.
 SANITIZER = re.compile(r"(?:WARNING|ERROR): \w+Sanitizer.*|.*: runtime error: .*")
 
 
@@ -93,12 +93,13 @@ class Ros:
             time.sleep(0.05)
 
     def service(self, name):
-        """Returns the URI of a service, or an empty text."""
+        """Returns the URI of a service; "" if the service is not registered."""
         code, _, uri = self.master().lookupService("/campaign", name)
         return uri if code == 1 else ""
 
     def sim(self, namespace, *arguments):
-        """Starts a sim node and waits until it serves."""
+        """Starts a sim node and waits until its service `step` accepts connections; returns the
+        process."""
         process = self.start(f"sim_{namespace}", self.campaign.program("sim_node"),
                              f"__ns:=/{namespace}", "__name:=sim",
                              f"_scenario:={common.SCENARIOS / 'paper.yaml'}", f"_farms:={FARMS}",

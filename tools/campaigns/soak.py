@@ -3,8 +3,9 @@
 
 random    random, legal random and homing actions in every shipped scenario (farm_soak)
 planner   actions of the planners in these scenarios, with some random ones (planner_soak)
-ros       a training through ROS in lockstep, only with --only; the memory of the sim node and of
-          the trainer must grow by at most 1 % after the first fifth
+ros       a training through ROS in lockstep, only with --only. The memory of the sim node and of
+          the trainer may grow by at most 1 % from the second fifth of the training to the last
+          fifth
 """
 import pathlib
 import re
@@ -14,18 +15,19 @@ import tempfile
 
 from campaigns import common, ros
 
-# Program and steps in each scenario before the time is checked. Planners are a thousand times
-# slower.
+# For each kind: its program, and the steps in each scenario in one run of the program. --seconds is
+# checked between runs. Planners are a thousand times slower.
 KINDS = {"random": ("farm_soak", 200_000), "planner": ("planner_soak", 300)}
 MILLION = 1_000_000
 LIMIT_S = 6 * 3600
-SAMPLE_S = 0.25     # between measurements of memory
-MOST_GROWTH = 0.01  # of a process's memory, from the second fifth of a training to the last
+SAMPLE_S = 0.25     # time between measurements of memory
+MOST_GROWTH = 0.01  # max growth of a process's memory, as a fraction (see check_flat)
 FEWEST_SAMPLES = 20
 
 
 def soak(campaign, kind, seed):
-    """Runs a program once over all scenarios; returns the steps, or None after a failure."""
+    """Runs a program once over all scenarios; returns the number of steps, or None after a
+    failure."""
     name, batch = KINDS[kind]
     program = campaign.program(name)
     code, words = common.execute(program, batch, seed, common.SCENARIOS, seconds=1800)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests every id as Gymnasium's own tests/envs/test_envs.py tests its environments: check_env gives
-no warning, two rollouts with one seed are equal, pickles continue, and the render modes rgb_array
-and ansi return a picture and a text. Also tests specs and wrappers."""
+"""Tests every registered id of aquafarm_gym as Gymnasium's tests/envs/test_envs.py tests its own
+environments: check_env gives no warning, two rollouts with the same seed are equal, an unpickled
+copy continues like the original, and the render modes rgb_array and ansi return a picture and a
+text. Also tests specs and wrappers."""
 import pickle
 import warnings
 
@@ -15,7 +16,7 @@ STEPS = 50
 
 
 def check_rollout(make):
-    """Tests that two environments with one seed give the same results."""
+    """Tests that two environments with the same seed give the same results."""
     pair = [make(), make()]
     assert data_equivalence(*(env.reset(seed=0) for env in pair))
     pair[0].action_space.seed(0)

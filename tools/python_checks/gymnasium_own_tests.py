@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs Gymnasium's own tests with the ids of this package, from a checkout of its repository.
+"""Runs Gymnasium's own tests, from a checkout of Gymnasium, with the ids of aquafarm_gym.
 
     python gymnasium_own_tests.py CHECKOUT [PYTEST_OPTION …]
 

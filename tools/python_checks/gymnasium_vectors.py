@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests vector environments as Gymnasium's own tests of vectors and autoreset modes do. Sync and
-Async vectors of single environments give the same results in the modes NEXT_STEP and SAME_STEP.
-Masked resets start only the selected farms and refuse wrong masks. Then tests vector wrappers, and
+"""Tests vector environments as Gymnasium's own tests of vectors and autoreset modes do:
+SyncVectorEnv and AsyncVectorEnv give the same results in the modes NEXT_STEP and SAME_STEP, and a
+masked reset resets only the selected farms and refuses wrong masks. Also tests vector wrappers, and
 vectors that were reset without a seed."""
 import aquafarm_gym
 import gymnasium
@@ -20,7 +20,8 @@ def make():
 
 
 def check_equal_vectors(mode, shared_memory):
-    """Tests that both vectors of Gymnasium give the same observations, rewards, ends and infos."""
+    """Tests that SyncVectorEnv and AsyncVectorEnv give equal observations, rewards, ends and
+    infos."""
     vectors = [SyncVectorEnv([make] * 4, autoreset_mode=mode),
                AsyncVectorEnv([make] * 4, autoreset_mode=mode, shared_memory=shared_memory)]
     assert data_equivalence(*(one.reset(seed=0) for one in vectors))
@@ -32,7 +33,7 @@ def check_equal_vectors(mode, shared_memory):
 
 
 def check_masked_reset(make_vector):
-    """Tests that a reset_mask selects farms, and that wrong masks are refused."""
+    """Tests that a reset with reset_mask resets only the selected farms and refuses wrong masks."""
     envs = make_vector()
     first, _ = envs.reset(seed=[0, 1, 2])
     for _ in range(3):
@@ -63,7 +64,7 @@ for mode in AutoresetMode:
     if mode == AutoresetMode.DISABLED:
         continue
     envs = wrappers.RecordEpisodeStatistics(envs)
-    if mode == AutoresetMode.NEXT_STEP:  # these wrappers reject SAME_STEP
+    if mode == AutoresetMode.NEXT_STEP:  # NormalizeObservation rejects SAME_STEP
         envs = wrappers.NormalizeReward(wrappers.NormalizeObservation(envs))
     envs.reset(seed=1)
     ended = 0

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Records episodes with Minari, recovers the environment, and repeats every reward."""
+"""Records episodes with Minari and recovers the environment. Tests that the recorded actions give
+the recorded observations and rewards again."""
 import os
 import tempfile
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs PettingZoo's api, parallel, seed, max_cycles, render and state tests."""
+"""Runs PettingZoo's api, parallel api, seed, max_cycles and render tests. Also tests that state()
+is in state_space."""
 import types
 
 import aquafarm_core as core
@@ -10,7 +11,7 @@ from pettingzoo.utils import parallel_to_aec
 
 
 def with_limit(max_cycles):
-    """Returns two_squads with a step limit of `max_cycles`."""
+    """Returns an environment of two_squads with the step limit `max_cycles`."""
     text = aquafarm_gym.find_scenario("two_squads").yaml
     limit = aquafarm_gym.find_scenario("two_squads").step_limit
     changed = text.replace(f"step_limit: {limit}", f"step_limit: {max_cycles}")

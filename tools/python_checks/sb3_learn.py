@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests Stable-Baselines3: check_env, PPO with FarmVecEnv, MaskablePPO with sb3_contrib, and saved
-models as policies of aquafarm's programs (policy:=model.zip)."""
+"""Tests Stable-Baselines3 with farms: check_env, PPO and DQN with FarmVecEnv, MaskablePPO if
+sb3_contrib is installed, and saved models as policies of aquafarm's programs
+(policy:=model.zip)."""
 import importlib.util
 import pathlib
 import sys
@@ -18,8 +19,8 @@ import serve_policy  # noqa: E402
 
 
 def check_served(trained, is_masked=False):
-    """Tests that serve_policy.py, which plays saved models for the programs, chooses the actions of
-    the model."""
+    """Tests that serve_policy.py, with which the programs play saved models, chooses the same
+    actions as the model."""
     with tempfile.TemporaryDirectory() as folder:
         trained.save(f"{folder}/model.zip")
         kind, act = serve_policy.load(f"{folder}/model.zip")

@@ -5,8 +5,8 @@ import numpy as np
 import supersuit
 
 env = aquafarm_gym.FarmParallelEnv("two_squads")
-# agent_indicator_v0 is left out. SuperSuit 3.11 bounds its entries by the min upper bound of the
-# space, but writes the max upper bound: a space with differing bounds does not contain them.
+# agent_indicator_v0 is left out. SuperSuit 3.11 limits the indicator to the min upper bound of the
+# space but sets it to the max upper bound. If the bounds differ, the space does not contain it.
 for wrap in (lambda e: supersuit.black_death_v3(e), lambda e: supersuit.pad_observations_v0(e),
              lambda e: supersuit.dtype_v0(e, np.float64), lambda e: supersuit.frame_stack_v2(e, 3)):
     wrapped = wrap(aquafarm_gym.FarmParallelEnv("two_squads"))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Stores infos of three episodes with tianshou's vector environments and replay buffer."""
+"""Plays three episodes in tianshou's vector environment and stores the steps, with their infos, in
+its replay buffer."""
 import aquafarm_gym
 from tianshou.data import Batch, VectorReplayBuffer
 from tianshou.env import DummyVectorEnv

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs a TorchRL rollout of one farm with infos."""
+"""Tests the specs of one farm in TorchRL and runs a rollout of 100 steps."""
 import aquafarm_gym
 from torchrl.envs import GymWrapper
 from torchrl.envs.utils import check_env_specs

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The verbs of ./aquafarm. The script itself installs and builds; `workspace` calls it for that."""
+"""The verbs of ./aquafarm. The module `workspace` calls the script to install and build."""

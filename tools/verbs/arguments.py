@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks the arguments that a user gives for a launch file, and adds the defaults of others."""
+"""Checks the arguments that a user gives for a launch file, and adds defaults for missing ones."""
 import datetime
 import json
 import os
@@ -9,8 +9,8 @@ import sys
 
 from .workspace import Refused, say
 
-# Arguments whose value is a path. It is made absolute, because nodes run in ROS_HOME. Values of
-# PATHS_OR_NAMES are either paths or names of shipped scenarios and policies.
+# Arguments whose value is a path. The path is made absolute, because nodes run in ROS_HOME. The
+# value of an argument in PATHS_OR_NAMES is a path or the name of a shipped scenario or policy.
 PATHS = ("run_dir", "record_dir", "report", "bag", "output", "human")
 PATHS_OR_NAMES = ("policy", "init", "scenario")
 FLAG = re.compile(r"[Tt]rue|[Ff]alse|0|1")
@@ -33,7 +33,7 @@ def split(word):
 
 
 def with_full_path(word):
-    """Returns 'run_dir:=here' with an absolute path, and other arguments unchanged."""
+    """Returns an argument, such as 'run_dir:=here', with its path made absolute if it has one."""
     name, value = split(word)
     looks_like_path = name in PATHS or (
         name in PATHS_OR_NAMES and ("/" in value or value.endswith((".yaml", ".py", ".zip")) or
@@ -76,9 +76,10 @@ def check_values(launch, words):
 
 
 def policy_of(ranch):
-    """Returns the policy that plays a ranch without a training: generalist for one agent (ship or
-    self-propelled device), planner for several. An unreadable file is refused later."""
-    import yaml  # missing until setup has run
+    """Returns the policy that plays a ranch if the user gives none: generalist for one agent (ship
+    or self-propelled device), planner for several. Returns generalist for an unreadable file, which
+    is refused later."""
+    import yaml  # ./aquafarm setup installs it
 
     try:
         keys = yaml.safe_load(pathlib.Path(ranch).read_text(encoding="utf-8"))
@@ -92,9 +93,9 @@ def policy_of(ranch):
 
 
 def name_the_ranch(launch, words):
-    """Returns the arguments with RANCH.yaml of evaluate and sim as scenario:=RANCH.yaml, and a run
-    folder of evaluate as policy:=FOLDER. If RANCH.yaml is given without a policy, adds the policy
-    that policy_of returns."""
+    """Returns the arguments, with names for those that need none: for evaluate and sim, RANCH.yaml
+    becomes scenario:=RANCH.yaml; for evaluate, a run folder becomes policy:=FOLDER. If RANCH.yaml
+    is given without a policy, adds the policy that policy_of returns."""
     named, ranch = [], None
     for word in words:
         if launch == "evaluate" and os.path.isfile(os.path.join(word, "run.json")):
@@ -110,8 +111,8 @@ def name_the_ranch(launch, words):
 
 
 def arguments_of_run(run):
-    """Returns the arguments of train.launch with which a run was trained, by name. Leaves out what
-    the run folder does not record."""
+    """Returns the arguments of train.launch with which a run was trained, as {name: value}. Leaves
+    out arguments that the run folder does not record."""
     folder, values = pathlib.Path(run), {}
     if (folder / "scenario.yaml").is_file():
         values["scenario"] = f"{os.path.realpath(run)}/scenario.yaml"
@@ -120,13 +121,13 @@ def arguments_of_run(run):
         return values
     try:
         made = json.loads(record.read_text(encoding="utf-8"))
-        # train.launch has an argument `exploration`; run.json records it among the options.
+        # run.json records the argument `exploration` of train.launch as one of the options.
         options, start = made["options"].split(), "exploration="
         recorded = {name: str(made[name]) for name in ("algorithm", "seed", "farms", "credit")}
         recorded["options"] = " ".join(word for word in options if not word.startswith(start))
         recorded["exploration"] = "".join(
             word[len(start):] for word in options if word.startswith(start))
-        # A value with a line break or a substitution of roslaunch could set any other argument.
+        # A line break, a quote or a substitution of roslaunch in a value could set other arguments.
         for name, value in recorded.items():
             if not value.isprintable() or "$(" in value or "'" in value:
                 raise ValueError(f"{name}: got {value!r}, expected one line without $( and quotes")
@@ -138,14 +139,14 @@ def arguments_of_run(run):
 
 
 def newest_run():
-    """Returns the newest run in ./runs that has a checkpoint, or None."""
+    """Returns the run in ./runs with the newest checkpoint, or None."""
     found = [(path.stat().st_mtime, str(path.parents[1]))
              for path in pathlib.Path.cwd().glob("runs/*/checkpoints/step_*.ckpt")]
     return max(found)[1] if found else None
 
 
 def defaults_of_training(launch, given, newest, now):
-    """Returns the folders of a training and, if it resumes, the arguments of the run."""
+    """Returns defaults for the folders of a training and, if it resumes, the run's arguments."""
     taken = {}
     resumes = bool(TRUE.fullmatch(given.get("resume") or "false"))
     run = given.get("run_dir") or (resumes and newest) or f"{os.getcwd()}/runs/{now}"
@@ -153,8 +154,8 @@ def defaults_of_training(launch, given, newest, now):
         taken["run_dir"] = run
     if launch == "train" and resumes:
         of_run = arguments_of_run(run)
-        # If the user gives another algorithm than that of the run, it is refused later. Here the
-        # options of the run are left out, so that the error message does not name them instead.
+        # An algorithm that differs from the run's is refused later. The options of the run are left
+        # out here; else the error message would be about them, not about the algorithm.
         is_other = given.get("algorithm") not in (None, "", of_run.get("algorithm"))
         for name, value in of_run.items():
             if given.get(name) or (is_other and name in ("options", "exploration")):
@@ -168,8 +169,8 @@ def defaults_of_training(launch, given, newest, now):
 
 
 def default_arguments(launch, words):
-    """Returns arguments that the user has not given. Output folders are in the present folder, not
-    in ROS_HOME."""
+    """Returns defaults for arguments that the user has not given, as {name: value}. Output folders
+    are in the current folder, not in ROS_HOME."""
     given = {name: value for name, _, value in (word.partition(":=") for word in words)}
     now = datetime.datetime.now().strftime("%Y%m%d-%H%M%S")
     here, newest, taken = os.getcwd(), newest_run(), {}
@@ -191,7 +192,7 @@ def default_arguments(launch, words):
     policy = given.get("policy", "")
     if launch == "evaluate" and not policy:
         policy = taken["policy"] = newest or "generalist"
-    # A policy plays on the ranch of its training, whose scenario is in its run folder.
+    # A policy plays on the ranch of its training. The run folder contains the scenario.
     if launch != "replay" and "/" in policy and not given.get("scenario"):
         path = pathlib.Path(policy)
         for folder in (path, path.parent, path.parent.parent):
@@ -202,8 +203,8 @@ def default_arguments(launch, words):
 
 
 def with_defaults(launch, words, given_words):
-    """Adds the defaults of arguments that `given_words` lacks to `words`, and prints them. Returns
-    all words."""
+    """Prints the defaults of the arguments that `given_words` lacks. Returns `words` followed by
+    these defaults."""
     taken = [f"{name}:={value}" for name, value in default_arguments(launch, given_words).items()]
     for word in taken:
         say(f"taking {word}")

@@ -15,8 +15,8 @@ FIGURE = re.compile(r"[a-z][a-z0-9_]* -?[0-9][0-9.e+-]* ")
 
 
 def show(command, out=None, env=None):
-    """Runs a command, shows its output and, if `out` is given, writes it to this file. Ends the
-    verb if the command fails. Returns the lines of the output."""
+    """Runs a command, shows its output and returns its lines. If `out` is given, also writes the
+    output to this file. Ends this process if the command fails."""
     lines = []
     with subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE, text=True,
                           env=env) as child:
@@ -32,7 +32,8 @@ def show(command, out=None, env=None):
 
 def reference_python():
     """Returns the Python of a virtual environment that contains the packages WANTED. Makes the
-    environment if it does not exist. Returns None if PyPI is out of reach."""
+    environment if it does not exist or was made for other packages. Returns None if the packages
+    cannot be installed, for example because PyPI is not accessible."""
     venv, log = WS / "bench_venv", WS / "bench_venv.log"
     ready = venv / "ready"
     if not ready.is_file() or ready.read_text(encoding="utf-8") != " ".join(WANTED):
@@ -47,8 +48,8 @@ def reference_python():
 
 
 def compare(script, *words, **variables):
-    """Runs a program of tools/ that compares figures with references from PyPI. Returns its output;
-    an empty list if PyPI is out of reach."""
+    """Runs a program of tools/ that compares figures with references from PyPI. Returns the lines
+    of its output, or an empty list if reference_python returns None."""
     python = reference_python()
     if python is None:
         return []
@@ -57,7 +58,8 @@ def compare(script, *words, **variables):
 
 
 def of_core(core, name, *options, reference=None):
-    """Runs the benchmark `name` of a core, then its reference of tools/bench_reference.py."""
+    """Runs the benchmark `name` of a core, then its reference of tools/bench_reference.py, if
+    any. reference: name for the output file, and argument of tools/bench_reference.py."""
     build_core(core)
     kind = reference and WS / f"bench_{reference[0]}.txt"
     lines = show([program(name), *options], kind)
@@ -67,7 +69,7 @@ def of_core(core, name, *options, reference=None):
 
 
 def ppo():
-    """Runs the benchmark of PPO, then references that train on this farm through aquafarm_gym."""
+    """Runs the benchmark of PPO, then references that train on the same ranch with aquafarm_gym."""
     build_core("aquafarm_agents")
     build_core("aquafarm_gym")
     out = WS / "bench_ppo.txt"
@@ -77,7 +79,8 @@ def ppo():
 
 
 def ranks():
-    """Compares trainings of two and four ranks with one rank and with a model of the cost."""
+    """Compares trainings of two and four ranks with a training of one rank and with a model of the
+    cost."""
     build_core("aquafarm_agents")
     return show([PYTHON, ROOT / "tools/bench_ranks.py", program("aquafarm_train")])
 

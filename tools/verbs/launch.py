@@ -11,7 +11,7 @@ from .workspace import (CHECK_ARGUMENTS, INTERRUPTED, PYTHON, ROOT, WRONG_ARGUME
 
 LAUNCH_FILES = ROOT / "aquafarm_bringup" / "launch"
 QUIET_ROSLAUNCH = ROOT / "aquafarm_bringup" / "scripts" / "quiet_roslaunch"
-# roslaunch kills a node 15 s after Ctrl-C by default; a large checkpoint takes longer to write.
+# By default, roslaunch kills a node 15 s after Ctrl-C. Writing a large checkpoint can take longer.
 SIGINT_LIMIT_S = 120
 KILLED = 137
 
@@ -40,8 +40,8 @@ def refuse_unknown(launch, words):
 
 
 def refuse_a_second_ranch(words):
-    """Raises Refused if a ranch of the same name runs on a shared master: starting a second one
-    ends the first."""
+    """Raises Refused if a ranch with the same namespace runs on a shared master, because starting a
+    second one would end the first."""
     ns = dict(map(arguments.split, words)).get("ns", "aquafarm")
     try:
         listed = subprocess.run(["rosnode", "list"], stdout=subprocess.PIPE, text=True,
@@ -54,7 +54,8 @@ def refuse_a_second_ranch(words):
 
 
 def complete(launch, words):
-    """Returns the options for roslaunch and the arguments, checked and with their defaults."""
+    """Returns the options for roslaunch, and the checked arguments with defaults for missing
+    ones."""
     options = [word for word in words if word.startswith("-")]
     given = [arguments.with_full_path(word) for word in words if not word.startswith("-")]
     refuse_unknown(launch, given)
@@ -64,8 +65,8 @@ def complete(launch, words):
 
 
 def read_end(exit_file, code, launch):
-    """Returns (exit code, reason) of a launch. They are in `exit_file`, which the first node that
-    ended has written: roslaunch itself returns 0 even when a required node failed."""
+    """Returns (exit code, reason) of a launch. The first node that ended has written both to
+    `exit_file`, because roslaunch itself returns 0 even if a required node failed."""
     lines = exit_file.read_text(encoding="utf-8").splitlines() if exit_file.is_file() else []
     exit_file.unlink(missing_ok=True)
     if lines:
@@ -104,8 +105,8 @@ def launch(script, name, words):
         say(f"starting {name}; Ctrl-C ends it, verbose:=true shows roslaunch's own messages")
     exit_file = WS / f"exit.{os.getpid()}"
     exit_file.unlink(missing_ok=True)
-    # A signal ends roslaunch too, and roslaunch lets its nodes save. A shell ignores SIGINT for its
-    # background jobs; without `env` the nodes would inherit this.
+    # After a signal, run_child also ends roslaunch, which lets its nodes save. A shell starts its
+    # background jobs with SIGINT ignored; without `env` the nodes would inherit this.
     code = run_child(["env", "--default-signal=INT,QUIT",
                       "roslaunch" if verbose else QUIET_ROSLAUNCH, *options,
                       f"--sigint-timeout={SIGINT_LIMIT_S}", "aquafarm_bringup", f"{name}.launch",
@@ -117,7 +118,7 @@ def describe(name, about):
     """Prints the help of a launch file: every argument with its meaning and default."""
     print(f"usage: ./aquafarm {name} [name:=value…]\n\n{about}\n")
     try:
-        from roslaunch.arg_dump import dump_args  # Debian's; setup installs it
+        from roslaunch.arg_dump import dump_args  # ./aquafarm setup installs it
     except ImportError:
         print("Run ./aquafarm setup; then this help lists every argument with meaning and default.")
         return 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Lists the verbs with their help texts and runs them."""
+"""Runs a verb of ./aquafarm. Contains the help texts of the verbs."""
 import argparse
 import signal
 import sys
@@ -30,7 +30,7 @@ trained (of:=train) or is evaluated (of:=evaluate).""",
     "replay": """Shows a recorded bag: only the player, viz and rviz run. policy:=… shows its choices as well.""",
 }
 
-# Verbs that are a program of the workspace with its own arguments and --help.
+# Verbs that run a program of the workspace, which has its own arguments and --help.
 PROGRAMS = {
     "ask": [WS / "devel/lib/aquafarm_agents/bag_policy"],
     "many": ["rosrun", "aquafarm_agents", "aquafarm_many"],
@@ -114,7 +114,7 @@ def run(script, verb, words):
 
 
 def main(script, verb, words):
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # ./aquafarm train --help | head
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # for ./aquafarm train --help | head
     try:
         return run(script, verb, words)
     except Refused as refusal:

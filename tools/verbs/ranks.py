@@ -4,8 +4,8 @@ from . import arguments
 from .launch import report_end
 from .workspace import WS, Refused, ensure_built, enter_ros, run_child
 
-# Arguments of the verb, with the options of aquafarm_train for them. LEFT_OUT contains the values
-# for which the option is left out.
+# For each argument of the verb, the option of aquafarm_train. LEFT_OUT contains the value of an
+# argument for which the option is left out.
 OPTIONS = {"ranks": "--ranks", "algorithm": "--algorithm", "episodes": "--episodes",
            "steps": "--steps", "farms": "--farms", "seed": "--seed", "credit": "--credit",
            "exploration": "--exploration", "init": "--init", "run_dir": "--run-dir",

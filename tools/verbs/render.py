@@ -11,7 +11,7 @@ VIDEOS = (".mp4", ".webm", ".gif")
 
 
 def maps_of_values(words):
-    """Returns the options of bag_policy for the maps that render draws with these arguments."""
+    """Returns the options with which bag_policy computes the maps that render draws."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--step", nargs="*", action="extend", default=[])
     parser.add_argument("--every", default="1")

@@ -27,12 +27,12 @@ BROKEN = """<testsuite tests="1" failures="1"><testcase classname="stage" name="
 </testcase></testsuite>
 """
 LAST_LINES = 20
-# CI ends the test command after 90 minutes. Checks of the wheel that have not begun this long after
-# the start are skipped. A check that has begun may take a quarter of an hour more.
+# Checks of the wheel that have not begun within WHEEL_END_S seconds of the start are skipped,
+# because CI ends the test command after 90 minutes. Checks that have begun may take 15 min longer.
 WHEEL_END_S = 55 * 60
-# Command prefix of a step that gets only the processor time that others leave.
+# Command prefix of a step that gets only the processor time that other processes leave.
 IDLE = ["chrt", "--idle", "0"]
-END_S = 20  # time for such a step to end after SIGTERM, and again after SIGKILL
+END_S = 20  # time for such a step to end after SIGTERM, and again after SIGKILL [s]
 
 
 @dataclasses.dataclass
@@ -43,18 +43,18 @@ class Step:
     log: pathlib.Path
     xml: pathlib.Path | None = None  # results that it writes; None: only its exit code counts
     is_shown: bool = False  # False: its output goes to the log
-    variables: dict = dataclasses.field(default_factory=dict)  # of the environment
+    variables: dict = dataclasses.field(default_factory=dict)  # environment variables to set
 
 
 class Stages:
-    """Prints when each stage of a test run begins, and records stages that fail."""
+    """Prints when each stage of a test run begins, and records whether one failed."""
 
     def __init__(self):
         self._began = time.monotonic()
         self.has_failed = False
 
     def seconds(self):
-        """Returns the time since the start."""
+        """Returns the time since the start [s]."""
         return int(time.monotonic() - self._began)
 
     def begin(self, what):
@@ -74,8 +74,8 @@ class Stages:
 
     @contextlib.contextmanager
     def next_to(self, *steps):
-        """Runs steps with low priority while the block runs. Then waits for the steps; ends them if
-        the block raises or a signal ends this process."""
+        """Runs steps with low priority while the `with` block runs. Then waits for the steps. Ends
+        them if the block raises or a signal ends this process."""
         with contextlib.ExitStack() as stack:
             for number in (signal.SIGTERM, signal.SIGHUP):
                 stack.callback(signal.signal, number, signal.signal(number, exit_by_signal))
@@ -99,8 +99,8 @@ class Stages:
             self.break_off(step.name, step.log)
 
     def break_off(self, name, log):
-        """Writes a failed test for a stage that broke off, as its missing cases would not be
-        reported, and prints the end of the log."""
+        """Writes a failed test for a stage that broke off, because its missing cases would not be
+        reported. Prints the end of the log."""
         path = RESULTS / f"stage-{name.replace(' ', '_')}.xml"
         path.write_text(BROKEN.format(name), encoding="utf-8")
         lines = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
@@ -121,7 +121,7 @@ def lower_weight(session):
     """Gives the processes of a session the lowest weight among sessions. Linux first divides the
     processor time among sessions ("autogroup", sched(7)), then within each session by class. With
     the idle class alone, a step would therefore get a quarter of a busy core. Without privileges,
-    Linux refuses changes that follow too closely (EAGAIN), so a refused change is tried again."""
+    Linux refuses a change shortly after another one (EAGAIN). A refused change is tried again."""
     for _ in range(10):
         try:
             pathlib.Path(f"/proc/{session}/autogroup").write_text("19", encoding="ascii")
@@ -133,7 +133,7 @@ def lower_weight(session):
 
 
 def end_session(child):
-    """Ends the remaining processes of the session that a child leads."""
+    """Ends the remaining processes of the process group that a child leads."""
     for number in (signal.SIGTERM, signal.SIGKILL):
         with contextlib.suppress(ProcessLookupError, subprocess.TimeoutExpired):
             os.killpg(child.pid, number)
@@ -162,7 +162,7 @@ def build_workspace(stages):
     built, _ = run_bootstraps(["build"], ["--install", *itertools.chain(*extras.values())])
     if built != 0:
         sys.exit(built)
-    for left_out, packages in extras.items():  # does nothing if all are installed
+    for left_out, packages in extras.items():  # installs nothing if all packages are present
         if run_bootstrap("--install", *packages) != 0:
             say(f"{', '.join(packages)} cannot be installed: {left_out}")
     use_ccache()
@@ -189,8 +189,8 @@ def pytest_step(name, files, variables):
 
 
 def tools_steps(fast):
-    """Returns two steps of about the same length; with `fast` only one, without campaigns and
-    without checks of the build."""
+    """Returns two steps that take about the same time: campaigns and other tests of tools/. With
+    `fast` returns only the other tests, without those that need a built workspace."""
     campaigns = ROOT / "tools/test/campaign_test.py"
     others = sorted({*ROOT.glob("tools/test/*_test.py")} - {campaigns})
     if fast:
@@ -217,7 +217,7 @@ def core_step(core, fast):
 
 
 def ros_step(log, fast):
-    # Measured with two at a time on two cores. A rostest waits for most of its time.
+    # At most two at a time, because only this was measured (on two cores). A rostest mostly waits.
     jobs = min(2, len(os.sched_getaffinity(0)))
     return Step("tests through ROS",
                 [ROOT / "tools/run_ros_tests", WS / "build", log, "--jobs",

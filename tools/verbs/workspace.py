@@ -20,7 +20,7 @@ ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Refused(Exception):
-    """A verb cannot run. Has a line for the user and the exit code."""
+    """A verb cannot run. Contains a line for the user and the exit code."""
 
     def __init__(self, line, code=WRONG_ARGUMENT):
         super().__init__(line)
@@ -52,7 +52,7 @@ def run_children(commands, goes_on=False):
             for command, options in commands:
                 words = [str(word) for word in command]
                 children.append(stack.enter_context(subprocess.Popen(words, **options)))
-                if received:  # between the last child and this one
+                if received:  # before `children` contained this child
                     children[-1].send_signal(signal.SIGTERM)
             codes = [child.wait() for child in children]
     finally:
@@ -113,9 +113,9 @@ def is_port_open(port):
 
 
 def enter_ros():
-    """Adds the ROS environment of the built workspace to that of this process. If ROS_MASTER_URI is
-    set, returns True: its master may already run. Else sets it to a free port and returns
-    False."""
+    """Adds the ROS environment of the built workspace to that of this process. Returns True if
+    ROS_MASTER_URI is set, because a master may already run there. Else sets it to an address with a
+    free port and returns False."""
     sourced = subprocess.run(["bash", "-c", 'source "$0" && exec env -0', WS / "devel/setup.bash"],
                              stdout=subprocess.PIPE, check=False)
     if sourced.returncode != 0:
@@ -143,7 +143,7 @@ def enter_ros():
 
 
 def replace_by(*command):
-    """Replaces this process by a command."""
+    """Replaces this process with a command."""
     sys.stdout.flush()
     try:
         os.execvp(command[0], [str(word) for word in command])

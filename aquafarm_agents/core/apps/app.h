@@ -34,10 +34,10 @@ inline std::array<std::atomic<std::int64_t>, 2> first_signal_ms{};
 static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 
 /// Installs handlers for SIGINT (Ctrl-C) and SIGTERM. The first signal sets stop_requested, so that
-/// the program saves and exits. The same signal ends the program at once if it arrives at least
-/// half a second later; an earlier repetition is ignored. Repetitions within half a second occur if
-/// a benchmark is killed: the kernel then signals its programs (PR_SET_PDEATHSIG) once for each
-/// thread of the benchmark that ends.
+/// the program saves and exits. A repetition of the same signal ends the program at once if it
+/// arrives at least half a second after the first one. An earlier repetition is ignored. Such early
+/// repetitions occur if a benchmark is killed: the kernel then signals the programs that the
+/// benchmark started (PR_SET_PDEATHSIG), once for each thread of the benchmark that ends.
 inline void StopOnSignals() {
   const auto handler = [](int signal) {
     constexpr std::int64_t kSame_ms = 500;
@@ -62,7 +62,8 @@ inline void StopOnSignals() {
 inline std::string ScenarioFolder() {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);  // <prefix>/lib/<package>/
+  // <prefix>/lib/<package>/<program>
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   const fs::path prefix = program.parent_path().parent_path().parent_path();
   const fs::path installed = prefix / "share" / "aquafarm_sim" / "scenarios";
   return fs::is_directory(installed, ignored) ? installed.string() : AQUAFARM_SCENARIO_DIR;

@@ -96,8 +96,8 @@ Farm StartOf(const std::shared_ptr<const Scenario>& scenario, std::uint64_t seed
   return farm;
 }
 
-// Writes the ranch of an episode of a family as a separate scenario. The episode with the same seed
-// and number is the same in both.
+// Writes the ranch of an episode of a family as a separate scenario. At the same seed and number,
+// the episode of this scenario is equal to that of the family.
 void WriteRanch(const Arguments& arguments, const std::shared_ptr<const Scenario>& family) {
   if (!family->family) {
     throw InputError("--ranch: scenario " + family->name + " is one ranch, expected a family");
@@ -198,7 +198,8 @@ ExitCode Run(Arguments arguments) {
   const SavedPolicy saved = FindPolicy(arguments.policy);
   arguments.environment.observation_types = saved.observation_types;
   arguments.scenario.name = ScenarioOf(arguments, saved);
-  if (ReadsTokens(saved.checkpoint)) {  // cheaper than tokens computed from the states
+  // Tokens from the environment are cheaper than tokens computed from the states.
+  if (ReadsTokens(saved.checkpoint)) {
     arguments.scenario.tokens = true;
     arguments.environment.observation_types &= static_cast<std::uint8_t>(~kStatesBit);
   }

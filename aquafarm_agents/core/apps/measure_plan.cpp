@@ -157,7 +157,7 @@ Json RunStorms(Arguments& arguments) {
   std::vector<TrialResult> results;
   std::vector<std::vector<Promise>> home;
   std::vector<std::vector<Promise>> gales;
-  std::vector<std::vector<Promise>> weak;  // as gales; empty if the bulletin has a gale
+  std::vector<std::vector<Promise>> weak;  // as `gales`, but empty if the bulletin has a gale
   Groups groups;
   for (std::int32_t i = 0; i < arguments.storms; ++i) {
     const TrialStorm storm =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plans which ship fetches which device before a storm, and computes how likely each device is
-// saved. Works without ROS.
+// Plans which ship fetches which device before a storm, and computes the probability that each
+// device is saved. Works without ROS.
 #include <chrono>
 #include <cmath>
 #include <cstdio>

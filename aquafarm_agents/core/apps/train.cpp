@@ -107,7 +107,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   AddScenarioOptions(app, arguments.scenario);
 }
 
-// Trains with all farms in this process, or with its share of the farms if there are several ranks.
+// Trains with all farms in this process. If there are several ranks, this process has only the
+// farms of its rank.
 RunReport TrainHere(Arguments& arguments, ProcessGroup* group) {
   const RunOptions& options = arguments.options;
   EnvironmentOptions& environment = arguments.environment;

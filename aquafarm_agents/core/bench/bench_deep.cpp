@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measures farm steps and updates per second of DQN and LSTM-DQN on paper.yaml with 16 farms and
 // one thread. The observations are the plain feature vector (43 values), as in the references of
-// tools/bench_reference.py. In the benchmarks named AllFeatures they also contain route distances
-// and lookahead risks (81 values).
+// tools/bench_reference.py. In the benchmarks whose names end in AllFeatures, they also contain
+// route distances and lookahead risks (81 values).
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -37,7 +37,7 @@ void TrainSteps(benchmark::State& state, TrainingLoop& training) {
   state.SetItemsProcessed(state.iterations() * kFarms);
 }
 
-// All repetitions share one learner.
+// All repetitions of a benchmark share one learner.
 void Dqn(benchmark::State& state) {
   static TrainingLoop training("dqn", kDqnOptions, Paper(false), kFarms, kFirstSteps);
   TrainSteps(state, training);

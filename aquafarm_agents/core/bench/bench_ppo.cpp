@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measures farm steps per second of PPO in training on paper.yaml (81 features) with 256 farms, one
 // thread, rollouts of 16,384 steps, minibatches of 2,048 and two epochs. The network is
-// feed-forward with 2 x 128 units, or recurrent with an LSTM of 128. tools/bench_ppo.py measures
-// the references.
+// feed-forward with 2 x 128 units, or recurrent with an LSTM of 128 units. tools/bench_ppo.py
+// measures other implementations of PPO for comparison.
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -27,8 +27,8 @@ std::shared_ptr<const Scenario> Paper() {
   return std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"));
 }
 
-// All repetitions share one learner. Its first rollout is full at the start, so that each iteration
-// begins with an update.
+// All repetitions of a benchmark share one learner. Its first rollout is full at the start, so that
+// each iteration begins with an update.
 void Ppo(benchmark::State& state) {
   static TrainingLoop training("ppo", "batch_size=2048", Paper(), kFarms, kStepsPerRollout);
   Train(state, training);

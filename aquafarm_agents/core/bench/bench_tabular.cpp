@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures training steps per second of the tabular learners on paper.yaml with one thread, their
-// ratio to steps with RANDOM, and the time and success of a complete training.
+// Measures training steps per second of the tabular learners on paper.yaml with one thread, the
+// ratio of this rate to that of RANDOM, and the time and success of a complete training.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

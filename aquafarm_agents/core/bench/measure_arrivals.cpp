@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures whether a trained network avoids a disaster that is announced in mid-episode as well as
-// one that is announced at the start.
+// Compares how well a trained network avoids a disaster that is announced in mid-episode with how
+// well it avoids one that is announced at the start.
 //
 // One ship fetches three devices on 12 × 12 cells, with a new layout in each episode. A storm
 // crosses the farm around step 48. It is announced (SetDisaster) at step 0, or later, at a step in
 // [8, 20]. PPO trains on episodes of both kinds, then plays pairs of episodes that differ only in
-// the step of the announcement. "unseen" plays the same episodes with the disaster slots of the
-// observation set to 0.
+// the step of the announcement. The result "unseen" is from the episodes with the late
+// announcement, played with the disaster slots of the observation set to 0.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ std::shared_ptr<const Scenario> MakeScenario() {
 /// When the storm of an episode is announced.
 enum class Arrival : std::uint8_t { kStart, kLater, kMixed };
 
-/// Farms whose storms arrive by SetDisaster.
+/// Farms whose storms are announced by SetDisaster.
 class Farms {
  public:
   Farms(const std::shared_ptr<const Scenario>& scenario, std::int32_t farms, Arrival arrival)
@@ -94,7 +94,7 @@ class Farms {
     return arrival_ == Arrival::kStart ? 0 : later;
   }
 
-  // Announces the storms that are due at this step, then writes the observations again.
+  // Announces the storms that are due at this step. If any are due, writes the observations again.
   void Arrive() {
     for (std::int32_t i = 0; i < batch_.farms(); ++i) {
       Farm& farm = batch_.farm(i);

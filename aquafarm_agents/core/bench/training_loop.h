@@ -14,8 +14,8 @@ namespace aquafarm::agents {
 /// A learner and its farms, which run in one thread.
 class TrainingLoop {
  public:
-  /// @param first_steps number of steps that the constructor takes. Updates must begin in the next
-  ///   step or earlier, so that they are part of all measured steps
+  /// @param first_steps number of steps that the constructor takes. The first update must be due in
+  ///   the next step or earlier, so that every measurement includes updates
   TrainingLoop(const char* algorithm, const std::string& options,
                std::shared_ptr<const Scenario> scenario, std::int32_t farms, int first_steps)
       : environment_(std::move(scenario),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target for checkpoints: repairs the magic, format, sizes and checksum of the header, so that
-// the reader gets past them, and makes the policy. Samples that need no repair provide the spec of
-// their farms.
+// Fuzz target for checkpoints. Repairs the magic, format, sizes and checksum of the header, so that
+// the reader accepts them. Then parses the checkpoint and makes its policy. The policies of an
+// algorithm use the environment spec of the first sample that needs no repair.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

@@ -6,7 +6,7 @@
 #include "aquafarm/base/check.h"
 using namespace aquafarm::agents;
 
-// TableLearner adds checkpoints and the greedy policy. Learner, its base, leaves both to you.
+// TableLearner implements checkpoints and the greedy policy, which its base class Learner does not.
 struct ExpectedSarsa final : TableLearner {
   ExpectedSarsa(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options)
       : TableLearner(spec, seed, options) {

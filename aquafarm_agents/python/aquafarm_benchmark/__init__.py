@@ -7,10 +7,12 @@ runs          executes trainings and evaluations in parallel; they can be resume
 cluster       the Dask workers that execute them: on this machine, of a scheduler, or of Slurm
 worker        the part of a run that executes on a worker
 measures      convergence, stability, EA, interquartile means and intervals
-losses        losses of money in evaluated episodes
+losses        money losses of evaluated episodes
 human         episodes that people played, as a row of the benchmark
 results       the tables and result files of a benchmark
-figures       Figs. 12 to 14 of the paper, and other charts of the results
+output        writes the tables and draws the figures of a complete benchmark
+figures       Figs. 12 to 14 of the paper, and the returns of evaluations
+loss_figures  charts of money losses
 style         headlines, names of lines and colours of the figures
 route_figure  Fig. 11 of the paper, and other charts of routes
 sweep, many   the programs aquafarm_sweep and aquafarm_many

@@ -153,9 +153,9 @@ def _load_in_programs(contestants):
 
 
 def _own_packages(program):
-    """Returns the words to put before the command of a program. They are empty unless the program
-    belongs to a virtual environment that contains aquafarm_core. For such a program they remove the
-    workspace from PYTHONPATH, because it would hide packages of the environment."""
+    """Returns the words to put before the command of a program. If the program belongs to a virtual
+    environment that contains aquafarm_core, they remove the workspace from PYTHONPATH, because the
+    workspace would hide packages of that environment. For other programs, the list is empty."""
     home = pathlib.Path(shutil.which(program) or program).parent.parent
     if not (home / "pyvenv.cfg").is_file() or not any(
             home.glob("lib/python*/site-packages/aquafarm_core")):
@@ -178,7 +178,8 @@ def _default_names(profile):
 
 
 def _require_paper(options):
-    """Raises BadInput for profile paper with another scenario: some rows play paper_plain."""
+    """Raises BadInput if profile paper is used with another scenario than paper: some of its rows
+    use the scenario paper_plain."""
     if options.profile == "paper" and options.scenario != "paper":
         raise BadInput(f"scenario: got '{options.scenario}' with profile paper, expected paper, "
                        "whose rows have scenarios of their own; use profile full for another "
@@ -322,8 +323,8 @@ _FARM_KEYS = ("scenario", "scenario_hash", "version")
 
 
 def look_at_farm(options):
-    """Returns the name and hash of the scenario with the version of the programs, and whether the
-    scenario has money. Raises BadInput if the scenario is invalid."""
+    """Returns {scenario: its name, scenario_hash, version: that of the programs}, and whether the
+    scenario has the key money. Raises BadInput if the scenario is invalid."""
     evaluate = find_program("aquafarm_evaluate", options.programs)
     with tempfile.TemporaryDirectory(prefix="aquafarm_") as folder:
         one = subprocess.run([evaluate, "random", options.scenario, "--episodes", "1",
@@ -389,7 +390,7 @@ def run(options):
 
 
 def _run_jobs(jobs, options, folder):
-    """Executes the jobs; returns the contestants that do not take part, and why."""
+    """Executes the jobs. Returns {contestant: reason} for contestants that do not take part."""
     with cluster.Cluster(options.scheduler, options.jobs) as workers:
         place = (f"{options.jobs} in parallel" if workers.is_local else
                  f"on the scheduler {options.scheduler}")

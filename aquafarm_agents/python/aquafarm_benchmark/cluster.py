@@ -113,8 +113,7 @@ class Cluster:
         self._identity = self._ask_identity()
 
     def _ask(self, question, **arguments):
-        """Returns the answer of the scheduler. Raises TimeoutError, which is an OSError, after 10
-        s."""
+        """Returns the answer of the scheduler. Raises TimeoutError (an OSError) after 10 s."""
         return self.client.sync(question, **arguments, callback_timeout=10.0)
 
     def _ask_identity(self):
@@ -147,7 +146,7 @@ class Cluster:
                 time.sleep(1.0)
 
     def workers(self):
-        """Returns the number of runs that the workers execute in parallel; 0 if it is unknown."""
+        """Returns the number of runs that the workers can execute in parallel; 0 if unknown."""
         try:
             return sum(self._ask(self.client.scheduler.ncores, workers=None).values())
         except OSError:  # the scheduler was just lost
@@ -196,8 +195,8 @@ def _check_slurm():
 
 
 def _refusal(error):
-    """Returns the error line of sbatch in an error of dask-jobqueue; if it has none, its first
-    line."""
+    """Returns the message of sbatch in an error of dask-jobqueue. If the error contains no such
+    message, returns its first line."""
     found = re.search(r"^sbatch: (?:error: )?(.+)$", str(error), re.MULTILINE)
     return found[1] if found else _first_line(error)
 

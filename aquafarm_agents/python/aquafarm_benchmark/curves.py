@@ -6,8 +6,8 @@ from aquafarm_benchmark import measures
 
 
 def columns_of_runs(of_one, column):
-    """Returns a column of all runs, [runs, episodes]. Longer runs are cut to the shortest one, as
-    lengths may differ slightly."""
+    """Returns a column of all runs, [runs, episodes]. Longer runs are cut to the length of the
+    shortest run, because lengths may differ slightly."""
     length = min(len(run["curve"][column]) for run in of_one)
     return np.array([run["curve"][column][:length] for run in of_one])
 
@@ -26,7 +26,7 @@ def most_common_count(contestants, runs):
 
 
 def describe_shading(contestants, runs):
-    """Returns the note about lines and shades over all runs."""
+    """Returns a note that explains the lines and shades of charts over all runs."""
     count = most_common_count(contestants, runs)
     return ("One run of each learner." if count == 1 else
             f"Median of {count} runs, shaded from the lowest to the highest run.")

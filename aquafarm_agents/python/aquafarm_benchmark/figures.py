@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the figures of the paper's §4 as PNG from the data of results.py.
 
-Each function draw_… creates a figure and saves it. The functions plot_… draw on given axes.
+Each function draw_… creates a figure and saves it. The functions plot_… draw on given axes. The
+end of a line in a chart is (x, y, colour, name), where x and y are those of its last point.
 """
 import numpy as np
 from matplotlib import ticker
@@ -23,9 +24,9 @@ def _learners(contestants):
 
 
 def _highest(contestants, ends, what, digits=0):
-    """Returns the headline of a chart: "DQN has the highest return: 271". The last values of the
-    lines of the learners are compared as they are printed; RANDOM is left out. If all learners have
-    the settings as printed in the paper, the headline says so once."""
+    """Returns the headline of a chart, such as "DQN has the highest return: 271". Compares the last
+    values of the lines, rounded to `digits`, without RANDOM. If all labels end with PRINTED, the
+    headline begins with "With the settings as printed" instead of repeating PRINTED."""
     learners = {one.label for one in _learners(contestants)}
     last = sorted(((y, name) for _, y, _, name in ends if name in learners), reverse=True)
     if not last:
@@ -40,7 +41,7 @@ def _highest(contestants, ends, what, digits=0):
 
 
 def _with_values(contestants, ends, digits=0):
-    """Returns the ends of lines with the last values of the contestants in their names: "DQN 271"."""
+    """Returns the ends of lines. Appends the last values to the names of contestants: "DQN 271"."""
     labels = {one.label for one in contestants}
     return [(x, y, colour, f"{name}{_NBSP}{number(y, digits)}" if name in labels else name)
             for x, y, colour, name in ends]
@@ -76,8 +77,8 @@ def _scale_returns(axes):
 
 
 def _draw_returns(path, contestants, find, note, ylabel, plots):
-    """Draws charts of returns, one below the other, on the scale of _scale_returns. Lines
-    that their function has not named are named at their right end.
+    """Draws charts of returns, one below the other, on the scale of _scale_returns. Names the lines
+    whose ends the functions in `plots` return.
 
     find: function that returns the headline, given the ends of the lines of the last chart
     note: how the data were computed
@@ -140,8 +141,8 @@ def _mark_reached(axes, references):
 
 
 def _name_reached(axes, ends, target):
-    """Marks where lines reach a return. Writes their names and numbers of steps above the axes, in
-    several rows if they are close. Returns the ends of the other lines, which have no name yet."""
+    """Marks where lines reach the return `target`. Writes the names and numbers of steps of these
+    lines above the axes, in several rows if they are close. Returns the ends of all other lines."""
     others = []
     reached = []
     for end in ends:
@@ -178,7 +179,7 @@ def plot_rewards_by_steps(axes, contestants, runs, references):
     axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter(lambda value, _: _steps_text(value))
     axes.xaxis.set_minor_formatter(ticker.NullFormatter())
-    # RANDOM takes most steps; the chart ends where the last learner ends.
+    # RANDOM takes the most steps. The chart ends where the last learner ends.
     learners = {one.label for one in _learners(contestants)}
     last = max((x for x, _, _, name in ends if name in learners), default=np.inf)
     ends = [end for end in (_cut(axes, end, last) for end in ends) if end]
@@ -191,8 +192,8 @@ def plot_rewards_by_steps(axes, contestants, runs, references):
 
 
 def _cut(axes, end, last):
-    """Cuts the line with this end at x = last. Returns its new end; None if nothing is left, and
-    removes the line."""
+    """Cuts the line with this end at x = last. Returns its new end. If nothing is left, removes the
+    line and returns None."""
     if end[0] <= last:
         return end
     line, = (one for one in axes.lines if one.get_label() == end[3])
@@ -211,8 +212,7 @@ def _steps_text(value):
 
 
 def plot_rewards_by_episodes(axes, contestants, runs, references):
-    """Plots the 50-episode mean return of the first run by episodes. Returns the ends of the
-    lines."""
+    """Plots the 50-episode mean return of the first run by episode. Returns the ends of lines."""
     ends = []
     for one in contestants:
         curve = runs[one.name][0]["curve"]
@@ -311,8 +311,8 @@ def draw_mean_score(path, contestants, runs, references):
 
 
 def plot_mean_score(axes, contestants, runs, references, limits=None):
-    """Plots the 50-episode mean return per step: the median of the runs. Up to _MOST_SHADED lines are
-    shaded between the lowest and the highest run. Returns the ends of the lines.
+    """Plots the 50-episode mean return per step: the median of the runs. Up to _MOST_SHADED lines
+    are shaded between the lowest and the highest run. Returns the ends of the lines.
 
     references: {name: return per step}, drawn for comparison
     limits: limits of the y axis; None: automatic
@@ -350,8 +350,7 @@ def draw_evaluation(path, contestants, rows):
 
 
 def plot_evaluation(axes, contestants, rows):
-    """Plots a bar for each contestant: the interquartile mean of its runs, with the 95 %
-    interval."""
+    """Plots a bar for each contestant: interquartile mean of its runs, with the 95 % interval."""
     by_name = {row["name"]: row for row in rows}
     for place, one in enumerate(contestants):
         row = by_name[one.name]

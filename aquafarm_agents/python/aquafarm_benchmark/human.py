@@ -30,8 +30,8 @@ class BadBag(ValueError):
 
 @dataclasses.dataclass
 class Person:
-    """The finished episodes of one person. Each episode has a row with the keys COLUMNS and ADDED,
-    and a key of its start (_start_of)."""
+    """The finished episodes of one person. Each episode has an entry in `rows`, with the keys
+    COLUMNS and ADDED, and an entry in `starts`, the result of _start_of."""
     folder: pathlib.Path
     bags: list
     rows: list
@@ -39,8 +39,8 @@ class Person:
 
 
 def find(folder):
-    """Returns a Person without episodes for each folder with bags. Raises BadBag if there are no
-    bags."""
+    """Returns a Person for each folder with bags; read adds the episodes. Raises BadBag if there
+    are no bags."""
     if not folder.is_dir():
         raise BadBag(f"human: got {folder}, expected a folder with bags of ./aquafarm play")
     places = [folder, *sorted(path for path in folder.iterdir() if path.is_dir())]
@@ -157,7 +157,8 @@ def write_runs(people, farm, folder):
 
 
 def contestant(people):
-    """Returns the contestant of the row. Its label contains the numbers of people and episodes."""
+    """Returns the contestant of the row. Its label contains the number of episodes and, if there
+    are several people, their number."""
     episodes = sum(len(person.rows) for person in people)
     count = "" if len(people) == 1 else f"{len(people)} people, "
     label = f"human, {count}{episodes} episode{'' if episodes == 1 else 's'}"
@@ -165,8 +166,8 @@ def contestant(people):
 
 
 def optimum_of_the_same(people, evaluation_seed, evaluation_csv):
-    """Returns the optimum's mean return over the episodes that the people played. Each person's
-    episodes have the same total weight. None if an episode is not an evaluation episode."""
+    """Returns the optimum's mean return over the episodes that the people played. All people have
+    the same weight. Returns None if an episode is not an evaluation episode of the optimum."""
     with open(evaluation_csv, newline="") as file:
         best = {int(row["episode"]): float(row["return"]) for row in csv.DictReader(file)}
     seed = evaluation_seed | _EVALUATION_SEED_BIT

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws losses as PNG from the data of results.py. The functions plot_… draw on given axes."""
+"""Draws money losses as PNG from the data of results.py.
+
+The functions plot_… draw on given axes.
+"""
 import numpy as np
 
 from aquafarm_benchmark import losses

@@ -92,7 +92,7 @@ def _intervals(losses, starts):
 
 def summarise(columns, currency):
     """Returns the statistics of pooled columns. Amounts are in the currency; insured, saved,
-    damaged and lost are means per episode."""
+    damaged, lost, loss and operating_cost are means per episode."""
     losses = losses_of(columns)
     var, cvar = tail(losses)
     var_interval, cvar_interval = _intervals(losses, columns["start"])

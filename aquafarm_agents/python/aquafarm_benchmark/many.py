@@ -37,7 +37,7 @@ def is_planned(result):
 
 
 def arguments(words):
-    """Parses the arguments. Those after -- are the arguments of the program. Raises ValueError."""
+    """Parses the arguments. Those after -- are for the program that runs. Raises ValueError."""
     words, rest = (words, []) if "--" not in words else (
         words[:words.index("--")], words[words.index("--") + 1:])
     parser = argparse.ArgumentParser(prog="aquafarm_many", description=__doc__,
@@ -65,7 +65,8 @@ def arguments(words):
 
 
 def jobs_of(given):
-    """Returns the jobs, and for each job the first columns of its row: ranch, and policy."""
+    """Returns the jobs, and for each job the first columns of its row: the ranch; for evaluate also
+    the policy."""
     program = find_program(f"aquafarm_{given.what}", given.programs)
     jobs, rows = [], []
     for number, ranch in enumerate(given.ranches):
@@ -94,7 +95,7 @@ def numbers_of(what, result):
 
 
 def write_tables(folder, columns, rows):
-    """Writes table.csv and table.md; returns the text of the latter."""
+    """Writes table.csv and table.md. Returns the text of table.md."""
     with open(folder / "table.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerows([columns, *rows])
@@ -107,9 +108,9 @@ def write_tables(folder, columns, rows):
 
 
 def _files(words):
-    """Returns the size and the modification time of each word that names a file, and of the policy
-    and the checkpoints of each word that names a run folder. many.json contains them, so that
-    require_same treats a changed file as another task."""
+    """Returns {path: [size, modification time]} of the files that the words name. For a run folder,
+    these are its policy and checkpoints. many.json contains the result, so that require_same raises
+    ValueError if a file has changed."""
     inside = [str(path) for word in words for path in
               [pathlib.Path(word) / "policy.ckpt", *pathlib.Path(word).glob("checkpoints/*.ckpt")]]
     return {word: [os.stat(word).st_size, os.stat(word).st_mtime_ns]

@@ -38,15 +38,15 @@ def last_quarter(values):
 
 def convergence(returns, successes, standard_errors=0.0):
     """Returns the episode, counted from 1, from which the 50-episode mean return stays within 5 %
-    of its final plateau.
+    of the mean return on the plateau.
 
-    The result is the last of the 50 episodes of the first such mean. It is None if the run does not
-    converge: it has fewer than 100 episodes, the success rate on the plateau is below 0.95, or the
-    mean is outside the band during the plateau.
+    The result is the last of the 50 episodes of the first such mean. Returns None if the run does
+    not converge: it has fewer than 100 episodes, its success rate on the plateau is below 0.95, or
+    a 50-episode mean on the plateau is outside this band.
 
     standard_errors: half-width of a second band, in standard errors of a 50-episode mean on the
-    plateau. The wider band applies. With the 5 % band alone, the result of a policy that no longer
-    changes would depend on chance if its returns vary by more than a tenth.
+    plateau. The wider band applies. With the 5 % band alone, the result would depend on chance if
+    the returns of a policy that no longer changes vary by more than a tenth.
     """
     if len(returns) < 2 * WINDOW or last_quarter(successes).mean() < PLATEAU_SUCCESS:
         return None
@@ -105,8 +105,8 @@ def return_per_step(returns, steps, window=WINDOW):
 
 
 def median_convergence(episodes):
-    """Returns the median of the converged episodes of several runs. A run that has not converged
-    (None) counts as infinity. None if the median is infinite."""
+    """Returns the median of the results of convergence for several runs. A run that does not
+    converge (None) counts as infinity. Returns None if the median is infinite."""
     middle = float(np.median([math.inf if one is None else one for one in episodes]))
     return middle if math.isfinite(middle) else None
 
@@ -137,7 +137,7 @@ def ea_normalised(share_of_optimum, success, converged_at, stability, episodes):
     """Returns Eq. 16 with every term normalised to [0, 1], so that no unit dominates.
 
     The return is divided by the clairvoyant optimum and limited to [0, 1]. Convergence is the
-    fraction of the training after the converged episode; 0 if the learner does not converge.
+    fraction of the training after the episode `converged_at`; 0 if the learner does not converge.
     """
     left = 0.0 if converged_at is None else 1.0 - converged_at / episodes
     return (WEIGHTS["return"] * min(1.0, max(0.0, share_of_optimum)) +

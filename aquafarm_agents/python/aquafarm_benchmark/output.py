@@ -25,7 +25,8 @@ def _summarise(one, of_one, best, settings, people):
 
 
 def tabulate(folder, contestants, found, settings, people):
-    """Writes the results. Returns the contestants with people and the optimum, and their rows."""
+    """Writes the results. Returns all contestants, including people and the optimum, and their
+    rows."""
     everyone = [*contestants, *([human.contestant(people)] if people else []),
                 *([OPTIMUM] if OPTIMUM.name in found else [])]
     best = found[OPTIMUM.name][0] if OPTIMUM.name in found else None
@@ -61,7 +62,7 @@ def draw(folder, everyone, found, rows):
         loss_figures.draw_losses(pictures / "losses.png", everyone, rows)
     for one in everyone:
         route = folder / "runs" / one.name / "seed_1" / "route.json"
-        if route.is_file():  # people and rows of NAME=COMMAND have no route
+        if route.is_file():  # people and learners of --learner NAME=COMMAND have no route
             route_figure.draw_route(pictures / f"route_{one.name}.png", one.label, route)
 
 

@@ -38,8 +38,8 @@ PAPER_TABLE = {
 @dataclasses.dataclass(frozen=True)
 class Contestant:
     """A row of the benchmark: an algorithm with its settings. exploration and options may contain
-    {explored}, the fraction of the training after which the exploration temperature is 1, and
-    {last_rate}, the final learning rate; for_episodes replaces them."""
+    two placeholders, which for_episodes replaces: {explored}, the fraction of the training after
+    which the exploration temperature is 1, and {last_rate}, the final learning rate."""
     name: str  # name of the row and of its folder
     label: str  # for tables and figures
     colour: str
@@ -50,7 +50,7 @@ class Contestant:
     options: typing.Tuple[str, ...] = ()
     cost: float = 1.0  # estimated duration of a run, relative to the others
     episodes: int = 0  # maximum number of evaluation episodes; 0: as many as requested
-    repeats: bool = True  # False: one run, since the result does not depend on the seed
+    repeats: bool = True  # False: one run, because the result does not depend on the seed
     scenario: str = ""  # empty: that of the benchmark
     paper_row: str = ""  # key of PAPER_TABLE; empty if Table 1 has no such row
     named_only: bool = False  # True: not part of --algorithms all
@@ -120,7 +120,8 @@ CONTESTANTS = (
     Contestant("planner", "planner", "#009e73", learns=False, cost=0.5, episodes=100,
                repeats=False),
 )
-# Reference policies for the money losses of the other rows; they take part if there is money.
+# Reference policies for the money losses of the other rows. They take part if the scenario has the
+# key money.
 REFERENCES = (
     Contestant("do_nothing", "do nothing", "#aa3377", learns=False, cost=0.05, repeats=False,
                named_only=True),
@@ -157,7 +158,7 @@ def _tuned(one):
 
 
 # Settings of replay, target and optimiser as in preset=paper of DQN (docs/algorithms.md).
-# Exploration and masks stay tuned.
+# Exploration and masks keep their tuned settings.
 _PAPER_REPLAY = ("priority_exponent=0", "loss=mse", "max_grad_norm=0", "double_dqn=false",
                  "action_gap=0", "ema_rate=0", "reward_scale=1", "gamma=0.99",
                  "target_update_interval=250", "buffer_size=100000",

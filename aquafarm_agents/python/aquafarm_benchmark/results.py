@@ -118,8 +118,8 @@ def summarise(contestant, runs, optimum, training_episodes):
 
 
 def add_ea(rows):
-    """Adds rank, ea_paper and ea_normalised to all rows; they are None for rows that did not
-    learn."""
+    """Adds rank, ea_paper and ea_normalised to all rows. They are None for rows that did not learn;
+    ea_normalised is also None if share_of_optimum is None."""
     trained = [row for row in rows if row["stability"] is not None]
     ranks = measures.convergence_ranks({row["name"]: row["convergence"] for row in trained})
     for row in rows:
@@ -213,7 +213,8 @@ _MONEY_COLUMNS = ("insured", "saved", "damaged", "lost", "loss", "standard_error
 
 def write_losses(folder, rows):
     """Writes losses.csv and exceedance.csv (the points of the curves). losses.csv has a line per
-    row and kind of device; only the kind "all" has VaR and CVaR. Writes nothing without money."""
+    row and kind of device. Lines of the kind "all" have all columns, other lines only the
+    columns insured to loss. Writes nothing without money."""
     rows = [row for row in rows if row["money"]]
     if not rows:
         return

@@ -18,7 +18,7 @@ _EVERY = 2  # arrows are drawn in every second column and row, so that they can 
 _SHOWN_STEPS = 4  # number of steps whose rings are drawn
 _ARROW = 0.48  # length of an arrow, as a fraction of the distance to the next one
 _RIM = 0.7  # distance from the centres of the outermost cells to the edge of the axes [cells]
-_LANE = 0.14  # offset of a leg from the centres of its cells [cells]; its sign alternates
+_LANE = 0.14  # offset of a leg (route between two stops) from its cells [cells]; alternating sign
 # Style of a leg by whether a device is aboard; colours of Okabe and Ito (2008).
 _LEGS = {False: ("#0072b2", (0, (4, 1.5)), "route with nothing aboard"),
          True: ("#d55e00", "solid", "route with a device aboard")}
@@ -88,7 +88,7 @@ def devices_left(route):
 
 def draw_unfinished(path, routes, title):
     """Draws the routes of episodes that ended with devices at sea, and the rings of disasters in
-    the last step. All maps have the same scale.
+    the last step and before. All maps have the same scale.
 
     routes: {name of the ranch: route file}
     title: title of the figure
@@ -118,21 +118,21 @@ def draw_unfinished(path, routes, title):
 
 
 def plot_unfinished(axes, name, route, size):
-    """Draws the route of an episode that did not succeed. size: columns and rows of the axes, which
-    are those of the largest ranch"""
+    """Draws the route of an episode that did not succeed. size: numbers of columns and rows of
+    the axes, each the largest of all ranches"""
     chart, last = route["chart"], route["steps"][-1]
     left = devices_left(route)
     sea = _chart(axes, chart, size, left)
     axes.set_xlabel("cells to the east")
     axes.set_ylabel("cells to the north")
-    at_end = route["steps"][-2]["disasters"]  # in the last state they have ended
+    at_end = route["steps"][-2]["disasters"]  # in the last state they may have ended
     for i, disaster in enumerate(at_end):
         rings = list(_rings(disaster))
         covering = [k for k, ring in enumerate(rings) if _covers_any(ring, left)]
         for steps, (colour, label) in _BEFORE.items() if covering else ():
             then = len(route["steps"]) - 2 - steps
             before = route["steps"][then]["disasters"] if then >= 0 else []
-            if len(before) == len(at_end):  # else one has ended, and the order is another
+            if len(before) == len(at_end):  # if not, their indices differ
                 _plot_ring(axes, list(_rings(before[i]))[covering[-1]], sea, colour, linewidth=2.0,
                            label=label)
         for ring in rings:
@@ -259,7 +259,7 @@ def _point_along(axes, x, y, colour):
 
 
 def place_names(chart):
-    """Returns {(x, y): name} of the devices, "F0", and ports, "A", of a ranch."""
+    """Returns {(x, y): name} of the devices, "F0", "F1", …, and the first 26 ports, "A" to "Z"."""
     names = {tuple(device["cell"]): f"F{i}" for i, device in enumerate(chart["devices"])}
     names.update({tuple(cell): chr(ord("A") + i) for i, cell in enumerate(chart["ports"][:26])})
     return names
@@ -270,7 +270,7 @@ def plot_route(axes, steps, names, ports):
     An action of step t is complete in step t + 1.
 
     names: see place_names
-    ports: their cells (x, y); numbers are below ports, whose names are above them
+    ports: cells (x, y) of the ports; the numbers of stops there are below the names of the ports
     """
     _plot_legs(axes, steps)
     axes.scatter(*steps[0]["cell"], s=170, facecolor="none", edgecolor="black", linewidth=1.8,
@@ -336,7 +336,7 @@ def _disasters(axes, steps, sea):
     stops = np.array([step["cell"] for step in steps if step.get("action") in _STOPS],
                      dtype=float).reshape(-1, 2)
     inside = axes.viewLim.padded(-0.3)
-    west = axes.viewLim.xmin + 2.0  # labels of points west of it are to the right of the ring
+    west = axes.viewLim.xmin + 2.0  # labels of points west of this x are to the right of the ring
     axes.plot([], [], color=_RING, linewidth=1.6, label="ring of the disaster")
     for at in np.linspace(0, len(steps) - 1, _SHOWN_STEPS).astype(int):
         style = {"linewidth": 1.6, "alpha": 0.9} if at == 0 else {"linewidth": 0.9, "alpha": 0.6}

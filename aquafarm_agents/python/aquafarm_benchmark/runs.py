@@ -19,11 +19,12 @@ from aquafarm_benchmark.worker import has_begun, last_line
 
 _REFUSED = 2  # exit code of a program for invalid input
 _LINGER_S = 12.0  # time for programs to save after Ctrl-C; roslaunch allows 15 by default
-_PERIOD_S = 5.0  # between two checks of the scheduler
+_PERIOD_S = 5.0  # time between two checks of the scheduler, and max wait for the result of a run
 _LOSSES = 5  # max number of times that a run is submitted again after Dask gave it up
 _RECOVERIES = 20  # max number of losses of the scheduler without a completed run in between
 _DONE = re.compile(r"(?:steps|episodes) ([\d,]+) / ([\d,]+)")
-# Variables of this process that change results or the output of programs.
+# Environment variables that change results or the output of programs. The programs on the workers
+# get the values of this process.
 _PASSED_ON = re.compile(r"OPENBLAS_\w+|OMP_\w+|AQUAFARM_\w+")
 
 
@@ -38,17 +39,17 @@ class Interrupted(RuntimeError):
 @dataclasses.dataclass
 class Job:
     """A run: commands that are executed one after the other and write `result`."""
-    contestant: str
+    contestant: str  # runs of the same contestant differ only in the seed
     name: str
     folder: pathlib.Path
     result: pathlib.Path
     commands: typing.List[typing.List[str]]
-    cost: float
+    cost: float  # estimated duration, relative to the other runs
     resumable: bool = False  # the first command can resume a run, with --resume
     good_codes: typing.Tuple[int, ...] = (0,)  # exit codes of the last command that mean success
     resumes: bool = False  # True: the first command was started with --resume
     started: typing.Optional[float] = None  # time.monotonic of the start; None: not started
-    command: int = 0  # number of the command that is executing, from 1
+    command: int = 0  # number of the latest started command, from 1; 0: none
     losses: int = 0  # number of times that Dask gave the run up
     done_at_start: float = 0.0  # completed fraction when the run was resumed
 
@@ -62,15 +63,15 @@ class Job:
         return self.resumable and has_begun(self.folder)
 
     def note_start(self, event):
-        """Records that a worker has started a command. event: see worker.perform"""
+        """Records that a worker has started a command. event: logged by worker.perform"""
         self.command, self.resumes = event["command"], event["resumes"]
         if self.command == 1:
             self.done_at_start = self.done() if self.resumes else 0.0
             self.started = time.monotonic()
 
     def done(self):
-        """Returns the completed fraction of the first command, which is read from the last line of
-        the log; 1 after this command."""
+        """Returns the completed fraction of the first command, read from the last line of the log.
+        Returns 1 after a later command has started."""
         if self.command > 1:
             return 1.0
         found = [(int(done.replace(",", "")) / max(1, int(limit.replace(",", ""))))
@@ -87,17 +88,19 @@ def is_complete(result):
 
 
 def run_all(jobs, cluster, report, period_s=10.0, complete=is_complete):
-    """Executes the jobs that have no result on the workers of a cluster.Cluster, the longest first.
+    """Executes jobs on the workers of a cluster.Cluster, the most costly first. Skips jobs with a
+    complete result.
 
-    report(text): called with the progress every period_s seconds, and with each failure
+    report(text): called with the progress every period_s seconds, and with each event, such as a
+        failure or the loss of a worker
     complete(path): returns whether a result is complete
 
     Returns {contestant: reason} for the contestants that are not suitable: their first command
-    exits with code 2 (invalid input), for example a table on a farm with too many states. Exit code
-    2 is a failure if a later command or a resumed run returns it, or if the contestant has a
-    complete run. Raises RunFailed if some runs failed, after all others have ended. Raises
-    Interrupted on Ctrl-C, once the programs have saved and exited or _LINGER_S have passed. Raises
-    cluster.Lost if the scheduler does not return.
+    exits with code 2 (invalid input), for example that of a tabular learner on a farm with too many
+    states. Exit code 2 is a failure if a later command or a resumed run returns it, or if the
+    contestant has a complete run. If some runs failed, raises RunFailed after all others have
+    ended. On Ctrl-C, waits until the programs have saved and exited, at most _LINGER_S, and raises
+    Interrupted. Raises cluster.Lost if the scheduler does not return, or is lost too often.
     """
     return _Runs(jobs, cluster, report, complete).run(period_s)
 
@@ -183,7 +186,7 @@ class _Runs:
     def _settle(self, future):
         """Processes the end of a run, or the loss of its worker."""
         job = self._futures.pop(future)
-        if future.status == "cancelled":  # by the loss of the scheduler, or by cancel() below
+        if future.status == "cancelled":  # the scheduler was lost, or cancel() was called below
             if job.contestant not in self._declined:
                 self._submit_again(future, job)
             return
@@ -286,7 +289,7 @@ class _Progress:
         self._count = len(jobs)
         self._costs = {job.contestant: job.cost for job in jobs}
         self._over = over
-        self._took = {}  # durations of complete jobs by contestant [s]
+        self._took = {}  # {contestant: [duration of each completed job that was not resumed [s]]}
 
     def finish(self, job):
         self._over += 1
@@ -297,7 +300,7 @@ class _Progress:
         """Returns the progress in one line.
 
         left: jobs that have not ended
-        at_once: number of jobs that are executed in parallel
+        at_once: number of jobs that the workers can execute in parallel
         """
         now = time.monotonic()
         seconds = {name: sum(took) / len(took) for name, took in self._took.items()}

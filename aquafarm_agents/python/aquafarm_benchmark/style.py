@@ -12,9 +12,11 @@ _DPI = 150
 _LETTERS = 78  # max length of a line of a headline
 _NOTE = {"fontsize": 9.5, "color": "0.35"}
 _NAME_PT = 15.0  # height of a name [pt]
-_NEAR = 0.15  # max distance along x of ends that are named in one column [widths of the axes]
-_INSIDE = 0.78  # max height of the name of a line that ends inside the axes [height of the axes]
-_TEXT = 4.5  # min contrast ratio of names on white (WCAG 2.1, 1.4.3)
+# Max distance along x between line ends with names in one column [fraction of the axes' width].
+_NEAR = 0.15
+# Max y of the name of a line that ends inside the axes [fraction of the axes' height].
+_INSIDE = 0.78
+_TEXT = 4.5  # min contrast ratio of names on white (WCAG 2.1, success criterion 1.4.3)
 plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False,
                      "axes.titlelocation": "left"})
 
@@ -44,7 +46,7 @@ def _wrap_evenly(text):
 
 
 def write_note(axes, note):
-    """Writes a note into axes of a third of a figure's width that have no chart."""
+    """Writes a note into axes that have no chart and a third of the figure's width."""
     axes.text(0.0, 1.0, "\n".join(textwrap.wrap(note, 0.42 * _LETTERS)), va="top",
               linespacing=1.4, transform=axes.transAxes, **_NOTE)
 
@@ -66,9 +68,9 @@ def number(value, digits=0):
 
 def spread(places, gap, low=0.0, high=1.0):
     """Moves places apart to distances of at least `gap`, with the least sum of squared movements.
-    Then limits the places to [low, high] if they fit. Expects and returns them in ascending
-    order."""
-    groups = []  # of places that touch each other: (position of the first one, number of places)
+    Then moves them into [low, high]. If they do not fit, they begin at `low` and exceed `high`.
+    Expects and returns the places in ascending order."""
+    groups = []  # (position of the first place, number of places) of places that touch each other
     for i, place in enumerate(places):
         groups.append((place - i * gap, 1))
         while len(groups) > 1 and groups[-2][0] >= groups[-1][0]:
@@ -80,10 +82,11 @@ def spread(places, gap, low=0.0, high=1.0):
 
 
 def name_ends(axes, ends):
-    """Writes the name of each line to the right of its end, and connects both. Names do not
-    overlap.
+    """Writes the name of each line to the right of the line's end, and connects name and end. The
+    names of lines that end at the right border of the axes do not overlap each other. Neither do
+    the names of lines that end further left.
 
-    ends: (x, y, colour, name) of each line
+    ends: (x, y, colour, name) of each line's end
     """
     axes.margins(x=0.0)
     axes.set_ylim(axes.get_ylim())  # fixes the limits
@@ -98,7 +101,7 @@ def name_ends(axes, ends):
         group = [end for end in ends if (at[end][0] < 0.95) == is_inside]
         places.update(zip(group, spread([at[end][1] for end in group], gap, high=high)))
     for (x, y, colour, name), place in places.items():
-        # A name stands to the right of all ends that are near.
+        # A name stands to the right of all line ends that are up to _NEAR to the right of its own.
         end = max(length for length, _ in at.values() if length <= at[x, y, colour, name][0] + _NEAR)
         axes.annotate(name, (x, y), xytext=(min(end, 1.0) + 0.04, place), textcoords=axes.transAxes,
                       color=legible(colour), va="center", fontsize=10, annotation_clip=False,
@@ -123,6 +126,6 @@ def legible(colour):
 
 
 def shade(axes, x, low, high, colour):
-    """Shades a range. Its thin edges stay visible where ranges overlap."""
+    """Shades the area between low and high. Its thin edges stay visible where areas overlap."""
     axes.fill_between(x, low, high, facecolor=(*colors.to_rgb(colour), 0.16),
                       edgecolor=(*colors.to_rgb(colour), 0.45), linewidth=0.5)

@@ -82,7 +82,8 @@ def jobs_of(given, settings, train):
 
 
 def interval(values):
-    """Returns the mean and the half-width of its 95 % interval (Student's t); nan for one value."""
+    """Returns the mean and the half-width of its 95 % interval (Student's t). The half-width is nan
+    for one value."""
     mean = sum(values) / len(values)
     if len(values) < 2:
         return mean, math.nan
@@ -93,7 +94,8 @@ def interval(values):
 
 
 def table_of(settings, results):
-    """Returns rows (options, seeds, return, half-width, success), best return first.
+    """Returns rows (options, number of seeds, mean return, half-width of its 95 % interval, mean
+    success rate). The row with the highest return is first.
 
     results: {number of the combination: [content of evaluation.json]}
     """
@@ -154,8 +156,11 @@ def arguments(words):
 
 
 def require_same(folder, name, task, advice=""):
-    """Writes the task of a folder to its file `name`. Raises ValueError if the file contains
-    another task."""
+    """Writes the task to the file `name` in the folder. Raises ValueError if the file already
+    contains another task.
+
+    advice: end of the error message
+    """
     text = json.dumps(task, indent=1)
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / name
@@ -166,8 +171,8 @@ def require_same(folder, name, task, advice=""):
 
 
 def check_plan(given, settings):
-    """Writes the comparison to the output folder. Raises ValueError if the folder contains another
-    comparison."""
+    """Writes the settings of the comparison to the output folder. Raises ValueError if the folder
+    contains a comparison with other settings. Seeds are not part of the settings."""
     require_same(given.output, "sweep.json",
                  {"scenario": given.scenario, "algorithm": given.algorithm, "steps": given.steps,
                   "episodes": given.episodes, "options": settings},

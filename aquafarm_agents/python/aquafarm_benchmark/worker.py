@@ -20,8 +20,8 @@ TOPIC = "aquafarm"  # Dask topic of the events that report each started command
 _LINGER_S = 10.0  # time for a program to save after it was interrupted
 _LOCK_LIMIT_S = 60.0  # time for the programs of a lost worker to end
 _POLL_S = 0.05
-# These variables of srun and mpirun describe the worker. Its trainings must not use them, because
-# they would train in ranks.
+# Launchers (torchrun, mpirun, srun) set these variables for the worker. Its programs do not get
+# them: a training with these variables would train in ranks.
 _OF_LAUNCHERS = re.compile(r"RANK|WORLD_SIZE|MASTER_\w+|OMPI_\w+|PMIX?_\w+|SLURM_PROCID|SLURM_STEP_\w+")
 _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 # A run has one core. Without this variable, PyTorch would use several threads in a learner of
@@ -68,9 +68,9 @@ def _end(process):
 
 
 def _lock(log, is_wanted):
-    """Locks the log of a run. The programs of the run keep it locked until they end. Waits for
-    other programs; raises RuntimeError after _LOCK_LIMIT_S. Returns False if the run is no longer
-    wanted."""
+    """Locks the log of a run. The programs of the run keep the log locked until they end. Waits
+    while other programs lock it; raises RuntimeError after _LOCK_LIMIT_S. Returns False if the run
+    is no longer wanted."""
     end = time.monotonic() + _LOCK_LIMIT_S
     while is_wanted():
         try:
@@ -88,9 +88,10 @@ def perform(folder, commands, resumable, cwd, environment):
     """Executes the commands of a run until one fails. The run folder must exist.
 
     If the run is resumable and its folder contains a run, the first command gets --resume. Returns
-    {code: exit code of the last command, commands: number of started commands, resumes, words: last
-    line of the log}, or None if no client wants the run any more or this worker is closing. Raises
-    RuntimeError, with a message of one line, if this worker cannot execute the run.
+    {code: exit code of the last started command, commands: number of started commands, resumes:
+    whether the first command got --resume, words: last line of the log}. Returns None if no client
+    wants the run any more or this worker is closing. Raises RuntimeError, with a message of one
+    line, if this worker cannot execute the run.
     """
     from distributed import get_worker  # takes a third of a second to load
 

@@ -58,8 +58,8 @@ std::shared_ptr<const aquafarm::Scenario> ScenarioOf(const FarmSpec& spec,
 class PolicyProbe {
  public:
   /// @param path path of the bag, for error messages
-  /// @param rewinds true if the recording may contain external changes; the probe then stores all
-  ///        states of the episode
+  /// @param rewinds true if the recording may contain external changes (SavedState.msg); the probe
+  ///        then stores each state of the episode in which it queries the policy
   /// @throws InputError if the spec contains no valid scenario, or the policy does not fit it
   PolicyProbe(const FarmSpec& spec, const std::string& path, const agents::SavedPolicy& saved,
               bool rewinds)
@@ -111,13 +111,14 @@ class PolicyProbe {
     return "state.hash: got " + Number(state.hash) + ", simulated " + Number(hash);
   }
 
-  /// True if the last query was for the same state, which a ranch may publish more than once.
+  /// Returns whether the last query was for `state`. A ranch may publish a state more than once.
   bool HasAsked(const FarmState& state) const {
     return asked_ > 0 && choice_.step == state.step && asked_hash_ == state.hash;
   }
 
-  /// Queries the policy at the current state of the farm. A repeated state is queried only once.
-  /// After an external change the query uses the recurrent state from before this step.
+  /// Queries the policy at the current state of the farm, which `state` describes. Does not repeat
+  /// the query if the state is repeated. After an external change the policy starts from the
+  /// recurrent state that it had before the queries of this step.
   const PolicyChoice& Ask(const FarmState& state) {
     choice_.header = state.header;
     if (HasAsked(state)) return choice_;
@@ -173,7 +174,7 @@ class PolicyProbe {
     --asked_;
   }
 
-  /// Simulates one step with the actions that its resulting state contains.
+  /// Simulates the step that leads to `state`, with the recorded actions that `state` contains.
   std::string Take(const FarmState& state) {
     if (over()) {
       return "the episode ended with step " + Number(Step()) + ", expected no later one";
@@ -208,8 +209,8 @@ class PolicyProbe {
   std::unique_ptr<agents::Policy> elsewhere_;  // for the maps; has a separate recurrent state
   PolicyChoice choice_;
   EpisodeChoices episode_;
-  bool begun_{};  // a message of this episode was read, so `farms_` is at its state
-  bool seen_{};   // the current state was read and, unless the episode is over, queried
+  bool begun_{};  // a message of this episode was read, so `farms_` is at the state of the message
+  bool seen_{};   // the current state was read and, unless the episode is over, the policy queried
   std::uint64_t asked_{};
   std::uint64_t asked_hash_{};  // hash of the state of choice_
   std::vector<std::string> asked_states_;
@@ -239,8 +240,8 @@ class Output {
       bag_->write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
     });
   }
-  /// Writes a message just before `time`, so that it is available when the state of that time is
-  /// shown.
+  /// Writes a message with the time stamp `time` − 1 ns, so that a player publishes it before the
+  /// state of `time`.
   template <typename Message>
   void Add(const std::string& topic, ros::Time time, const Message& message) {
     if (time.toNSec() > ros::TIME_MIN.toNSec()) time -= ros::Duration(0, 1);
@@ -261,7 +262,7 @@ class Output {
     fs::remove(beside_, ignored);
   }
 
-  // Converts write errors, so that they are not reported as errors of the input bag.
+  // Converts errors to StorageError, so that they are not reported as errors of the input bag.
   template <typename Work>
   void Guard(const Work& work) const {
     try {

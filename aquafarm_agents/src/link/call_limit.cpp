@@ -14,7 +14,7 @@ using aquafarm::MutexLock;
 
 // Period between two checks. It is long, so that the watcher costs little.
 constexpr std::chrono::milliseconds kLook{200};
-// 15 s. Periods are counted, so that the time during which the process is stopped does not count.
+// Number of periods in 15 s. Counting them leaves out the time in which the process is suspended.
 constexpr int kLastLooks = 75;
 
 }  // namespace

@@ -53,7 +53,7 @@ struct PlanParams {
   agents::RescueRequest request;
   double period_s{0.5};      ///< between checks of the files
   double min_period_s{2.0};  ///< between the starts of two plans
-  double refresh_s{300.0};   ///< period in which a plan that follows no ranch is made again
+  double refresh_s{300.0};   ///< with ~scenario: period after which the plan is made again
   double state_timeout_s{10.0};
   std::string command{"plan_node"};
 };
@@ -191,7 +191,8 @@ class PlanNode {
 
   void OnSpec(const aquafarm_msgs::FarmSpecConstPtr& spec) {
     if (scenario_ && scenario_->hash == spec->scenario_hash) return;
-    // The last state belongs to another ranch. A new subscription receives the state of this ranch.
+    // The last state may belong to another ranch. A new subscription receives the state of this
+    // ranch.
     last_state_ = nullptr;
     state_.shutdown();
     FollowState();
@@ -205,8 +206,8 @@ class PlanNode {
     }
   }
 
-  // Publishes the heartbeat. It stops if planning hangs, so that subscribers notice a node that
-  // hangs as well as a dead one.
+  // Publishes the heartbeat and renews the markers, unless planning hangs. To subscribers, a node
+  // that hangs thus looks like a node that has ended.
   void Beat() {
     if (work_->busy_s() > kPlanLimit_s) return;
     std_msgs::Time now;
@@ -236,7 +237,7 @@ class PlanNode {
     drawn_ = PlanMarkers(plan);
     for (auto& marker : drawn_.markers) marker.lifetime = lifetime_;
     markers_.publish(drawn_);
-    // Only a new plan deletes the markers of the last one.
+    // The first marker deletes the markers of the previous plan. RenewMarkers must not repeat it.
     drawn_.markers.erase(drawn_.markers.begin());
   }
 
@@ -276,8 +277,8 @@ class PlanNode {
     work_->Ask(std::move(inputs));
   }
 
-  // Adds the state of the ranch to the inputs. Returns why it is missing or outdated; empty if it
-  // is not.
+  // Adds the state of the ranch to the inputs. Returns why the state is missing or outdated; empty
+  // if it is current.
   std::string FollowRanch(PlanInputs& inputs) {
     if (!spec_fault_.empty()) return spec_fault_;
     const std::string name = node_.resolveName("state");
@@ -330,7 +331,8 @@ class PlanNode {
     plan_.publish(plan);
   }
 
-  // Logs an outcome once; a throttle would use /clock, which may stand still.
+  // Logs the fault and the text of a plan when they change. ROS_WARN_THROTTLE is not used, because
+  // it counts ROS time, which may stand still.
   void Report(const RescuePlan& plan) {
     if (plan.fault != told_fault_ && !plan.fault.empty()) ROS_WARN("plan: %s", plan.fault.c_str());
     told_fault_ = plan.fault;
@@ -371,14 +373,14 @@ class PlanNode {
   ros::WallTimer look_;
   ros::WallTimer beat_;
 
-  // Used only by the worker.
+  // Used only by the worker thread.
   PlanKeeper keeper_;
   std::vector<ros::Publisher> paths_;  // by ship
   std::string told_fault_;
   std::string told_text_;
 
   aquafarm::Mutex markers_mutex_;
-  // The current markers, without the one that deletes the previous ones.
+  // The markers of the current plan, without the marker that deletes those of the previous plan.
   visualization_msgs::MarkerArray drawn_ AQUAFARM_GUARDED_BY(markers_mutex_);
   ros::Duration lifetime_ AQUAFARM_GUARDED_BY(markers_mutex_){kMarkerLife_s};
   ros::Time renewed_ AQUAFARM_GUARDED_BY(markers_mutex_);

@@ -239,8 +239,8 @@ agents::RunReport Train(ros::NodeHandle& node, TrainParams params, agents::Proce
   return report;
 }
 
-/// Connects with the other ranks. Each rank has a separate sim node. Returns null if this process
-/// trains alone.
+/// Connects to the other ranks: processes that train the same learner, each with its own sim node.
+/// Returns null if this process trains alone.
 std::unique_ptr<agents::ProcessGroup> JoinRanks(const TrainParams& params) {
   const agents::RankVariables variables =
       agents::ReadRankVariables([](const char* name) { return std::getenv(name); });
@@ -314,7 +314,7 @@ std::string Next(const agents::RunReport& report, const agents::RunOptions& run)
 
 int RunTrainNode() {
   try {
-    RefuseTwin();  // for example ranks that mpirun started with the same node name
+    RefuseTwin();  // mpirun, for example, may start several ranks with the same node name
     ros::NodeHandle node;
     const TrainParams params = ReadTrainParams(ros::NodeHandle("~"));
     const std::unique_ptr<agents::ProcessGroup> group = JoinRanks(params);

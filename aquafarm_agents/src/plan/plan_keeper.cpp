@@ -118,7 +118,8 @@ bool PlanKeeper::Update(const PlanInputs& inputs) {
   return has_planned || stamp_before != plan_.plan.computed_at || fault_before != plan_.plan.fault;
 }
 
-// Returns why the newest bulletin is not in the plan; empty if it is.
+// Plans as described at PlanKeeper. Returns why plan_ does not use the newest bulletin, or an empty
+// string.
 std::string PlanKeeper::TryAll(const PlanInputs& inputs) {
   const std::string newest = inputs.bulletins.empty() ? "" : inputs.bulletins[0].path;
   std::string why;
@@ -134,13 +135,13 @@ std::string PlanKeeper::TryAll(const PlanInputs& inputs) {
   } catch (const std::exception& error) {
     why = error.what();
   }
-  // If no bulletin is in use yet, uses the newest of the others with which a plan can be made.
+  // If no bulletin is in use yet, uses the next older bulletin with which a plan can be made.
   for (std::size_t i = 1; good_.empty() && i < inputs.bulletins.size(); ++i) {
     try {
       Use(MakePlan(inputs, inputs.bulletins[i].path), inputs);
       good_ = inputs.bulletins[i].path;
       return why + "; this plan uses " + good_;
-    } catch (const std::exception&) {  // tries the next one
+    } catch (const std::exception&) {  // tries the next bulletin
     }
   }
   const bool has_other = !good_.empty() && good_ != newest && !StampOf(good_).stamp.empty();
@@ -148,7 +149,7 @@ std::string PlanKeeper::TryAll(const PlanInputs& inputs) {
     try {
       Use(MakePlan(inputs, good_), inputs);
       return why + "; this plan uses " + good_;
-    } catch (const std::exception&) {  // no plan can be made: keeps the earlier one
+    } catch (const std::exception&) {  // keeps the earlier plan
     }
   }
   if (plan_.plan.result == RescuePlan::NONE) return why;

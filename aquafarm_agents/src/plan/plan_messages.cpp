@@ -356,7 +356,7 @@ PlanMessages ReadPlan(const std::string& json, const std::string& where) {
     SetWords(document, plan);
     messages.chart = ChartOf(document.at("ranch"), plan);
     return messages;
-  } catch (const std::exception& error) {  // for example of nlohmann::json, stoull or ParseUtc
+  } catch (const std::exception& error) {  // for example from nlohmann::json or ParseUtc
     throw aquafarm::InputError(where + ": " + error.what() +
                                "; expected a plan file of version 1, make it again with "
                                "aquafarm_plan --json");

@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the page and the GeoJSON of a rescue plan from the plan file that aquafarm_plan writes."""
+"""Makes the page and the GeoJSON of a rescue plan from its plan file. The program aquafarm_plan of
+the package aquafarm_agents writes this file."""

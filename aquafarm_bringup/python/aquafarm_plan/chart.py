@@ -40,7 +40,8 @@ def svg_path(points, closed=False):
 
 
 def chart(plan):
-    """Returns the data of templates/map.svg. Positions are in pixels of the drawing."""
+    """Returns the data for the template templates/map.svg. Positions are in pixels of the
+    drawing."""
     frame = Frame(plan["ranch"])
     routes = [_route(plan, frame, route) for route in plan["plan"]["routes"]]
     devices = [_device(plan, frame, device) for device in plan["devices"]]
@@ -61,9 +62,9 @@ def chart(plan):
 
 
 def storm_pointer(plan, frame):
-    """Returns an arrow near the border of the map and its label. The arrow points to the storm's
-    centre at the start of the plan. None if this centre is unknown or in the inner part of the map,
-    at least 30 px from the border."""
+    """Returns an arrow with a label, 30 px from the border of the map. The arrow points to the
+    storm's centre at the start of the plan. Returns None if this centre is unknown, or on the map
+    and at least 30 px from the border."""
     clock, points = Clock(plan["clock"]), plan["storm"]["points"]
     seconds = [clock.seconds(one["time"]) for one in points]
     if not seconds or not seconds[0] <= 0.0 <= seconds[-1]:
@@ -86,8 +87,9 @@ def storm_pointer(plan, frame):
 
 
 def _keep_away(storm, symbols, frame):
-    """Moves the arrow of storm_pointer along its border, at most 80 px, until it is at least 45 px
-    away from all symbols. It stays in place if there is no such position."""
+    """Moves the arrow of storm_pointer along the nearest border of the map, by at most 80 px, to
+    the closest position that is at least 45 px away from all symbols. Does not move the arrow if
+    there is no such position."""
     x, y = storm["xy"]
     is_aside = min(x, frame.width - x) < min(y, frame.height - y)
     for shift in sorted(range(-80, 81, 10), key=abs):
@@ -106,7 +108,7 @@ def _coast(ranch, frame):
     mask = np.zeros((ranch["height"] + 2 * pad, ranch["width"] + 2 * pad))
     for x, y in ranch["land"]:
         mask[y + pad, x + pad] = 1
-    # Land at the border of the map is extended beyond it.
+    # Land at the border of the map continues outside the map.
     mask[:pad], mask[-pad:] = mask[pad], mask[-pad - 1]
     mask[:, :pad], mask[:, -pad:] = mask[:, pad:pad + 1], mask[:, -pad - 1:-pad]
     smooth = gaussian_filter(np.kron(mask, np.ones((fine, fine))), 0.28 * fine)
@@ -147,8 +149,8 @@ def _offset(points, distance):
 
 
 def _route(plan, frame, route):
-    """Returns the legs of a route between its orders. `late`, in [0, 1], is the relative start time
-    of a leg, which determines its shade."""
+    """Returns the legs of a route between its orders. `late` determines the shade of a leg: 0 if
+    the leg begins when the first ship leaves, 1 if it begins at the end of the route."""
     clock = Clock(plan["clock"])
     ends = [clock.seconds(order["time"]) for order in route["orders"]]
     last = max(route["path"][-1][2], 1) if route["path"] else 1
@@ -167,7 +169,8 @@ def _route(plan, frame, route):
 
 
 def _arrow(line):
-    """Returns x, y and direction [degrees clockwise from the x axis] in the middle of a line."""
+    """Returns the centre (x, y) of the middle segment of a line, and the segment's direction
+    [degrees clockwise from the x axis]."""
     steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
     k = int(np.searchsorted(np.cumsum(steps), steps.sum() / 2))
     k = min(k, len(steps) - 1)
@@ -231,7 +234,7 @@ def nice(target):
 
 
 def _scale_bar(ranch, frame):
-    """Returns two scale bars with round lengths, in km and in nautical miles."""
+    """Returns two scale bars with round lengths: one in km, one in nautical miles."""
     px_per_km = frame.scale * 1000 / ranch["cell_size_m"]
     bars = []
     for unit, km in (("km", 1.0), ("nmi", 1.852)):
@@ -271,16 +274,19 @@ def _degrees(value, positive, negative):
 
 
 def isolines(plan, frame):
-    """Returns the time of each frame [s after the start of the plan] and, for each ring, the
-    outlines of the areas with at least 10, 50 and 90 %."""
+    """Returns for each frame of the hazard its time [s after the start of the plan], and for each
+    ring of the storm the outlines of the areas with a probability of at least 10, 50 and 90 %.
+
+    frame: the Frame of the drawing
+    """
     ranch, clock, result = plan["ranch"], Clock(plan["clock"]), []
     for one in plan["hazard"]["frames"]:
         rings = []
         for grid in one["percent"]:
             outlines = []
             if grid:
-                # The border cells are repeated once. A border of zeros then closes the outlines
-                # outside of the map.
+                # The border cells are repeated once. A border of zeros around them closes the
+                # outlines outside the map.
                 field = np.pad(
                     np.pad(np.array(grid, float).reshape(ranch["height"], ranch["width"]),
                            1,

@@ -8,7 +8,7 @@ from matplotlib.transforms import Bbox
 
 from .geodesy import LocalPlane
 
-LEAST_KM = 300.0  # narrower drawings would show the error of the coast
+LEAST_KM = 300.0  # min width of a drawing with the coast; smaller drawings would show its errors
 
 
 def source():
@@ -27,8 +27,8 @@ def source():
 def rings(origin, cell_size_m, box):
     """Returns the land within a box as closed rings, each an array of corners (x, y) [cells].
 
-    Every corner is projected onto the tangent plane at `origin`, the position of cell [0, 0].
-    Corners more than about 60 degrees away are left out.
+    Corners within 60 degrees of `origin`, the position of cell [0, 0], are projected onto the
+    tangent plane at `origin`. The other corners are left out.
     @param box  (west, south, east, north) [cells]
     """
     path = source()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The verb plan of ./aquafarm: runs aquafarm_plan, and makes the page and the GeoJSON of its
-plan."""
+"""The command ./aquafarm plan: runs the program aquafarm_plan, and makes the page and the GeoJSON
+of its plan."""
 import argparse
 import os
 import pathlib

@@ -34,8 +34,8 @@ def load(path):
 
 def check(document, path):
     """@throws PlanError if the document does not fit the schema or contradicts itself"""
-    # The schema is checked without the frames, whose grids contain about 100,000 numbers: the
-    # validator would need seconds. _check_frames checks the frames.
+    # The validator gets the document without the frames: their grids contain about 100,000 numbers,
+    # for which it would need seconds. _check_frames checks the frames.
     lean = document
     hazard = document.get("hazard") if isinstance(document, dict) else None
     if isinstance(hazard, dict) and isinstance(hazard.get("frames"), list):
@@ -73,8 +73,8 @@ def _check_frames(document, path):
 
 def _check_references(document, path):
     """Checks that the ids of ships, devices and ports are their positions in the lists. Checks
-    that the ids in the orders of devices, in routes and in left_behind exist, and that lists by
-    ring have one entry per ring."""
+    that the ids in the orders of devices, in routes and in left_behind exist. Checks that each list
+    of values by ring has one entry per ring."""
     for name in ("ships", "devices", "ports"):
         ids = [one["id"] for one in document[name]]
         if ids != list(range(len(ids))):
@@ -144,8 +144,8 @@ class Clock:
         return f"{local:%a} {local.day} {local:%b %H:%M}"
 
     def time(self, text):
-        """Returns the local time of day, with the weekday unless it is the day on which the plan
-        starts; a dash for None."""
+        """Returns the local time of day. The weekday is in front, except on the day on which the
+        plan starts. Returns a dash for None."""
         if not text:
             return "–"
         same = self.local(text).date() == self.start.astimezone(self._local).date()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Computes the drawings of a plan's page except the map (chart.py): the region of the storm, the
-timeline and the curve of losses."""
+"""Computes drawings of a plan's page: the region of the storm, the timeline and the loss curves.
+chart.py computes the map."""
 import datetime
 import math
 
@@ -11,17 +11,17 @@ from .labels import Label, place, shorten
 from .words import compass, is_unknown, letter, numbered_name, order_text
 
 REGION = 330.0  # side of the drawing of the region [px]
-REGION_LABELS = 4  # max number of positions of the storm with a label
+REGION_LABELS = 4  # max number of labelled positions of the storm
 LINE = (1100.0, 104.0)  # width and left margin of the timeline [px]
 TOP, HAZARD_HEIGHT, ROW, AXIS = 20.0, 50.0, 27.0, 48.0  # heights in the timeline [px]
-NEAREST_H = 72  # the timeline includes a closest approach within this time [h]
+NEAREST_H = 72  # max time from the plan's start to a closest approach that extends the timeline [h]
 CURVE = (520.0, 270.0, 58.0, 44.0)  # width, height, left and lower margin of the loss curve [px]
 
 
 def region(plan):
     """Returns the data of the drawing of the region, in pixels: the storm's track, the forecast
-    error, the rings at the future position nearest to the ranch, and the coast. None if no position
-    of the storm is known."""
+    error, the rings at the future storm position nearest to the ranch, and the coast. None if no
+    position of the storm is known."""
     clock, ranch = Clock(plan["clock"]), plan["ranch"]
     cell_km = ranch["cell_size_m"] / 1000
     middle = [(ranch["width"] - 1) / 2, (ranch["height"] - 1) / 2]
@@ -57,7 +57,7 @@ def region(plan):
         source: svg_path([px(*p["at"]) for p in part]) for source, part in _parts(points)
         if len(part) > 1
     }
-    rim = 0.02 * side  # the clipped outline is outside the drawing
+    rim = 0.02 * side  # margin beyond the drawing, which hides the edges of the clipped coast
     land = coast.rings(
         ranch["origin"], ranch["cell_size_m"],
         (left - rim, top - side - rim, left + side + rim, top + rim)) \
@@ -91,7 +91,7 @@ def _region_labels(plan, drawn, rings, box):
     of the rings."""
     centre = (box["x"] + box["w"] / 2, box["y"] + box["h"] / 2)
     labels = [Label(["ranch"], centre, box["w"] / 2 + 2, 14, name="ranch-name")]
-    now = [one for one in drawn if one["is_now"]][:1]  # empty: no point at the plan's start
+    now = [one for one in drawn if one["is_now"]][:1]  # empty if no point is at the plan's start
     others = [one for one in drawn[::math.ceil(len(drawn) / (REGION_LABELS - 1))]
               if all(math.dist(one["xy"], at["xy"]) > 40.0 for at in now)]
     for one in now + others:
@@ -121,8 +121,8 @@ def _parts(points):
 
 
 def _region_rings(plan, points, middle, px, px_per_km, clock):
-    """Returns (rings, caption) of a future position of the storm: of those with a wind radius above
-    0, the one nearest to the ranch."""
+    """Returns (rings, caption) of the storm position nearest to the ranch, among the future
+    positions with a wind radius above 0."""
     future = [p for p in points if parse_time(p["time"]) > clock.start and any(p["radii_km"])]
     if not future:
         return [], "No rings: no later position has a known wind radius above 0."
@@ -157,8 +157,9 @@ def _cone(errors, px, px_per_km):
 
 def horizon_s(plan):
     """Returns the end of the timeline [s after the start]: three hours after the latest of the
-    orders, the median arrivals, the last departure and a closest approach within NEAREST_H, but at
-    most the end of the plan. Returns the end of the plan if there are no such events."""
+    orders, the rings' median arrival times at the devices, the last advised departure and a closest
+    approach within NEAREST_H, but at most the end of the plan. Returns the end of the plan if there
+    are no such events."""
     clock = Clock(plan["clock"])
     end = (clock.end - clock.start).total_seconds()
     events = [clock.seconds(o["time"]) for r in plan["plan"]["routes"] for o in r["orders"]]
@@ -171,16 +172,16 @@ def horizon_s(plan):
 
 
 def shown_hazard(plan):
-    """Returns the hazard over time. Empty if all probabilities are 0, or if the winds are unknown:
-    the probabilities then mean nothing."""
+    """Returns the hazard over time. Empty if all probabilities are 0, or if they mean nothing
+    because the winds are unknown."""
     times = plan["hazard"]["timeline"]
     shown = any(any(one["probability"]) for one in times) and not is_unknown(plan)
     return times if shown else []
 
 
 def timeline(plan):
-    """Returns the data of the timeline: for each ring the curve of the probability that it touches
-    the ranch, and below them a row of orders for each ship that leaves."""
+    """Returns the data of the timeline: for each ring, the curve of the probability that it covers
+    a cell of the ranch; below the curves, a row of orders for each ship that leaves."""
     clock, (width, left) = Clock(plan["clock"]), LINE
     end = max(horizon_s(plan), 3600)
     inner = width - left - 26
@@ -216,7 +217,8 @@ def timeline(plan):
 
 
 def _nearest(plan, clock, end, x_of):
-    """Returns position and text of the closest approach on the timeline; None if it is outside."""
+    """Returns position and text of the closest approach on the timeline; None if the approach is
+    unknown or outside the timeline."""
     nearest = plan["storm"]["closest_approach"]
     if not nearest or not 0.0 <= clock.seconds(nearest["time"]) <= end:
         return None
@@ -227,9 +229,9 @@ def _nearest(plan, clock, end, x_of):
 
 
 def _name_ends(plan, rows, clock, right):
-    """Adds the text "end" to each row. It follows the last bar and states when the ship is back in
-    port. In the first row it also explains the bars, if there is space. It is empty if it
-    would extend beyond `right` [px]."""
+    """Sets the key `end` of each row: a text after the last bar that states when the ship is back
+    in port. In the first row, the text also explains the bars, if there is space. The text is empty
+    if it would extend beyond `right` [px], or if the row has no bars."""
     for i, (row, route) in enumerate(zip(rows, plan["plan"]["routes"])):
         at = f"in port {clock.time(route['orders'][-1]['time'])}" if row["bars"] else ""
         key = "dark: to a device, light: to a port"

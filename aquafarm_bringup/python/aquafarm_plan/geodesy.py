@@ -8,7 +8,8 @@ _E2 = _F * (2 - _F)
 
 
 class LocalPlane:
-    """Converts between positions [degrees] and the tangent plane at an origin [m]."""
+    """Converts between (latitude, longitude) [degrees] and (east, north) [m] in the tangent plane
+    at an origin."""
 
     def __init__(self, latitude, longitude):
         self._origin = _to_ecef(latitude, longitude)
@@ -28,8 +29,8 @@ class LocalPlane:
         """Returns (latitude, longitude) of the point on the ellipsoid that to_plane maps to (east,
         north).
 
-        GeoFrame::ToGeo of the C++ core instead projects the point along the ellipsoid's normal. At
-        25 km from the origin the two results differ by 0.2 m.
+        GeoFrame::ToGeo of the C++ core instead projects the point of the plane along the
+        ellipsoid's normal. At 25 km from the origin the two results differ by 0.2 m.
         """
         up = 0.0
         for _ in range(6):  # each round multiplies the error by about (distance / radius)²

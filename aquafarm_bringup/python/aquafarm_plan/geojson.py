@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Converts a plan to GeoJSON (RFC 7946): longitude before latitude, outer rings
-counter-clockwise."""
+of polygons counter-clockwise."""
 import json
 
 import numpy as np

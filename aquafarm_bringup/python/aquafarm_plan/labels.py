@@ -7,7 +7,7 @@ import unicodedata
 # Widths of characters, as fractions of the font size, in a wide bold sans-serif font (DejaVu).
 CHAR_WIDTH = 0.7
 WIDTHS = {" ": 0.36, "%": 1.0}
-WIDE = ("W", "F")  # East Asian characters as wide as the font size
+WIDE = ("W", "F")  # East Asian width classes (Unicode) of characters as wide as the font size
 
 
 def text_width(text, size):
@@ -34,7 +34,7 @@ class Label:
     size: float = 13.0
     x: float = 0.0
     y: float = 0.0
-    leader: str = ""  # path data of the line from the symbol to a distant label; else empty
+    leader: str = ""  # path data of the line from the symbol to the label; empty if they are close
     name: str = ""
     badge: str = ""  # text in a box before the first line
     ship: int = 0  # ship of the badge
@@ -71,8 +71,8 @@ def place(labels, points, width, height):
 
 
 def _leader(box, label):
-    """Returns a line from the edge of the symbol to the nearest point of the label; empty if they
-    are close."""
+    """Returns the path data of a line from the edge of the symbol to the nearest point of the
+    label; empty if they are close."""
     x, y = label.anchor
     near_x = min(max(x, box[0]), box[0] + label.width)
     near_y = min(max(y, box[1]), box[1] + label.height)
@@ -85,9 +85,9 @@ def _leader(box, label):
 
 
 def _candidates(label):
-    """Yields (x, y, cost) of the upper left corner for each possible position of the label around
-    the anchor. Near positions are cheaper. At equal distance, positions to the right are the
-    cheapest and those to the left the most expensive."""
+    """Yields (x, y, cost) for each possible position of the label around the anchor. x, y: upper
+    left corner of the label. Near positions are cheaper. At equal distance, positions to the right
+    are the cheapest and those to the left the most expensive."""
     for ring, distance in enumerate((0, 14, 30, 50, 74)):
         for turn, angle in enumerate((0, -45, 45, 90, -90, 180, -135, 135)):
             dx, dy = math.cos(math.radians(angle)), math.sin(math.radians(angle))

@@ -10,8 +10,8 @@ import markupsafe
 from . import chart, figures, words
 from .document import Clock, amount, percent
 
-# jinja2.PackageLoader does not work in a devel space, where the package is a stub that extends its
-# path.
+# In a devel space of catkin, the package is a stub that extends its __path__. jinja2.PackageLoader
+# does not work there.
 TEMPLATES = pathlib.Path(__file__).with_name("templates")
 UNIT = re.compile(r"(?<=\d) (?=%)")  # the space in "92 %", at which a line must not break
 BASIS = {
@@ -71,7 +71,7 @@ def render(plan):
 
 
 def _data(plan, clock, drawing, line):
-    """Returns the data for the script of the time slider. It is JSON that is safe inside a script
+    """Returns the data for the script of the time slider, as JSON that is safe inside a script
     element."""
     routes = []
     for route in plan["plan"]["routes"]:

@@ -7,11 +7,11 @@ KINDS = {
     "breeding_release": "release cage", "deep_water_breeding": "deep-water cage"
 }
 
-BULLETIN_OLD = 13  # exit code of aquafarm_plan
+BULLETIN_OLD = 13  # exit code of aquafarm_plan if the bulletin is old
 
 
 def kind_name(kind):
-    """Returns the display name of a kind of device. An unknown kind is returned without
+    """Returns the display name of a kind of device. In an unknown kind, spaces replace the
     underscores."""
     return KINDS.get(kind, kind.replace("_", " "))
 
@@ -23,7 +23,7 @@ def numbered_name(plan, ship):
 
 
 def letter(number):
-    """Returns the letters of a number from 0: A, B, … Z, AA, …."""
+    """Returns the letters of a number: A for 0, Z for 25, AA for 26."""
     text = ""
     while number >= 0:
         text = chr(ord("A") + number % 26) + text
@@ -78,7 +78,7 @@ def left_reason(plan, left):
 
 
 def deadline_text(plan, deadline):
-    """Returns the latest departure of a deadline as text for a table."""
+    """Returns the latest departure that meets a deadline's probability, as text for a table."""
     if is_unknown(plan):
         return "unknown"
     if not deadline["leave"]:
@@ -88,7 +88,7 @@ def deadline_text(plan, deadline):
 
 
 def last_known(plan):
-    """Returns the sentence for a plan in which the last useful departure is not known."""
+    """Returns the text for a plan whose last useful departure is not known."""
     beyond = Clock(plan["clock"]).day_time(plan["deadlines"]["not_known_beyond"])
     return (f"Ships may leave at least until {beyond}. What follows is not known: plan again at "
             "the next bulletin.")
@@ -100,8 +100,8 @@ def device_names(plan, ids):
 
 
 def some(parts, separator, limit=3):
-    """Joins the parts of a list. If there are at least two more than `limit`, it joins the first
-    `limit` parts and adds the number of the others."""
+    """Joins the parts of a list. If there are at least `limit` + 2 parts, joins the first `limit`
+    parts and adds the number of the others."""
     more = len(parts) - limit
     if more <= 1:
         return separator.join(parts)

@@ -42,18 +42,19 @@ def section(title, *parts):
 
 
 def tiles(pairs):
-    """Returns tiles with a large number and a small label each. pairs: (number, label)"""
+    """Returns tiles, each with a large value and a small label. pairs: [(value, label)]"""
     return _render("tiles", pairs)
 
 
 def players(shown):
-    """Returns tiles of runs and references. shown: (label, large number, small lines, is_run)"""
+    """Returns tiles of runs and references. shown: [(label, large number, small lines, is_run)]"""
     return _render("players", shown)
 
 
 def curves(window, charts, style, scripts, notes=()):
-    """Returns charts that scripts draw.
+    """Returns charts that scripts in the page draw.
 
+    window: number of training episodes in each mean
     charts: dicts with the keys id and title
     style, scripts: trusted CSS and JavaScript, which are not escaped
     notes: sentences above the charts
@@ -74,7 +75,7 @@ def markdown_table(text):
 
 
 def picture(path, caption, full=False):
-    """Returns a picture. full: True shows it at the size of its pixels and lets it scroll
+    """Returns a picture. full: True shows the picture in its original size, and it scrolls
     horizontally if it is too wide"""
     return _render("picture", embed(path), caption, full)
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page that compares runs: returns with intervals, training curves, and the same episodes."""
+"""Makes the page that compares runs: returns with intervals, training curves, and videos of the
+same episodes."""
 import collections
 import json
 
@@ -50,7 +51,8 @@ def label_runs(runs):
 
 
 def measure_table(players):
-    """Returns the table of means per episode with 95 % intervals, with a column for each player."""
+    """Returns the table of means per episode with 95 % intervals, with a column for each
+    references.Player."""
     rows = []
     for name, words, form in MEASURES:
         if not all(name in one.rows[0] for one in players):
@@ -85,8 +87,8 @@ def differences(runs):
 
 
 def choose_episodes(runs):
-    """Returns [(reason, episode)]: the episode with the median return of the first run, and the one
-    with the largest difference between the runs."""
+    """Returns [(reason, episode)]: the episode with the median return of the first run, and the
+    episode with the largest difference between the runs' returns if it is another one."""
     returns = [{int(row["episode"]): float(row["return"]) for row in run.player.rows}
                for run in runs]
     common = sorted(set.intersection(*(set(one) for one in returns)))
@@ -115,7 +117,8 @@ def show_episode(runs, reason, episode):
 
 
 def report(folders, work, episodes, read_metrics):
-    """Returns the page that compares run folders. read_metrics: report.read_metrics"""
+    """Returns the page that compares run folders. read_metrics: the function
+    report.read_metrics"""
     runs = [Run(folder, work / str(i), episodes, read_metrics)
             for i, folder in enumerate(folders)]
     label_runs(runs)

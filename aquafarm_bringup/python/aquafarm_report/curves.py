@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Charts of training curves, drawn by dygraphs: zoom by dragging, values under the pointer."""
+"""Charts of training curves, drawn by dygraphs. Dragging zooms. The values under the pointer are
+shown."""
 import json
 import math
 import pathlib
@@ -20,15 +21,15 @@ CURVES = (("return", "return per episode"), ("success", "success rate"),
 
 def smooth(values):
     """Returns (episodes, means). means: moving means over WINDOW episodes; they ignore NaN.
-    episodes: the last episode of each mean, counted from 1. A shorter training has one mean, over
-    all its episodes."""
+    episodes: the last episode of each mean, counted from 1. A training with fewer than WINDOW
+    episodes has one mean, over all its episodes."""
     window = min(WINDOW, len(values))
     return np.arange(window, len(values) + 1), known_moving_mean(values, window)
 
 
 def rows_of(columns, name):
-    """Returns rows [episode, mean of run 0, mean of run 1, …] for dygraphs. A mean is None where
-    the run has none. Empty if no run has a mean."""
+    """Returns rows [episode, mean of run 0, mean of run 1, …] for dygraphs. None replaces
+    a mean that a run does not have. Empty if no run has a mean."""
     curves = [smooth(one[name]) if name in one else (np.array([]), np.array([]))
               for one in columns]
     last = max((int(episodes[-1]) for episodes, _ in curves if len(episodes)), default=0)
@@ -47,8 +48,8 @@ def rows_of(columns, name):
 
 
 def gap_note(label, columns, player):
-    """Returns a sentence if the last mean of the training is above the 95 % interval of greedy play.
-    Empty if it is not, or if one of them is unknown."""
+    """Returns a sentence if the last mean return of the training is above the 95 % interval of
+    greedy play. Empty if it is not, or if the mean or the interval is unknown."""
     mean, low, high = references.mean_interval(references.column(player, "return"), player.distinct)
     means = smooth(columns["return"])[1]
     if not len(means) or math.isnan(high) or means[-1] <= high:
@@ -70,9 +71,9 @@ def _library(name):
 
 
 def bend(rows, lines, marks):
-    """Returns the scale parameter `unit` of toScale in curves.js, or None for a linear scale. With
-    a unit, the scale is linear above 0 and logarithmic below, because the first episodes and RANDOM
-    have very low returns. None if no mean is above 0 or no value is below 0."""
+    """Returns the scale parameter `unit` of toScale in curves.js. With a unit, the scale is linear
+    above 0 and logarithmic below, because the first episodes and RANDOM have very low returns.
+    Returns None, for a linear scale, if no mean is above 0 or no value is below 0."""
     means = [mean for row in rows for mean in row[1:] if mean is not None]
     shown = [*means, *(line["value"] for line in lines),
              *(value for mark in marks for value in mark if value is not None)]
@@ -85,9 +86,9 @@ def show(labels, columns, notes=(), players=()):
 
     labels, columns: labels and metrics of the runs
     notes: sentences below the introduction
-    players: the runs in the same order, and references in between or after them. Marks show the
-        mean returns of the runs in greedy play with 95 % intervals; lines show the mean returns of
-        the references
+    players: the runs in the same order, with references before, between or after them. Marks show
+        the mean returns of the runs in greedy play with 95 % intervals; lines show the mean returns
+        of the references
     """
     lines = [{"label": one.label, "value": round(float(np.mean(references.column(one, "return"))), 1)}
              for one in players if one.rows and not one.is_run]
@@ -114,7 +115,7 @@ def show(labels, columns, notes=(), players=()):
     data = json.dumps(settings, allow_nan=False).replace("</", "<\\/")
     script = (pathlib.Path(__file__).resolve().parent / "templates" / "curves.js").read_text(
         encoding="utf-8")
-    # The page has no other files, so references to source maps are removed.
+    # The page is a single file, so links to source maps are removed.
     library = _library("dygraph.min.js").replace("//# sourceMappingURL=dygraph.min.js.map", "")
     style = _library("dygraph.min.css").partition("/*#")[0]
     scripts = [library, f'"use strict";const CURVES={data};\n{script}']

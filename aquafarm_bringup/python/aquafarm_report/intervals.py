@@ -34,7 +34,8 @@ def text(row):
 
 
 def share(row):
-    """Returns the share of the optimum in percent; "–" if the optimum is unknown."""
+    """Returns the share of the optimum in percent; "below 0" if it is negative; "–" if the optimum
+    is unknown."""
     value = row.get("share_of_optimum")
     if value is None or math.isnan(value):
         return "–"
@@ -60,8 +61,8 @@ def table(rows):
 
 
 def _scale(rows):
-    """Returns (low, high) of the chart. It covers the contestants with a return above 0, or all
-    contestants if no return is above 0."""
+    """Returns the range (low, high) of the chart. The range covers the contestants with a return
+    above 0, or all contestants if no return is above 0."""
     shown = [row for row in rows if row["return_iqm"] > 0.0] or rows
     ends = [end for row in shown for end in (_interval(row) or ()) + (row["return_iqm"],)]
     margin = 0.04 * (max(ends) - min(ends)) or 1.0
@@ -76,7 +77,8 @@ def _ticks(low, high):
 
 
 def chart(rows):
-    """Returns a chart as SVG: a dot for each return and a line for its interval, the best first.
+    """Returns a chart as SVG: a dot for each return and a line for its interval, with the best
+    return at the top.
 
     An arrow to the left stands for a return below the range of the chart.
     """

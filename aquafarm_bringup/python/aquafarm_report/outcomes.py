@@ -15,8 +15,8 @@ KINDS = {DeviceState.TEMPORARY_BREEDING: "temporary", DeviceState.MONITORING: "m
 class Outcome:
     """A device at the end of an episode."""
     label: str
-    picked_up: int  # step of the pickup, or of the arrival of a self-propelled device; None: neither
-    home: int  # step of the delivery; None: it was not delivered
+    picked_up: int  # step of the pickup or, for a self-propelled device, of its arrival; else None
+    home: int  # step of the delivery; None if it was not delivered
     health: float
 
     def text(self):
@@ -73,7 +73,7 @@ NAMES = {"temporary_breeding": "temporary", "monitoring": "monitoring",
 
 def _share(count, episodes, distinct):
     """Returns a share and its 95 % interval (Wilson) as "98 % [94 %, 99 %]". The sample size of
-    the interval is the number of distinct initial states, because equal episodes are not independent."""
+    the interval is the number of distinct starts, because equal episodes are not independent."""
     rate = count / episodes
     evidence = max(1, min(distinct or episodes, episodes))
     return intervals.share_text(rate, evidence)

@@ -10,7 +10,7 @@ import numpy as np
 from aquafarm_report import blocks, intervals, videos
 
 REFERENCES = (("random", "RANDOM (all actions)"), ("planner", "planner"), ("clairvoyant", "clairvoyant"))
-EPISODES = 100  # a reference plays at most this many, the first ones of the runs' evaluations
+EPISODES = 100  # a reference plays at most this many episodes, the first of the runs' evaluation
 LIMIT_S = 120  # max duration of the evaluation of each reference [s]
 OPTIMUM = "clairvoyant"
 
@@ -20,7 +20,7 @@ class Player:
     """The evaluation of a run or a reference."""
     label: str
     rows: list = dataclasses.field(default_factory=list)  # rows of evaluation.csv, by episode
-    distinct: int = 0  # number of episodes with different starts
+    distinct: int = 0  # number of distinct starts of the episodes
     fault: str = ""  # reason why there are no rows
     is_run: bool = False
 
@@ -34,8 +34,8 @@ def read_player(label, prefix, is_run=False):
 
 
 def play_references(scenario, folder, episodes):
-    """Plays the first evaluation episodes with each reference; returns a Player for each. If a
-    program fails, the Player has its error as fault."""
+    """Plays the first evaluation episodes with each reference; returns a Player for each. If an
+    evaluation fails, `fault` of its Player is the error message."""
     players = []
     for name, label in REFERENCES:
         prefix = folder / f"reference_{name}"
@@ -53,7 +53,7 @@ def mean_interval(values, distinct):
     """Returns (mean, low, high): the mean and its 95 % interval of 1.96 standard errors. The bounds
     are NaN if there are fewer than two distinct starts.
 
-    distinct: number of distinct starts, which the standard error uses as the number of values
+    distinct: number of distinct starts, which is the sample size of the standard error
     """
     values = np.asarray(values, dtype=float)
     if distinct < 2:
@@ -80,8 +80,8 @@ def return_text(player):
 
 
 def success_text(player):
-    """Returns the success rate with Wilson's 95 % interval, which counts each distinct start
-    once."""
+    """Returns the success rate with Wilson's 95 % interval. The sample size of the interval is the
+    number of distinct starts."""
     rate = float(np.mean(column(player, "success")))
     count = max(1, min(player.distinct or 1, len(player.rows)))
     return intervals.share_text(rate, count)
@@ -91,8 +91,9 @@ _NO_SHARE = "a return below 0 has no share"
 
 
 def share_text(player, optimum):
-    """Returns the player's return as a share of the clairvoyant's return on the same episodes, as
-    text; "–" if the clairvoyant's return is unknown or not above 0."""
+    """Returns the ratio of the player's return to the clairvoyant's return on the same episodes, as
+    text; "–" if a return is unknown or the clairvoyant's is not above 0; _NO_SHARE if the player's
+    is below 0."""
     if optimum is None or not optimum.rows or not player.rows:
         return "–"
     best = {row["episode"]: float(row["return"]) for row in optimum.rows}
@@ -122,8 +123,9 @@ def _points(interval):
 
 
 def verdict(players):
-    """Returns one or two sentences on the run with the highest return: its share of clairvoyant's,
-    and its differences from the second run and from the planner. Empty if nothing is known."""
+    """Returns one or two sentences on the run with the highest return: its share of clairvoyant's
+    return, and its differences from the run with the second highest return and from the planner.
+    Empty if nothing is known."""
     runs = sorted((one for one in players if one.is_run and one.rows),
                   key=lambda one: -np.mean(column(one, "return")))
     if not runs:
@@ -157,8 +159,8 @@ def optimum_of(players):
 
 
 def show_tiles(players):
-    """Returns a tile for each player: return, its share of clairvoyant's, success, number of
-    episodes."""
+    """Returns a sentence (verdict), a note, and a tile for each player: return, share of
+    clairvoyant's return, success, number of episodes."""
     optimum = optimum_of(players)
     shown = []
     for one in players:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the report of a run or of a benchmark."""
+"""Makes the report of a run or a benchmark, or the comparison of several runs."""
 import csv
 import errno
 import json
@@ -31,7 +31,7 @@ def count_text(summary, episodes):
 
 def video_episodes(run, folder, rows):
     """Returns the sections of the best, median and worst episode: videos, outcomes of the devices,
-    and a map. For a family of ranches, it is one section with the results of these episodes."""
+    and a map. For a family of ranches, returns one section with the results of these episodes."""
     if videos.is_family(run):
         return [blocks.section("Best, median and worst episode", blocks.table(
             ["episode", "result"], [(f"{name}: episode {row['episode']} of seed {videos.SEED}",
@@ -117,8 +117,9 @@ def caption_of(stem):
 
 
 def best_run(benchmark, rows):
-    """Returns the run folder seed_1 of the best learner. If it has no such folder, returns that of
-    the contestant with the highest return that has one; None if none has."""
+    """Returns the run folder runs/NAME/seed_1 of the best learner NAME. If this folder does not
+    exist, returns that of the best contestant whose folder exists. None if there is no such
+    folder."""
     for row in [intervals.best_learner(rows), *intervals.by_return(rows)]:
         run = benchmark / "runs" / row["name"] / "seed_1"
         if (run / "run.json").is_file():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws V_π next to the layers of the sea (Fig. 10) as heat maps, and computes their similarity."""
+"""Draws heat maps of V_π, the return of a policy from each start cell, and of the sea layers
+(Fig. 10 of the paper), and computes the similarity of V_π and each layer."""
 import json
 import math
 import pathlib
@@ -16,7 +17,7 @@ from skimage.metrics import structural_similarity  # noqa: E402
 from aquafarm_bringup.files import open_atomically  # noqa: E402
 
 MOST_WINDOW = 7  # max side of the window of the SSIM [cells], the default of scikit-image
-_WEAK = 0.3  # for a smaller absolute rank correlation, the headline says "no steady trend"
+_WEAK = 0.3  # below this absolute rank correlation, the headline states "no steady trend"
 FEWEST_CELLS = 10  # min number of cells for a comparison
 NEXT_TO = 2.0  # max distance at which a cell counts as next to a device or port [cells]
 _COLUMN = 2.9  # width of a map in the figure [inch]
@@ -28,7 +29,7 @@ _LOW_COLOUR = "#440154"  # the first colour of viridis
 # viridis without its yellow part, as in other pictures of values
 _VALUE_COLOURS = colors.ListedColormap(pyplot.get_cmap("viridis")(np.linspace(0.0, 0.8, 256)))
 _SEA_COLOURS = {"depth": "Blues", "warmth": "YlOrRd"}
-_LOWEST = 0.05  # this fraction of the cells, with the lowest returns, has one colour
+_LOWEST = 0.05  # the cells with the lowest returns, this fraction of all, have one colour
 
 NOTE = ("Spearman's rho compares the ranks of the cells in which both maps are known. Neighbouring "
         "cells are alike, so no significance is given. SSIM is the mean structural similarity "
@@ -112,8 +113,8 @@ def place_words(cells, text):
 
 
 def verdict(values, text):
-    """Returns the place of the best start, and the middle of the largest connected area among the
-    lowest twentieth of the cells, as text. Empty if all values are equal or unknown."""
+    """Returns as text the position of the best start, and the middle of the largest connected area
+    of cells in the lowest twentieth (lowest_cells). Empty if all values are equal or unknown."""
     known = np.isfinite(values)
     if not known.any() or np.ptp(values[known]) == 0.0:
         return ""
@@ -121,7 +122,7 @@ def verdict(values, text):
     best = place_words((int(east), int(north)), text)
     said = f"Best start: {best} ({np.nanmax(values):.0f} points)"
     parts, count = ndimage.label(lowest_cells(values))
-    if count == 0:  # many cells have the lowest return
+    if count == 0:  # so many cells have the lowest return that no value is below the quantile
         return said
     largest = np.argwhere(parts == 1 + np.argmax(np.bincount(parts.ravel())[1:]))
     middle = largest[np.argmin(np.abs(largest - largest.mean(axis=0)).sum(axis=1))]
@@ -138,7 +139,7 @@ def device_distance(shape, devices, km):
 
 
 def lowest_cells(values):
-    """Returns whether each cell belongs to the lowest twentieth, [H, W]."""
+    """Returns a bool array [H, W]: whether a cell is in the twentieth with the lowest values."""
     known = values[np.isfinite(values)]
     return values < np.quantile(known, _LOWEST) if len(known) else np.zeros(values.shape, bool)
 
@@ -156,8 +157,8 @@ def unit_text(units):
 def draw_map(axis, field, km, colours, unit, lowest=0.0):
     """Draws a map with north at the top. Cells without a value, such as land, are hatched.
 
-    km: side of a cell
-    lowest: this fraction of the cells, with the lowest values, has one colour
+    km: side of a cell [km]
+    lowest: the cells with the lowest values, this fraction of all, have one colour
     """
     height, width = field.shape
     axis.set_facecolor("0.82")
@@ -183,7 +184,7 @@ def draw_places(axis, text, km):
 
 
 def draw_relation(axis, values, layer, result, letter):
-    """Plots the return over the value of a layer: a dot for each cell, and a line through the
+    """Plots the return against the value of a layer: a dot for each cell, and a line through the
     medians of ten groups of cells with similar values of the layer."""
     name, units, field = layer
     known = np.isfinite(values) & np.isfinite(field)
@@ -213,7 +214,8 @@ def draw_relation(axis, values, layer, result, letter):
 def draw(text, values, layers, results, path):
     """Draws the maps side by side. If there are layers of the sea, a second row has a chart below
     each map. Below a map of the sea, the chart shows the return against the layer's value. Below
-    the map of returns, it shows the return against the distance to the nearest device."""
+    the map of returns, it shows the return against the distance to the nearest device; this chart
+    is missing if there are no devices."""
     km = text["cell_size_m"] / 1000.0
     height, width = values.shape
     tall = min(1.6, max(0.5, height / width))
@@ -286,7 +288,7 @@ def device_relation(values, text):
 
 
 def draw_relations(axes, values, near, seas, letters):
-    """Draws the second row: the return against the distance to a device and against each sea.
+    """Draws the second row: the return against the distance to a device and against each sea layer.
 
     near: result of device_relation
     seas: [(layer, result of compare)]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Publishes V_π from rollouts on the topics that rviz, the viz node and bags use."""
+"""Publishes V_π, the return from each start cell in rollouts of a policy, on the topics that rviz,
+the viz node and bags use."""
 import numpy as np
 import rosgraph
 import rospy

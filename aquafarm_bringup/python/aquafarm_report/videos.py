@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes videos of episodes and maps with the programs of aquafarm."""
+"""Evaluates policies, plays episodes, and renders videos and maps with the programs of aquafarm."""
 import csv
 import json
 import pathlib
@@ -31,8 +31,8 @@ def program(package, name):
 
 
 def call(package, name, *arguments, limit_s=LIMIT_S):
-    """Runs a program. Raises ReportError if it takes longer than `limit_s`, or if it fails, with
-    the last line of its stderr or stdout."""
+    """Runs a program. Raises ReportError if it takes longer than `limit_s` or fails. The message of
+    a failure is the last line of the program's stderr, or of its stdout if stderr is empty."""
     try:
         subprocess.run([program(package, name), *map(str, arguments)], check=True, timeout=limit_s,
                        capture_output=True, text=True)
@@ -71,7 +71,8 @@ def result_text(row):
 
 
 def is_family(run):
-    """Returns whether the scenario of a run is a family, which draws a ranch in every episode."""
+    """Returns whether the scenario of a run is a family, which draws a new ranch in every
+    episode."""
     scenario = yaml.safe_load((run / "scenario.yaml").read_text(encoding="utf-8"))
     return isinstance(scenario, dict) and bool(scenario.get("family"))
 

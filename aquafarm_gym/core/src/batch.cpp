@@ -36,7 +36,7 @@ std::uint64_t CheckEpisode(py::handle episode) {
   return WholeNumber(episode, "FarmBatch: episode", 0, kAnyNumber, "number episodes from 0");
 }
 
-// Returns the current name of a buffer. Warns if `name` is a former name, of version 0.1.0.
+// Returns the current name of a buffer. Warns if `name` is its name in version 0.1.0.
 std::string CurrentName(const std::string& name) {
   return py::module_::import("aquafarm_core._names").attr("current")(name).cast<std::string>();
 }

@@ -31,7 +31,8 @@ class Batch {
   /// @param farms a whole number in [1, kMaxFarms]
   /// @param write names of the buffers to allocate
   /// @param threads a whole number in [1, kMaxThreads]
-  /// @throws InputError if a number is out of range or a buffer is unknown, and as FarmBatch
+  /// @throws InputError if a number is out of range, if a buffer is unknown, or in the same cases
+  ///   as the constructor of FarmBatch
   Batch(std::shared_ptr<const Scenario> scenario, pybind11::handle farms,
         const std::vector<std::string>& write, pybind11::handle threads);
 
@@ -40,20 +41,23 @@ class Batch {
   void Bind(const std::string& name, const pybind11::array& array);
 
   /// Does the same as FarmBatch::Reset with stride N.
-  /// @throws InputError also if a number is out of range
+  /// @throws InputError if a number is out of range, or in the same cases as FarmBatch::Reset
   void Reset(pybind11::handle seed, pybind11::handle first_episode);
   /// Starts the next episode in the farms that `mask` (bool [N]) selects.
-  /// @throws InputError if the type or shape of `mask` is wrong, or before the first reset
+  /// @throws InputError if the type or shape of `mask` is wrong, if a layout cannot be drawn, or
+  ///   before the first reset
   void StartNext(const pybind11::array& mask);
-  /// Starts episode episodes[i] of the sequence seeds[i] in each farm i that `mask` (bool [N])
-  /// selects. Both lists have N entries. The episode numbers of these farms then increase by
+  /// Starts episode episodes[i] of the seed seeds[i] in each farm i that `mask` (bool [N]) selects.
+  /// Both lists have N entries. Each later episode of such a farm has a number that is higher by
   /// `stride` (at least 1).
-  /// @throws InputError if an argument is wrong, or before the first reset
+  /// @throws InputError if an argument is wrong, if a layout cannot be drawn, or before the first
+  ///   reset
   void Start(const pybind11::array& mask, const pybind11::sequence& seeds,
              const pybind11::sequence& episodes, pybind11::handle stride);
   /// Takes one step in every farm. A farm whose episode has ended starts its next episode instead.
   /// @param actions uint8 [N, S], row-major, each in [0, kActionCount]
-  /// @throws InputError if the actions are wrong, or before the first reset
+  /// @throws InputError if the actions are wrong, if a layout cannot be drawn, or before the first
+  ///   reset
   void Step(const pybind11::array& actions);
 
   /// Returns a summary (DictOf) of each farm whose episode has ended, in the order of the farms.
@@ -89,10 +93,12 @@ class Batch {
   /// Returns everything that FromState needs to continue this batch in another process.
   pybind11::tuple State() const;
   /// Makes a batch from the result of State.
-  /// @throws InputError if the number of parts or a value is wrong
+  /// @throws InputError if the number of parts is wrong, or in the same cases as the constructor
+  ///   and Load
   /// @throws pybind11::cast_error if a part has the wrong type
   static std::unique_ptr<Batch> FromState(const pybind11::tuple& state);
-  /// Returns whether both have the same scenario, buffer names, strides and state of the farms.
+  /// Returns whether both batches have the same scenario, buffer names, strides and states of the
+  /// farms. Also returns false if only one of them has been reset or loaded.
   bool Equals(const Batch& other) const;
 
   const FarmBatch& batch() const { return batch_; }

@@ -11,15 +11,15 @@
 
 namespace aquafarm::python {
 
-/// Name, type and shape of an array of BatchOutput.
+/// Name, type and shape of an array to which a member of BatchOutput points.
 struct BufferType {
-  std::string name;   ///< name of the member of BatchOutput
-  std::string dtype;  ///< name of the type in NumPy
+  std::string name;   ///< name of the member
+  std::string dtype;  ///< NumPy name of the type of the values
   std::vector<pybind11::ssize_t> shape;
 };
 
-/// Returns the arrays that a batch can write, in the order of BatchOutput. The index is missing if
-/// the scenario has too many states for a table (Encoder::state_count is 0).
+/// Returns the arrays that a batch can write, in the order of BatchOutput. The array `index` is
+/// missing if the scenario has too many states for a table (Encoder::state_count is 0).
 std::vector<BufferType> BufferTypes(const FarmBatch& batch);
 
 /// Returns a type and a shape as text, such as "uint8 [4, 1, 8, 25, 25]".

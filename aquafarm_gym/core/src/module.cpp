@@ -49,8 +49,9 @@ void DefineProbes(py::module_& module) {
       py::arg("array"), py::arg("value"), "Writes the last byte of an array in place.");
 }
 
-// Returns the CSV columns of the entries of a summary, by name.
-// @param added false: the entries of version 0.1.0; true: the entries added later
+// Returns a dict from the name of each entry of an episode summary to its CSV column.
+// @param added true: only the entries that older files may lack (EpisodeField::is_added); false:
+//   only the other entries
 py::dict ColumnsOfEpisodes(bool added) {
   py::dict columns;
   if (!added) columns["farm"] = "farm";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of farms. This module contains the drawing code of aquafarm_viz. The messages are plain
-// structs (plain_messages.py), so that the module needs neither ROS nor a display.
+// Pictures of farms, drawn with the code of aquafarm_viz. The ROS messages that this code reads are
+// plain structs here (plain_messages.py), so the module needs neither ROS nor a display.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
@@ -19,7 +19,7 @@
 namespace aquafarm::python {
 namespace py = pybind11;
 
-/// Draws one farm of a batch. The trails and routes of its ships begin at the first picture of an
+/// Draws one farm of a batch. The trails and routes of the ships begin at the first picture of an
 /// episode.
 class Painter {
  public:
@@ -29,7 +29,7 @@ class Painter {
         painter_(size_, aquafarm_viz::StyleByName(style)) {}
 
   /// Returns a picture of one farm, uint8 [height, width, 3], RGB.
-  /// @throws InputError if there is no such farm; pybind11::value_error if it cannot be drawn
+  /// @throws InputError if there is no such farm; pybind11::value_error if the farm cannot be drawn
   py::array_t<std::uint8_t> Draw(const Batch& batch, py::handle farm) {
     const auto last = static_cast<std::uint64_t>(batch.batch().farms()) - 1;
     const auto number = static_cast<std::int32_t>(

@@ -55,7 +55,8 @@ std::unique_ptr<agents::Policy> MakePlain(const Checkpoint&, const EnvironmentSp
   return std::make_unique<T>(spec);
 }
 
-/// Returns the policies that need no training, by their names in aquafarm_evaluate.
+/// Returns the factories of the policies that need no training, by the names that
+/// aquafarm_evaluate uses.
 const std::map<std::string, Make>& BuiltIn() {
   static const std::map<std::string, Make> makers{
       {"clairvoyant", MakePlanner<Foresight::kOracle>},
@@ -66,7 +67,8 @@ const std::map<std::string, Make>& BuiltIn() {
   return makers;
 }
 
-/// Returns the learned policies that do not need libtorch, by the algorithm of their checkpoint.
+/// Returns the factories of the learned policies that do not need libtorch, by the algorithm in the
+/// checkpoint.
 const std::map<std::string, Make>& Learned() {
   static const std::map<std::string, Make> makers{{"mappo", agents::MakePpoPolicyWithoutTorch},
                                                   {"ppo", agents::MakePpoPolicyWithoutTorch},
@@ -118,8 +120,8 @@ std::unique_ptr<agents::Policy> MakePolicy(const std::string& name, const Enviro
                      ", which this package cannot play; expected one of: " + NamesOf(Learned()) +
                      "; evaluate it with aquafarm_evaluate");
   }
-  // The shipped policy is not bound to a version: MakeLearned compares the names of its features
-  // with those of the farms.
+  // The shipped policy may have any version. The factory that MakeLearned calls checks that the
+  // policy and the farms have the same feature names.
   if (!is_shipped && checkpoint.version != spec.version) {
     throw InputError(path + ": got a policy of aquafarm " + checkpoint.version + ", expected " +
                      spec.version + "; train it again, or use the version that trained it");
@@ -204,17 +206,19 @@ class BatchPolicy {
     results_.states.resize(shape.farms);
   }
 
-  FarmBatch sample_;  // one farm; gives the shapes of the results
+  FarmBatch sample_;  // one farm, for the shapes of the results
   EnvironmentSpec spec_;
   std::unique_ptr<agents::Policy> policy_;
   agents::StepResults results_;
   BatchOutput output_;
-  std::unique_ptr<FarmBatch> copies_;  // copies for planners: other threads may step the batch
+  // Copies of the farms, for policies that read states. They are needed because other threads may
+  // step the batch while the policy chooses actions.
+  std::unique_ptr<FarmBatch> copies_;
   std::vector<std::uint8_t> actions_;
   mutable bool busy_{};
 };
 
-/// A planner for the farms of a scenario with one agent.
+/// A planner for farms of a scenario that has one agent.
 class ShipPlanner {
  public:
   ShipPlanner(std::shared_ptr<const Scenario> scenario, bool clairvoyant)

@@ -5,8 +5,9 @@
 
 namespace aquafarm::python {
 
-/// Defines Policy, Planner, team_bound, _RescueRequest and _plan_rescue. They give access to the
-/// planners of aquafarm_agents, and to its saved policies that do not need libtorch.
+/// Defines the Python classes Policy, Planner and _RescueRequest, and the functions team_bound,
+/// _plan_rescue and _set_policy_folder. They make available the planners of aquafarm_agents and
+/// those of its policies that do not need libtorch.
 void DefinePolicies(pybind11::module_& module);
 
 }  // namespace aquafarm::python

@@ -6,13 +6,14 @@
 
 namespace aquafarm::python {
 
-/// Marks an object as busy during a call, so that calls of other threads are rejected. The thread
-/// must have the GIL in the constructor and the destructor. The call may release it in between.
+/// Marks an object as busy during a call, so that calls from other threads are rejected. The
+/// calling thread must hold the GIL (Python's global interpreter lock) in the constructor and the
+/// destructor. In between, it may release the GIL.
 class Turn {
  public:
   /// @param busy flag of the object
   /// @param name class of the object, for the message
-  /// @throws std::runtime_error while a call of another thread runs
+  /// @throws std::runtime_error if a call from another thread is still running
   explicit Turn(bool& busy, const std::string& name = "FarmBatch") : busy_(busy) {
     if (busy_) {
       throw std::runtime_error(name + ": another thread's call is still running; use one " +

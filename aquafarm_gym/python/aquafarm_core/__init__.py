@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The farm's core: scenarios, batches of farms that write into NumPy arrays, planners and policies.
+"""The C++ core: scenarios, batches of farms that write into NumPy arrays, planners and policies.
 
     batch = FarmBatch(Scenario.load("my.yaml"), farms=1024, write=["rewards", "planes"])
     batch.reset(seed=7)
@@ -35,13 +35,13 @@ from aquafarm_core._native import (  # noqa: E402
 
 __version__ = VERSION
 for _type in (FarmBatch, Planner, Policy, Scenario):
-    _type.__module__ = __name__  # the module in which pickle looks for them
+    _type.__module__ = __name__  # the module in which pickle looks for the type
 
 
 def _shipped(name, package, source):
     """Returns the folder of shipped files in the wheel or install space, or else `source`."""
     native = pathlib.Path(_native.__file__).resolve().parent
-    prefixes = list(native.parents)[3:4]  # empty if the path has fewer parents
+    prefixes = list(native.parents)[3:4]  # empty if there are at most 3 parents
     for folder in (native / name, *(one / "share" / package / name for one in prefixes)):
         if folder.is_dir():
             return str(folder)

@@ -95,7 +95,7 @@ class Policy:
     def values(self) -> npt.NDArray[np.float32] | None: ...
 
 class Planner:
-    """Plans exactly for a farm with one ship."""
+    """Plans for a farm with one agent."""
 
     def __init__(self, scenario: Scenario, clairvoyant: bool = True) -> None: ...
     def solve(self, batch: FarmBatch,

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks at import that the native module and NumPy use the same array layout.
 
-A module built with pybind11 before 2.12 misreads the item sizes of NumPy 2. Its arrays then have
-strides 0, so that all entries share the memory of the first one; no error is raised.
+A module built with pybind11 before 2.12 misreads the item sizes of NumPy 2. The arrays that it
+makes then have strides 0, so that all entries share the memory of the first entry. No error is
+raised.
 """
 from typing import Any
 
@@ -12,7 +13,7 @@ DTYPES = ("bool", "uint8", "uint16", "float32", "uint32", "uint64")
 
 
 def numpy_fault(native: Any, numpy: Any) -> str:
-    """Returns the reason why this NumPy cannot be used with this native module; "" if it can."""
+    """Returns why this NumPy cannot be used with this native module; "" if it can be used."""
     made_with = ".".join(map(str, native.PYBIND11))
     where = "aquafarm_core: "
     if int(numpy.__version__.split(".")[0]) >= 2 and tuple(native.PYBIND11) < (2, 12):

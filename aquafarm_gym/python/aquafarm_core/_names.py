@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Names of buffers in version 0.1.0. They still work, with a warning that contains the new name."""
+"""Former names of buffers. They still work, with a warning that contains the present name."""
 import warnings
 
 NEW_NAMES = {"in_play": "active", "reasons": "end_reasons", "started": "is_first"}
@@ -11,7 +11,7 @@ def _warn(name, stacklevel):
 
 
 def current(name):
-    """Returns the present name of a buffer. Warns if `name` is its name in version 0.1.0."""
+    """Returns the present name of a buffer. Warns if `name` is a former name."""
     if name not in NEW_NAMES:
         return name
     _warn(name, stacklevel=2)
@@ -19,7 +19,7 @@ def current(name):
 
 
 class Buffers(dict):
-    """The arrays by name. A former name of a buffer refers to the same array."""
+    """The arrays by name. A former name refers to the same array as the present name."""
 
     def __contains__(self, name):
         return dict.__contains__(self, name) or dict.__contains__(self, NEW_NAMES.get(name))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of farms, drawn as ./aquafarm render and the image topic draw them.
+"""Pictures of farms, drawn with the code of ./aquafarm render and of the image topic.
 
     painter = Painter(800, 640, "trail,risk,labels")
     painter.draw(batch, farm=0)                     # uint8 [640, 800, 3], RGB

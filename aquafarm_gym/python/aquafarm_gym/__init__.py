@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Gymnasium and PettingZoo environments of the marine ranch, with farms in this process or behind
-ROS services. Both kinds of farms give bit-identical spaces and transitions.
+ROS services. Both kinds of farms have the same spaces and bit-identical transitions.
 
     env = gymnasium.make("aquafarm/Paper-v1")                        # one ship
     env = gymnasium.make("aquafarm/Farm-v1", scenario="my.yaml")     # one ship on any farm
@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from aquafarm_gym.ros import RosFarms as RosFarms
     from aquafarm_gym.sb3 import FarmVecEnv as FarmVecEnv
 
-# Imported on first use, because each needs an optional package.
+# Classes that are imported on first use, because they need optional packages: the module and these
+# packages, by class.
 _OPTIONAL: dict[str, tuple[str, list[str]]] = {
     "FarmParallelEnv": ("parallel_env", ["pettingzoo"]),
     "FarmVecEnv": ("sb3", ["stable_baselines3"]),

@@ -33,7 +33,7 @@ MAX_SEED = 2**63  # environments accept only smaller seeds
 
 @dataclasses.dataclass
 class Recorded:
-    """An episode of a bag: the results of steps 0 … T, where step 0 is the start."""
+    """An episode of a bag: the results of steps 0 … T. Step 0 is the start of the episode."""
     scenario: core.Scenario
     where: str                             # bag and episode, for messages
     seed: int
@@ -42,12 +42,12 @@ class Recorded:
     rewards: list[list[np.float32]]        # [T + 1][S]
     hashes: list[int]                      # [T + 1]
     reasons: list[int]                     # [T + 1], index into aquafarm_core.REASONS
-    is_changed: bool = False               # a service changed the farm, so a replay differs
+    is_changed: bool = False               # the topic saved_state reports a change from outside
 
 
 @dataclasses.dataclass
 class Replayed:
-    """An episode of one agent as arrays: observations and masks [T + 1, …], others [T]."""
+    """An episode of one agent: observations and masks [T + 1, …], the other arrays [T]."""
     seed: int
     episode: int
     observations: npt.NDArray[Any]
@@ -59,7 +59,7 @@ class Replayed:
 
 
 def read_episodes(path: str | pathlib.Path) -> Iterator[Recorded]:
-    """Yields the episodes of a bag that begin at step 0. Raises ValueError if the file is not a
+    """Yields each episode that a bag contains from step 0. Raises ValueError if the file is not a
     readable bag of a ranch, or if a step is missing."""
     from rosbags.highlevel import AnyReader, AnyReaderError
     from rosbags.rosbag1 import ReaderError
@@ -96,8 +96,8 @@ def _episodes_in(reader: Any, path: str) -> Iterator[Recorded]:
 
 def _take(running: dict[str, Recorded], prefix: str, spec: Any, state: Any,
           path: str) -> Iterator[Recorded]:
-    """Adds a state to the running episode of its ranch. If the state starts another episode, yields
-    the previous one."""
+    """Adds a state to the current episode of its ranch. If the state starts another episode, yields
+    the previous episode. prefix: namespace of the ranch."""
     if state.step == 0:
         if prefix in running:
             yield running.pop(prefix)
@@ -120,7 +120,7 @@ def _take(running: dict[str, Recorded], prefix: str, spec: Any, state: Any,
 
 def replay(recorded: Recorded, observation: str = "features") -> list[Replayed]:
     """Plays an episode again and returns one result per agent. Raises ValueError at the first
-    difference, or if a service changed the farm."""
+    difference, or if the farm was changed from outside (is_changed)."""
     if recorded.is_changed:
         raise ValueError(f"{recorded.where}: got changes from outside (topic saved_state), expected "
                          "none: actions alone do not repeat them; leave the bag out")
@@ -159,14 +159,14 @@ def _of_ship(recorded: Recorded, seen: npt.NDArray[Any], masks: npt.NDArray[np.i
 
 def make_dataset(dataset_id: str, paths: list[str | pathlib.Path], observation: str = "features",
                  **about: Any) -> Any:
-    """Makes a Minari dataset of the episodes of bags of one scenario, and returns it.
+    """Makes a Minari dataset from the episodes in bags of one scenario, and returns it.
 
-    about: further arguments of minari.create_dataset_from_buffers, such as algorithm_name. Minari
-    can recover the environment from a dataset of one ship. Action 10 (the ship holds its cell)
-    occurs if a ship had no command, as in paced bags, or if the policy holds ships, as do_nothing
-    does. The action space then has 11 actions.
-    Raises ValueError as read_episodes and replay do, and if the bags have different scenarios or
-    contain no complete step of an episode from step 0.
+    about: further arguments of minari.create_dataset_from_buffers, such as algorithm_name. If the
+    scenario has one agent, Minari can recover the environment from the dataset. Action 10 (the ship
+    holds its cell) occurs if a ship had no command, as in paced bags, or if the policy holds ships,
+    as do_nothing does. The action space then has 11 actions.
+    Raises ValueError in the same cases as read_episodes and replay. Also raises it if the scenarios
+    of the bags differ, or if no bag contains the start and the first step of an episode.
     """
     import minari
     from minari.data_collector import EpisodeBuffer

@@ -30,10 +30,10 @@ class FarmEnv(SingleFarm, gymnasium.Env[Any, Any]):
     observation: `features` (default), `planes` or `index`. info has the same keys at every step,
     and contains no text: `action_mask` (int8 [10], 1: legal), `outcome` (index into
     aquafarm_core.OUTCOMES), `reason` (index into aquafarm_core.REASONS, 0: the episode continues),
-    `is_success`, and `summary`, whose entries are 0 until the episode ends. reset(seed=…) starts
-    episode 0 of a sequence of episodes. reset() starts the next episode of the sequence, and
+    `is_success`, and `summary`, whose entries are 0 until the episode ends. Each seed has its own
+    sequence of episodes: reset(seed=…) starts episode 0, reset() starts the next episode, and
     reset(options={"episode": k}) starts episode k of the sequence. If the farms are in this
-    process, copies and pickles continue bit-identically.
+    process, copies and pickles of the environment continue bit-identically.
     """
 
     metadata: dict[str, Any] = {"render_modes": list(rendering.OFFERED),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks of the seeds and options of reset, and the summaries in infos."""
+"""Seeds and options of reset, sequences of episodes, and the summaries in infos."""
 from __future__ import annotations
 
 import operator
@@ -51,7 +51,8 @@ def check_options(options: dict[str, Any] | None, known: Collection[str]) -> dic
 
 
 def summary_of(finished: dict[str, Any]) -> dict[str, Any]:
-    """Converts a record of FarmBatch.finished() to the entries of NO_SUMMARY, which are numbers."""
+    """Converts a dict from FarmBatch.finished() to the entries of NO_SUMMARY. Converts the end
+    reason to a number."""
     numbers = {name: finished[name] for name in NO_SUMMARY}
     numbers["reason"] = REASON_CODES[finished["reason"]]
     return numbers
@@ -69,9 +70,9 @@ class Episodes:
 
     def next(self, seed: Any, options: dict[str, Any], drawn_seed: Callable[[], int | None],
              by: int = 1) -> tuple[int, int]:
-        """Returns the next (seed, episode). options: may contain the number of the `episode`.
-        drawn_seed: called if there is no seed yet. by: number of episodes by which a reset without
-        a seed advances."""
+        """Returns the next (seed, episode). options: may contain `episode`, the number of the next
+        episode. drawn_seed: called to draw a seed if there is none yet. by: number of episodes by
+        which a reset without a seed advances."""
         if seed is not None:
             self.seed, self.episode = check_seed(seed), 0
         elif self.seed is None:
@@ -87,4 +88,4 @@ class Episodes:
                 and (self.seed, self.episode) == (other.seed, other.episode))
 
     def __hash__(self) -> int:
-        return hash(Episodes)  # must not depend on the position, which changes
+        return hash(Episodes)  # independent of the position, which changes

@@ -12,8 +12,8 @@
     aquafarm_benchmark --learner "mine=python3 my_learner.py" …
 
 main trains the learner for the number of episodes that the benchmark requests, then evaluates it
-with the benchmark's evaluation seed. It writes run.json, metrics.csv, evaluation.csv and
-evaluation.json into the run folder. Their columns and keys have the names that aquafarm_train and
+with the benchmark's evaluation seed. main writes run.json, metrics.csv, evaluation.csv and
+evaluation.json into the run folder, with the column and key names that aquafarm_train and
 aquafarm_evaluate use.
 """
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Learner(Protocol):
 
 
 def cells_of(record: dict[str, Any]) -> dict[str, Any]:
-    """Returns the CSV cells of an episode by the names of their columns."""
+    """Returns the CSV cells of an episode, by column. record: a dict from FarmBatch.finished()."""
     columns = {**core.EPISODE_COLUMNS, **core.ADDED_COLUMNS}
     return {**{columns[name]: value for name, value in record.items()},
             "success": int(record["success"])}
@@ -95,7 +95,7 @@ class TrainingEnv(FarmEnv):
         return result
 
     def _show_progress(self) -> None:
-        """Prints the progress for aquafarm_benchmark, at most once in PROGRESS_PERIOD_S."""
+        """Prints the progress for aquafarm_benchmark, at most once per PROGRESS_PERIOD_S."""
         now = time.monotonic()
         if now - self._shown >= PROGRESS_PERIOD_S:
             self._shown = now
@@ -108,7 +108,8 @@ class TrainingEnv(FarmEnv):
 
 def evaluate(learner: Learner, scenario: core.Scenario, observation: str, episodes: int,
              seed: int) -> tuple[list[dict[str, Any]], int]:
-    """Plays episodes greedily. Returns their records and the number of distinct initial states."""
+    """Plays episodes greedily. Returns a dict of FarmBatch.finished() for each episode, and the
+    number of distinct initial states."""
     farms = LocalFarms(scenario, 1, observation)
     seen, records, starts = farms.buffers[observation], [], set()
     for episode in range(episodes):

@@ -20,9 +20,9 @@ ALWAYS: tuple[str, ...] = ("rewards", "outcomes", "legal", "active", "end_reason
 
 
 def find_scenario(scenario: core.Scenario | str | pathlib.Path) -> core.Scenario:
-    """Returns a scenario. `scenario` is a Scenario, the name of a shipped one, the path of a file,
-    or YAML text of several lines. Raises ValueError if there is no such scenario or it is
-    invalid."""
+    """Returns a scenario. `scenario` is a Scenario, the name of a shipped scenario, the path of a
+    scenario file, or YAML text of several lines. Raises ValueError if there is no such scenario or
+    the scenario is invalid."""
     if isinstance(scenario, core.Scenario):
         return scenario
     folder = pathlib.Path(core.SCENARIO_FOLDER)

@@ -161,9 +161,9 @@ class Metrics:
         self._names: list[str] = []
 
     def new_rows(self) -> Iterator[dict[str, float]]:
-        """Yields the complete lines since the last call, as numbers by column. The column `reason`,
-        a text, is left out. Raises ValueError if a line has another number of cells than the first
-        line, or if a cell is not a number."""
+        """Yields the complete lines added since the last call, as numbers by column. Leaves out the
+        column `reason`, which contains text. Raises ValueError if a line and the first line have
+        different numbers of cells, or if a cell is not a number."""
         try:
             with open(self._path, "rb") as file:
                 file.seek(self._offset)
@@ -187,7 +187,7 @@ class Metrics:
 
     def is_shorter(self) -> bool:
         """Returns whether the file is shorter than the part that was read, for example because a
-        run was resumed. Does not notice a file that has meanwhile grown beyond that part."""
+        run was resumed. Does not detect this if the file has since grown beyond that part."""
         return self._path.is_file() and self._path.stat().st_size < self._offset
 
 
@@ -228,8 +228,8 @@ class Curves:
         self.points += 1
 
     def has_ended(self) -> bool:
-        """Returns whether the run has written its policy, which it does after all episodes. True
-        also for a finished run that was resumed and still trains."""
+        """Returns whether the run has written its policy. A run does this after all episodes. Also
+        returns True for a finished run that was resumed and still trains."""
         return (self._run / "policy.ckpt").is_file()
 
     def close(self) -> None:

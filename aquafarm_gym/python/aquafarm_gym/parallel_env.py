@@ -99,7 +99,7 @@ class FarmParallelEnv(SingleFarm,
         return results
 
     def state(self) -> npt.NDArray[Any]:
-        """Returns the observations of all agents, including those that are done: features [S · F],
+        """Returns the observations of all agents, including delivered agents: features [S · F],
         planes [S · P, H, W], index [S]."""
         joint = self._observation[0].astype(self.state_space.dtype)
         return np.asarray(joint.reshape(self.state_space.shape))

@@ -53,16 +53,17 @@ def plan_rescue(ranch: core.Scenario | Path, *, bulletin: Path | None = None,
 
     ranch: a scenario with a geographic origin, its file or its name. bulletin: file with the
     forecast of the storm. storm: instead of a bulletin, a file with a recorded track. storm_name
-    selects a storm of the file. at: start of the plan; required with `storm`. Default: now, or the
-    newest report if the bulletin is old. devices, ships_file: CSV files (docs/plan.md). ships:
-    number of ships. speed_kn [kn], capacity [devices]: of ships without their own in ships_file.
-    depart_h: earliest departure after the start [h]. abort_wind_kt: wind that stops ships [kt].
-    risk_averse: the plan minimises the mean loss in this fraction of the storms, the worst ones;
-    0: it maximises the mean value saved. currency: currency of the devices' values. utc_offset_h:
-    local time minus UTC [h]; default: from the longitude. members: number of possible storms;
-    `seed` draws them.
+    selects a storm of the file. at: start of the plan; required with `storm`. Default: now if the
+    newest report of the bulletin is less than 12 h old, else the time of this report. devices,
+    ships_file: CSV files (docs/plan.md). ships: number of ships. speed_kn [kn], capacity [devices]:
+    values for ships for which ships_file has none. depart_h: earliest departure after the start
+    [h]. abort_wind_kt: wind that stops ships [kt]. risk_averse: a fraction of the possible storms,
+    in [0, 1]. Above 0, the plan minimises the mean loss over the fraction with the largest losses.
+    With 0, it maximises the mean value saved over all possible storms. currency: currency of the
+    devices' values. utc_offset_h: local time minus UTC [h]; default: from the longitude. members:
+    number of possible storms. seed: seed of the random numbers that draw the possible storms.
 
-    Raises ValueError, with one line, if an option, a file or a position is wrong.
+    Raises ValueError with a message of one line if an option, a file or a position is wrong.
     """
     native: Any = importlib.import_module("aquafarm_core._native")
     request = native._RescueRequest()

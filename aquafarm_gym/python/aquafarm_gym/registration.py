@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The Gymnasium ids. The number after -v increases when the same seed and actions give other
-observations, rewards, ends or infos than in an earlier version. docs/python.md lists the
-changes."""
+observations, rewards, episode ends or infos than before. docs/python.md lists the changes."""
 from __future__ import annotations
 
 import gymnasium
 
-# Shipped scenarios with one ship that have an id, by the names in their ids.
+# Shipped scenarios that have an id, by the name in the id. Each has one ship.
 SCENARIOS: dict[str, str] = {
     "Paper": "paper", "PaperPartial": "paper_partial", "Partial": "partial", "Procedural": "procedural",
     "RedTide": "red_tide", "ZhoushanDanas2019": "zhoushan_danas_2019",

@@ -18,7 +18,7 @@ SIZE: tuple[int, int] = (800, 640)
 LAYERS: str = "trail,risk,labels"
 STYLE: str = "dark"
 MODES: tuple[str, ...] = ("ansi", "human", "rgb_array")
-# The modes of this installation: a wheel without OpenCV cannot draw pictures.
+# The modes that this installation supports. A wheel built without OpenCV cannot draw pictures.
 OFFERED: tuple[str, ...] = (MODES if importlib.util.find_spec("aquafarm_core._pictures")
                             else ("ansi", "human"))
 FPS: int = 4
@@ -62,8 +62,8 @@ class Pictures:
 
 
 class Window:
-    """Shows the first farm in a window of pygame. Without pygame, a display or OpenCV it prints
-    text."""
+    """Shows the first farm in a pygame window. Prints the farm as text if pygame, a display or
+    OpenCV is missing."""
 
     def __init__(self, pictures: Pictures, farms: Any) -> None:
         self._pictures, self._farms = pictures, farms
@@ -72,8 +72,8 @@ class Window:
         self._works = has_display()
 
     def show(self) -> None:
-        """Shows the present state. In a window, waits until 1/FPS seconds after the previous
-        picture."""
+        """Shows the present state. With a window, returns at the earliest 1/FPS seconds after the
+        previous picture."""
         if self._works and self._screen is None:
             self._works = self._open()
         if not self._works:
@@ -110,7 +110,7 @@ class Window:
 
 def has_display() -> bool:
     """Returns whether a window can probably be opened. On Linux, DISPLAY, WAYLAND_DISPLAY or
-    SDL_VIDEODRIVER must be set; other systems always return True."""
+    SDL_VIDEODRIVER must be set. Always returns True on other systems."""
     if sys.platform != "linux":
         return True
     return any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"))
@@ -119,7 +119,7 @@ def has_display() -> bool:
 def png_of(pixels: Pixels) -> bytes:
     """Returns a PNG file (ISO/IEC 15948) of an RGB picture, uint8 [height, width, 3]."""
     height, width = pixels.shape[:2]
-    rows = np.zeros((height, 1 + 3 * width), np.uint8)  # filter type 0 (none), pixels
+    rows = np.zeros((height, 1 + 3 * width), np.uint8)  # per row: filter type 0 (none), pixels
     rows[:, 1:] = pixels.reshape(height, -1)
 
     def chunk(name: bytes, data: bytes) -> bytes:
@@ -133,7 +133,7 @@ def png_of(pixels: Pixels) -> bytes:
 
 def html_of(farms: Any, pictures: Pictures | None, numbers: range | list[int]) -> str:
     """Returns farms as HTML for a notebook: pictures, or text if this installation cannot draw
-    pictures. Farms behind ROS are shown by their repr. numbers: the farms to show."""
+    pictures. Farms behind ROS are shown by their repr. numbers: indices of the farms to show."""
     if not hasattr(farms, "text"):
         return f"<pre>{html.escape(repr(farms))}</pre>"
     parts = []

@@ -78,9 +78,10 @@ class Service(rospy.ServiceProxy):  # type: ignore[misc]
 class RosFarms(Farms):
     """Farms behind the sim node of a namespace.
 
-    A call without a response is repeated with the same sequence number, so that no farm steps
-    twice. The constructor, reset and step raise ValueError if the node refuses a call. They repeat
-    a call for wait_limit_s, for example while the node is paused, and then raise ConnectionError.
+    The constructor, reset and step call services. They repeat a call if there is no response, or if
+    the node is paused or shutting down, or if another node claims the ships. After wait_limit_s,
+    they raise ConnectionError. If the node refuses a call for another reason, they raise
+    ValueError. A repeated step or reset has the same sequence number, so that no farm steps twice.
     step also raises ConnectionError if the sim node was restarted or another client changed the
     farms.
     """
@@ -101,7 +102,7 @@ class RosFarms(Farms):
         check_observation(observation, spec.state_count, spec.scenario_name)
         self.yaml = spec.scenario_yaml
         scenario = core.Scenario.parse(self.yaml, spec.scenario_name)
-        # The buffers of this batch are only used as memory; _take fills them.
+        # This batch never steps. Only its buffers are used; _take fills them.
         arrays = core.FarmBatch(
             scenario, farms,
             write=["rewards", "outcomes", "legal", "active", "end_reasons", "is_first", observation]
@@ -109,7 +110,8 @@ class RosFarms(Farms):
         super().__init__(scenario, farms, spec.state_count, arrays.feature_names)
         self.buffers: dict[str, npt.NDArray[Any]] = arrays.buffers
         self._observation_types = BITS[observation] | (StepResult.HASHES if hashes else 0)
-        # The first number is random, so that the numbers differ from those of earlier clients.
+        # The first sequence number is random, so that the numbers differ from those of earlier
+        # clients.
         self._sequence = itertools.count(int.from_bytes(os.urandom(7), "little") + 1)
         self._state_id: int | None = None  # of the last response; None if a reset is needed
         self._finished: list[dict[str, Any]] = []

@@ -23,9 +23,9 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
     ship s of farm f has the index f · S + s. The attribute num_envs is N · S.
 
     If the episode of a farm ends, the farm starts its next episode in the same step. The infos of
-    its ships then contain `terminal_observation`, `TimeLimit.truncated`, `is_success`, `summary`
-    (as in FarmEnv) and `episode`. The latter has the keys of Monitor: r (return of the farm), l
-    (number of steps) and t (always 0). MaskablePPO of sb3_contrib calls action_masks().
+    the farm's ships then contain `terminal_observation`, `TimeLimit.truncated`, `is_success`,
+    `summary` (as in FarmEnv) and `episode`. `episode` has the keys of Monitor: r (return of the
+    farm), l (number of steps) and t (always 0). MaskablePPO of sb3_contrib calls action_masks().
     """
 
     farms: LocalFarms

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Base class of the environments with one farm, and their results for one agent."""
+"""Base class of the environments with one farm, and functions for the results of one agent."""
 from __future__ import annotations
 
 from typing import Any

@@ -27,7 +27,7 @@ Array: TypeAlias = npt.NDArray[Any]
 
 def autoreset_name(mode: Any, farms: Any) -> str:
     """Returns the name of an autoreset mode. mode: a gymnasium.vector.AutoresetMode or its name.
-    Raises ValueError if it is unknown or the farms do not support it."""
+    Raises ValueError if the mode is unknown or the farms do not support it."""
     name = getattr(mode, "value", mode)
     if name not in AUTORESET_MODES:
         raise ValueError(f"autoreset_mode: got {mode!r}, expected a "
@@ -72,7 +72,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self._copy = copy
         self._episodes = Episodes()
         self._own_sequences = False  # True if the farms may have different sequences
-        self._begun = np.zeros(self.num_envs, np.int64)  # episodes since the last reset, by farm
+        # Number of episodes that each farm has started since all farms last started together.
+        self._begun = np.zeros(self.num_envs, np.int64)
         self._attach()
 
     def _attach(self) -> None:
@@ -103,11 +104,11 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
 
     def reset(self, *, seed: int | Sequence[int | None] | None = None,
               options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Starts episodes. seed: a number starts its sequence, with farm i of N at episode i; a
-        list starts one sequence per farm, at episode 0. Without a seed (or with None in the list),
-        a farm continues its sequence. options: with `episode` k, farm i starts at episode k + i, or
-        at episode k if its seed comes from a list. `reset_mask` (bool [N]) selects the farms that
-        start; the other farms do not change."""
+        """Starts episodes. seed: a number starts one sequence for all farms, with farm i at episode
+        i. A list starts one sequence per farm, at episode 0. A farm without a seed (or with None in
+        the list) starts the next episode of its sequence. options: with `episode` k, farm i starts
+        at episode k + i, or at episode k if its seed comes from a list. `reset_mask` (bool [N])
+        selects the farms that start; the other farms do not change."""
         options = check_options(options, ("episode", "reset_mask"))
         mask = self._mask_of(options)
         seeds = self._seeds_of(seed)
@@ -154,7 +155,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
                              "start together: pass one seed")
 
     def _start_all(self, seed: int | None, options: dict[str, Any]) -> None:
-        # Farm i of N plays every N-th episode. Continue after the latest episode of all farms.
+        # Farm i of N plays every N-th episode. Without a seed, the new episodes follow the latest
+        # episode of all farms.
         by = self.num_envs * (1 + int(self._begun.max()))
         self.farms.reset(*self._episodes.next(seed, options, lambda: self.np_random_seed, by))
         self._begun[:] = 0
@@ -205,7 +207,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         truncated = self._reasons == core.STEP_LIMIT
         rewards = self._rewards()
         if self._mode == SAME_STEP and not self._copy:
-            rewards = rewards.copy()  # the start of an episode overwrites them in this step
+            rewards = rewards.copy()  # the start of the next episodes overwrites the array
         if self._mode == SAME_STEP and over.any():
             infos = self._restart(over)
         else:
@@ -249,7 +251,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
                  "outcome": self._outcomes.astype(np.int64),
                  "reason": self._reasons.astype(np.int64), "is_success": success,
                  "is_first": self._is_first.copy(), "summary": summary}
-        infos["started"] = infos["is_first"]  # its name in version 0.1.0
+        infos["started"] = infos["is_first"]  # former name
         infos.update(self._more_infos())
         infos.update({f"_{name}": self._everywhere for name in infos})
         infos["_summary"] = over
@@ -348,4 +350,4 @@ class TeamVectorEnv(VectorBase):
     def _more_infos(self) -> dict[str, Any]:
         active = self.farms.buffers["active"].astype(bool)
         return {"agent_rewards": self._all_rewards.copy(), "active": active,
-                "in_play": active}  # its name in version 0.1.0
+                "in_play": active}  # former name of "active"

@@ -20,7 +20,7 @@ def masked_space(space: gymnasium.Space[Any], shape: tuple[int, ...] = ()) -> gy
 
 
 def joined(observation: Any, infos: dict[str, Any]) -> dict[str, Any]:
-    """Returns an observation with the action mask in `infos`."""
+    """Returns a dict with an observation and the action mask from `infos`."""
     return {"observation": observation, "action_mask": infos["action_mask"]}
 
 

@@ -123,7 +123,8 @@ RanchRequest Finished(const Arguments& arguments) {
   ranch.width = whole(width);
   ranch.height = whole(height);
   ranch.cell_size_m = Metres(arguments.cell);
-  constexpr int kDrawnPlacements = 3;  // explicit needs sites, which only a scenario file contains
+  // The placement kExplicit needs sites, which only a scenario file contains.
+  constexpr int kDrawnPlacements = 3;
   ranch.placement = Named<DevicePlacement>("layout", arguments.layout, kDrawnPlacements);
   ranch.reduction = Named<RingReduction>("rings", arguments.rings, kRingReductionCount);
   if (!arguments.start.empty()) ranch.start = ParseUtc("start", arguments.start);
@@ -145,20 +146,20 @@ void RefuseUnused(const Arguments& arguments, const Scenario& made) {
   }
 }
 
-// Suggests launch arguments: none for a table (the default), those of a network if the table would
-// be too large, and algorithm:=auto for several agents.
+// Suggests launch arguments: algorithm:=auto for several agents. For one agent, suggests a network
+// if a table would be too large, else no arguments, because a table is the default.
 std::string Learner(const Scenario& made) {
   if (made.AgentCount() > 1) return " algorithm:=auto";
   const std::uint64_t states = Encoder(made).state_count();
   constexpr std::uint64_t kMax = 100'000'000;
-  if (states == 0 || states > kMax) {  // ten values per state: beyond a table of 4 GB
+  if (states == 0 || states > kMax) {  // ten floats per state: more than 4 GB
     return " algorithm:=dqn options:=train_interval=4 steps:=1200000";
   }
   return "";
 }
 
-// Suggests a training. For a ranch with a position, also suggests a rescue plan, which takes only
-// seconds.
+// Suggests the command for a training. For a ranch with a position, also suggests the command for a
+// rescue plan, which takes only seconds.
 std::string NextSteps(const std::string& path, const Scenario& made) {
   const std::string train = "./aquafarm train scenario:=" + path + Learner(made) + "\n";
   if (!made.origin) return "now: " + train;

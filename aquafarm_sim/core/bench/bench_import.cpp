@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures the reading of published data: one year of CMA best tracks, and a field of the sea on a
-// farm's cells.
+// Measures the time to read published data: one year of CMA best tracks, and a field of the sea
+// that is interpolated to the cells of a farm.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -16,7 +16,7 @@
 namespace aquafarm {
 namespace {
 
-// 40 storms of 35 points each, as in the busiest years.
+// Returns a CMA file with 40 storms of 35 points each, as in the busiest years.
 std::string YearOfCma() {
   constexpr int kStorms = 40;
   constexpr int kPoints = 35;

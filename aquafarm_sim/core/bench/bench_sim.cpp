@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures farm steps per second with one thread and random actions; episodes restart when they
-// end. The costs of larger maps are relative to a map of 25 × 25 cells.
+// Measures farm steps per second with one thread and random actions. When an episode ends, the farm
+// starts the next one. The costs of larger maps are relative to a map of 25 × 25 cells.
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -21,7 +21,7 @@ enum class Wanted { kNothing, kIndex, kFeatures, kPlanes };
 
 Scenario Paper() { return LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"); }
 
-// 43 features instead of 81.
+// Returns the scenario without optional features: 43 features instead of 81.
 Scenario PaperWithPlainFeatures() {
   Scenario scenario = Paper();
   scenario.view.routes = scenario.view.lookahead_risk = false;
@@ -111,8 +111,8 @@ void PrintMetrics(const bench::MetricReporter& reporter) {
   PrintMetric("farm_steps_tabular_one_farm", rate("OneFarm"), "steps/s");
   PrintMetric("cost_1000x1000_to_25x25", rate("Side/25") / rate("Side/1000"), "ratio");
   PrintMetric("cost_100x100_to_25x25", rate("Side/25") / rate("Side/100"), "ratio");
-  // Returns the cost of one more ship or disaster among many, divided by that among few. Below 1.5
-  // the cost counts as constant.
+  // Returns the mean cost of each ship or disaster after the first, with `many` of them, divided by
+  // the same mean with `few` of them. If the result is below 1.5, the cost counts as constant.
   const auto per_one_more = [&](const std::string& what, double few, double many) {
     const double cost_one = 1.0 / rate(what + "/1");
     const double cost_few = 1.0 / rate(what + "/" + std::to_string(static_cast<int>(few)));

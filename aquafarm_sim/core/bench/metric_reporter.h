@@ -27,7 +27,7 @@ class MetricReporter : public benchmark::ConsoleReporter {
       }
     }
   }
-  /// Returns the items per second of a benchmark `NAME` or `NAME/ARGUMENT`; 0 if there is none.
+  /// Returns the items per second of the benchmark `NAME` or `NAME/ARGUMENT`; 0 if it did not run.
   double median(const std::string& name) const {
     const auto found = median_.find(name);
     return found == median_.end() ? 0.0 : found->second;
@@ -38,8 +38,8 @@ class MetricReporter : public benchmark::ConsoleReporter {
   std::map<std::string, double> median_;
 };
 
-/// Runs the benchmarks with five repetitions. Options in the arguments override this and the other
-/// defaults below.
+/// Runs the benchmarks, by default with five repetitions. Options in `argv` override the defaults
+/// that this function sets.
 /// @returns false if an argument is not recognized
 inline bool RunMedians(int argc, char** argv, MetricReporter& reporter) {
   std::vector<char*> arguments(argv, argv + argc);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target for files of notices and of storm tracks; the content decides the format.
+// Fuzz target for files of notices and of storm tracks. Both readers get each input and detect the
+// format from its content.
 #include <cstddef>
 #include <cstdint>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fuzz target for presets of a disaster; every accepted preset must be valid in a farm.
+// Fuzz target for presets of a disaster. Every accepted preset must pass ValidateDisaster.
 #include <cstddef>
 #include <cstdint>
 #include <string>

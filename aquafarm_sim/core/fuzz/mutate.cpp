@@ -78,7 +78,8 @@ int main(int argc, char** argv) {
     }
   }
   std::sort(samples.begin(), samples.end());
-  // Keeps the duration of a run independent of the number of samples.
+  // Number of mutated copies of each sample. CHANGES applies to a set of six samples: with more
+  // samples, each gets fewer copies, so that the duration of a run does not depend on their number.
   const auto changes =
       std::atoi(words[0].c_str()) * 6 / static_cast<int>(std::max<std::size_t>(samples.size(), 1));
   aquafarm::RandomStream rng({seed, 0, aquafarm::RngStream::kExploration, 0});

@@ -12,10 +12,10 @@ struct NodeHelp {
   const char* package{};
   const char* node{};     ///< name of the program
   const char* summary{};  ///< what the node does, in a sentence
-  const char* launch{};   ///< file of aquafarm_bringup that starts the node; null: there is none
+  const char* launch{};   ///< file of aquafarm_bringup that starts the node; null if there is none
 };
 
-/// Prints the help of a node to stdout if `-h` or `--help` is among its arguments. main must call
+/// Prints the help of a node to stdout if `-h` or `--help` is among the arguments. main must call
 /// this function before ros::init, because the help must also work without ROS_MASTER_URI.
 /// @returns true if the help was printed; main must then return 0
 inline bool PrintHelpIfRequested(int argc, char** argv, const NodeHelp& help) {

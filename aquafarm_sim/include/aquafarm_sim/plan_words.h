@@ -2,7 +2,7 @@
 #pragma once
 
 /// Texts for the fields of a rescue plan. The panel and the rviz markers use them. All functions
-/// are inline, so that a program that uses them does not link a library of aquafarm_sim.
+/// are inline, so that a program that uses them need not link a library of aquafarm_sim.
 
 #include <aquafarm_msgs/RescuePlan.h>
 
@@ -40,9 +40,10 @@ inline std::string LocalText(const aquafarm_msgs::RescuePlan& plan, ros::Time ti
   return {text, std::strftime(text, sizeof(text), same_day ? "%H:%M" : "%d %b %H:%M", &at)};
 }
 
-/// Returns the instruction for a ship without a route: "stay" in a port, "return to port" at sea.
-/// A ship with devices aboard has no route if it reaches no open port, or if winds stop it before.
-/// Its instruction is "stay, no safe way to a port" in a port, "no safe way to a port" at sea.
+/// Returns the instruction for a ship without a route. Without devices aboard it is "stay" in a
+/// port and "return to port" at sea. A ship with devices aboard has no route if it cannot reach an
+/// open port, or if winds stop it on the way. Its instruction is "stay, no safe way to a port" in a
+/// port and "no safe way to a port" at sea.
 inline std::string WithoutRouteText(const aquafarm_msgs::RescuePlan& plan,
                                     const aquafarm_msgs::RescueShip& ship) {
   const bool in_port = std::any_of(plan.ports.begin(), plan.ports.end(), [&ship](const auto& port) {

@@ -60,7 +60,7 @@ std::string Missing(std::uint64_t first, std::uint64_t last) {
   return "steps " + Number(first) + " to " + Number(last) + " are missing";
 }
 
-/// Definitions of an earlier version in a bag, by type.
+/// Message definitions of earlier versions that a bag contains, by message type.
 using Definitions = std::map<std::string, std::string>;
 
 Definitions OlderDefinitions(const rosbag::Bag& bag) {
@@ -74,10 +74,10 @@ Definitions OlderDefinitions(const rosbag::Bag& bag) {
   return definitions;
 }
 
-/// Simulates one episode of a bag while its messages are read.
+/// Simulates one episode of a bag and compares the messages of the bag with the simulation.
 class Simulation {
  public:
-  /// @param definitions definitions of an earlier version in the bag
+  /// @param definitions message definitions of earlier versions in the bag; must outlive the object
   /// @throws InputError if the spec does not contain a valid scenario
   Simulation(const FarmSpec& spec, const Definitions& definitions)
       : definitions_(definitions),
@@ -93,7 +93,7 @@ class Simulation {
   std::string Check(const FarmSpec& spec) const {
     const aquafarm::Encoder encoder(*scenario_);
     FarmSpec simulated;
-    // A bag of an earlier version contains the old names of scenario keys.
+    // A bag of an earlier version may contain old names of scenario keys.
     const bool old_names = spec.scenario_yaml == aquafarm::ToYaml(*scenario_, true);
     ToMsg(farm_, encoder, spec.farms, aquafarm::ToYaml(*scenario_, old_names), {}, simulated);
     simulated.header = spec.header;
@@ -101,6 +101,7 @@ class Simulation {
     return difference.empty() ? "" : "spec." + difference;
   }
 
+  /// Simulates a step before the comparison if the state is that of the next step.
   std::string Check(const FarmState& state) {
     const auto step = static_cast<std::uint64_t>(farm_.step());
     const std::uint64_t expected = seen_ ? step + 1 : step;
@@ -129,8 +130,8 @@ class Simulation {
     return difference.empty() ? "" : "episode." + difference;
   }
 
-  /// Compares the chart of the episode, or the risk of the current state. Skips a grid with another
-  /// stamp.
+  /// Compares the chart of the episode, or the risk of the current state. Skips a chart without the
+  /// stamp of the spec, and a risk without the stamp of the current state.
   std::string Check(const OccupancyGrid& grid, bool is_chart) const {
     OccupancyGrid simulated;
     if (is_chart) {
@@ -147,8 +148,8 @@ class Simulation {
     return (is_chart ? "chart." : "risk.") + difference;
   }
 
-  /// Loads a saved state, with which the episode continues. Returns a description of the fault if
-  /// this is not possible, else an empty text.
+  /// Loads a saved state. The episode continues from it. Returns a description of the fault if the
+  /// state cannot be loaded, else an empty text.
   std::string Load(const SavedState& saved) {
     const auto step = static_cast<std::uint64_t>(farm_.step());
     if (begun_ && saved.step > step) return Missing(step + 1, saved.step);
@@ -165,7 +166,7 @@ class Simulation {
     } catch (const InputError& error) {
       return std::string("saved_state.data: ") + error.what();
     }
-    seen_ = false;  // the state after the change follows
+    seen_ = false;  // the next state of the bag must be the loaded state
     begun_ = true;
     return "";
   }
@@ -195,7 +196,7 @@ class Simulation {
     return "";
   }
 
-  // Compares the fields that the bag's definition has.
+  // Compares only the fields that the bag's definition contains.
   template <typename Message>
   std::string Difference(Message got, Message& simulated) const {
     const auto found = definitions_.find(ros::message_traits::datatype<Message>());
@@ -209,12 +210,12 @@ class Simulation {
   std::shared_ptr<const aquafarm::Scenario> scenario_;
   Farm farm_;
   ros::Time spec_stamp_;
-  bool begun_{};     // a message of this episode was read, so the next one must match its step
+  bool begun_{};     // a state was read; a saved state must then be that of the current step
   bool seen_{};      // the current state of the farm was compared
-  ros::Time stamp_;  // stamp of that state
+  ros::Time stamp_;  // stamp of the last state that was compared
 };
 
-/// Seed and episode.
+/// Seed and index of an episode.
 using Key = std::pair<std::uint64_t, std::uint64_t>;
 
 /// Checks a bag's messages in order. Each topic has a separate connection, so a live recording may
@@ -277,7 +278,8 @@ class Checker {
     return true;
   }
 
-  /// Ends the last episode. Checks that the bag contains the states of each summary that is left.
+  /// Ends the last episode. Then reports a remaining summary, which has no states, as a difference
+  /// unless it is that of another farm.
   /// @returns false if there is a difference
   bool End() {
     if (!EndEpisode()) return false;
@@ -303,7 +305,8 @@ class Checker {
 
   std::uint64_t Step() const { return static_cast<std::uint64_t>(simulation_->farm().step()); }
 
-  /// Continues an episode or starts it. A step 0 after other steps restarts it.
+  /// Continues or starts the episode of a message. A message of step 0 after later steps restarts
+  /// the episode.
   bool Enter(const Key& key, std::uint64_t step) {
     if (simulation_ && key == key_ && (step != 0 || Step() == 0)) return true;
     if (!EndEpisode(/*starts_again=*/key == key_)) return false;

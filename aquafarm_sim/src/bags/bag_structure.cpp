@@ -30,8 +30,8 @@ namespace {
 // Iterates over the records of a bag or of a chunk (format 2.0, wiki.ros.org/Bags/Format).
 class BagRecords {
  public:
-  // @param whole suffix of positions in error messages, " of ...", if the bytes are only a part of
-  //        the bag
+  // @param whole text after each position in error messages if the bytes are only a part of the
+  //        bag, for example " of the chunk at byte 4117"
   explicit BagRecords(std::string_view bytes, std::size_t position = 0, std::string whole = "")
       : bytes_(bytes), position_(position), whole_(std::move(whole)) {}
 
@@ -84,7 +84,7 @@ class BagRecords {
     if (!Is(op)) throw Damage("an unexpected kind of record" + Where());
   }
 
-  // Reads a number at an offset. The bytes must contain it; this is not checked.
+  // Reads the number at offset `place`. Does not check that `bytes` contains the whole number.
   template <typename Number>
   static Number Read(std::string_view bytes, std::size_t place) {
     Number number;
@@ -137,10 +137,12 @@ struct ChunkMessages {
   }
 };
 
-// The connections by number. Each is a map of the topic and the fields of the connection header.
+// Connections by number. Each is a map from names to texts: from "/topic" to the topic, and from
+// the name of each field of the connection header to its value.
 using Connections = std::map<std::uint32_t, std::map<std::string, std::string>>;
 
-// Adds a connection. A bag contains its record in a chunk and in the index; both must be equal.
+// Adds a connection. A bag contains two records of each connection, one in a chunk and one in the
+// index. Both must be equal.
 // @throws Damage if a connection with the same number differs
 void TakeConnection(const BagRecords& record, Connections& connections) {
   std::map<std::string, std::string> fields{{"/topic", std::string(record.Text("topic"))}};
@@ -154,9 +156,10 @@ void TakeConnection(const BagRecords& record, Connections& connections) {
 
 // Reads the messages of a chunk.
 // @param connections receives the connections of the chunk
-// @throws Damage, or rosbag::BagException if the chunk cannot be decompressed
+// @throws Damage if the chunk is damaged
+// @throws rosbag::BagException if the chunk cannot be decompressed
 ChunkMessages ReadChunk(const BagRecords& chunk, Connections& connections) {
-  constexpr std::size_t kMax = std::size_t{256} << 20U;  // rosbag allocates twice as much
+  constexpr std::size_t kMax = std::size_t{256} << 20U;  // rosbag allocates up to twice as much
   const std::size_t size = chunk.Get<std::uint32_t>("size");
   const std::string_view kind = chunk.Text("compression");
   if (size > kMax) throw Damage("a chunk of more than 256 MiB" + chunk.Where());
@@ -223,7 +226,8 @@ void CheckChunkInfo(const BagRecords& info, const Connections& connections,
     counts[BagRecords::Read<std::uint32_t>(info.data(), kBytes * i)] =
         BagRecords::Read<std::uint32_t>(info.data(), kBytes * i + sizeof(std::uint32_t));
   }
-  // A time is stored as seconds, then nanoseconds: swap the halves to compare times as integers.
+  // A time is stored as seconds, then nanoseconds. With its halves swapped, it can be compared as
+  // an integer.
   const auto ordered = [](std::uint64_t time) { return (time << 32U) | (time >> 32U); };
   std::uint64_t first = UINT64_MAX;
   std::uint64_t last = 0;
@@ -243,23 +247,23 @@ void CheckChunkInfo(const BagRecords& info, const Connections& connections,
 }
 
 // Compares the index of the bag with the content of its chunks.
-// @param records is at the bag header record
+// @param records records of the bag; the bag header is the current record
 // @param bytes size of the bag
 // @throws Damage if they disagree
 void CheckIndex(BagRecords& records, std::size_t bytes) {
   const std::uint64_t index = records.Get<std::uint64_t>("index_pos");
   const std::uint32_t chunk_count = records.Get<std::uint32_t>("chunk_count");
   const std::uint32_t connection_count = records.Get<std::uint32_t>("conn_count");
-  if (index == 0) return;  // the recording was killed
-  // Limits the uncompressed size: reading more would take hours. Recordings of ranches are
-  // compressed by much less than the factor 4,000.
+  if (index == 0) return;  // the recorder was killed before it wrote the index
+  // Limits the uncompressed size, because reading a larger bag can take hours. Recordings of
+  // ranches are compressed by a factor much smaller than 4,000.
   const std::uint64_t max_bytes = (std::uint64_t{1} << 30U) + 4'000 * std::uint64_t{bytes};
   std::uint64_t all_bytes = 0;
   std::map<std::uint64_t, ChunkMessages> chunks;
   Connections connections;
   while (records.position() < index) {
     records.Next();
-    // If a recorder was killed while it wrote the index, 'rosbag reindex' leaves that part of the
+    // If a recorder was killed while it wrote the index, 'rosbag reindex' leaves the incomplete
     // index in front of the new one.
     if (records.Is(BagOp::kConnection)) TakeConnection(records, connections);
     if (records.Is(BagOp::kConnection) || records.Is(BagOp::kChunkInfo)) continue;

@@ -188,8 +188,8 @@ void ChunkedBag::EndChunk() {
 void ChunkedBag::Close() {
   if (!chunk_.empty()) EndChunk();
   const auto position = static_cast<std::uint64_t>(file_.tellp());
-  // Writes all records in one call. If only the first of them are in the file, 'rosbag reindex'
-  // loses every chunk.
+  // Writes all records of the index in one call. If the file contained only some of them, 'rosbag
+  // reindex' would lose every chunk.
   Bytes index;
   for (const auto& [topic, connection] : connections_) Put(connection.record, index);
   Put(chunk_infos_, index);

@@ -100,7 +100,7 @@ class Messages {
   }
 
  private:
-  // A bag cannot contain time 0, so an episode starts one period after it.
+  // A bag cannot contain time 0, so step 0 has the time 1 / rate_hz.
   void SetTime(std::int32_t step) {
     const ros::Time stamp(static_cast<double>(step + 1) / context_.rate_hz);
     if (stamp != context_.stamp) order_ = 0;
@@ -188,7 +188,7 @@ EpisodeBagWriter::EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> sce
 void EpisodeBagWriter::Write(const EpisodeLog& log, const std::string& path) {
   const std::string active = path + kPartial;
   std::error_code error;
-  const FileLock lock(active, O_RDWR | O_CREAT);  // if it fails, ChunkedBag reports why
+  const FileLock lock(active, O_RDWR | O_CREAT);  // if open fails, ChunkedBag throws
   try {
     ChunkedBag bag(active);
     Messages messages(bag, log, format_);

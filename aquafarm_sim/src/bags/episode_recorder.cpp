@@ -18,8 +18,8 @@ namespace aquafarm_sim {
 namespace {
 
 /// Lowers the priority of the calling thread, so that the stepping threads take precedence.
-/// SCHED_IDLE is not used for two reasons: the thread would starve next to other programs; and the
-/// farms may have to wait for it, but without privileges a thread cannot leave SCHED_IDLE.
+/// SCHED_IDLE is not used, because other programs could starve the thread. Without privileges, a
+/// thread cannot leave SCHED_IDLE, not even while the farms wait for it.
 void StepBack() {
   // The struct of sched_setattr(2); the kernel header that defines it conflicts with sched.h.
   struct {

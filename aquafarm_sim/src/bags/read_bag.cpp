@@ -76,7 +76,7 @@ void OpenChecked(rosbag::Bag& bag, const std::string& path) {
   } catch (const Damage& damage) {
     throw aquafarm::InputError(path + ": damaged: " + damage.what() +
                                "; 'rosbag reindex' may repair its index");
-  } catch (const std::exception& error) {  // from rosbag, its plugins, times and the file mapping
+  } catch (const std::exception& error) {  // from rosbag, its plugins, ros::Time or boost
     throw aquafarm::InputError(path + ": damaged or not a bag: " + error.what());
   }
 }

@@ -56,8 +56,8 @@ std::uint32_t Length(const Bytes& in, std::size_t& at) {
   return length;
 }
 
-// Reads the number of entries of a field. Every entry has at least one byte, because all of our
-// messages have fields.
+// Reads the number of entries of a field. The check assumes that an entry has at least one byte.
+// This is true because all of our messages have fields.
 std::uint64_t CountOf(const Field& field, const Bytes& in, std::size_t& at) {
   if (field.count == MessageDefinition::kScalar) return 1;
   const std::uint64_t count = field.count == MessageDefinition::kAnyLength
@@ -107,7 +107,7 @@ void CopyField(const Field& from, const Field& to, const Bytes& in, std::size_t 
   const bool is_message = from.type->bytes == 0 && !from.type->is_string;
   if (is_message) {
     const std::uint64_t count = CountOf(from, in, at);
-    Append(in, begin, at, out);  // the number of entries
+    Append(in, begin, at, out);  // copies the number of entries
     for (std::uint64_t i = 0; i < count; ++i) Copy(*from.type, *to.type, in, at, out);
   } else {
     Skip(from, in, at);

@@ -44,7 +44,7 @@ void FillShip(const aquafarm::Farm& farm, std::int32_t id, aquafarm_msgs::ShipSt
   message.legal_actions = farm.LegalActions(id);
 }
 
-/// Fills another ship in an observation in partial view.
+/// Fills the message of another ship for an observation in partial view.
 void FillOtherShip(const aquafarm::Farm& farm, const aquafarm::KnownShip& known,
                    aquafarm_msgs::ShipState& message) {
   const aquafarm::Ship& ship = farm.ships()[static_cast<std::size_t>(known.id)];
@@ -110,7 +110,7 @@ void FillEpisode(const aquafarm::Farm& farm, const MessageContext& context,
 
 // Returns a farm at the start of the episode of `farm`, with the same layout.
 aquafarm::Farm StartOf(const aquafarm::Farm& farm) {
-  // The scenario outlives the returned farm, which lives as long as the conversion.
+  // The scenario outlives the returned farm, which exists only during the conversion.
   const std::shared_ptr<const aquafarm::Scenario> scenario(std::shared_ptr<void>(),
                                                            &farm.scenario());
   aquafarm::Farm start(scenario, farm.shared_layout());
@@ -306,7 +306,7 @@ void ToMsg(const aquafarm::Farm& farm, const aquafarm::View& view, const Message
   const aquafarm::Ship& self = farm.ships()[static_cast<std::size_t>(view.ship)];
   if (farm.scenario().view.mode == aquafarm::ViewMode::kFull) {
     ToMsg(farm, context, message);
-    for (std::size_t i = 0; i < view.disasters.size(); ++i) {  // the forecast motion
+    for (std::size_t i = 0; i < view.disasters.size(); ++i) {
       message.disasters[i].motion_x = view.disasters[i].belief.dx;
       message.disasters[i].motion_y = view.disasters[i].belief.dy;
     }

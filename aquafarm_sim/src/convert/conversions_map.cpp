@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grids and frames: converts cells and compass bearings to metres and ROS axes.
+// Conversions to grids and frames: cells and compass bearings to metres and ROS axes.
 #include <Eigen/Geometry>
 #include <GeographicLib/Geocentric.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Storms in geographic coordinates, as announced by bulletins.
+// Conversions of storms in geographic coordinates, as announced by bulletins.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -18,7 +18,7 @@ constexpr std::uint32_t kQueue = 10;
 constexpr std::uint32_t kRecordQueue = 10000;
 // While rosbag record writes a chunk, it queues at most 100 messages per topic and drops others.
 constexpr std::chrono::milliseconds kRecordPeriod{2};
-// Max wait for the queue before a message is sent to a single, new subscriber.
+// Max time to wait until the queue is empty, before a message is sent to a single, new subscriber.
 constexpr std::chrono::milliseconds kSendLimit{1000};
 constexpr std::size_t kMaxSummaries = 1000;
 // A recorder connects to its topics one after the other. It counts as ready if the number of
@@ -27,10 +27,11 @@ const ros::WallDuration kRecorderGrace(0.5);
 
 }  // namespace
 
-// A new subscriber immediately receives the last message. It is sent after the messages that are
-// still in the queue, so that a recording stays in order of time. The topic is not latched for two
-// reasons: roscpp sends a latched message before the queued ones; and bags mark latched messages,
-// so that a player that starts in the middle of a bag would first send an outdated state.
+// A new subscriber receives the last message without waiting for the next state. This message is
+// sent after the messages that are still in the queue, so that a recording stays in order of time.
+// The topic is not latched for two reasons: roscpp sends a latched message before the queued ones;
+// and bags mark latched messages, so that a player that starts in the middle of a bag would first
+// send an outdated state.
 template <typename Message>
 void FarmPublisher::Advertise(ros::NodeHandle& node, const std::string& name,
                               Topic<Message>& topic) {
@@ -70,7 +71,7 @@ FarmPublisher::FarmPublisher(const ros::NodeHandle& node_handle, const SimParams
         [this, ship](const ros::SingleSubscriberPublisher& subscriber) {
           ranch_.Inspect([&](const ServerView& view) {
             const MutexLock lock(observation_mutex_);
-            sent_.Wait(kSendLimit);  // drivers skip observations of earlier steps
+            sent_.Wait(kSendLimit);  // after a timeout, drivers skip the earlier observations
             subscriber.publish(ObservationOf(view, ship));
           });
         };
@@ -206,7 +207,8 @@ void FarmPublisher::Fill(const ServerView& view) {
   FillFrames(view);
 }
 
-// A node that drives a ship by its observations must receive the observation of every step.
+// A node that drives a ship by its observations must receive the observation of every step, except
+// of joint steps.
 void FarmPublisher::PublishObservations(const ServerView& view) {
   const MutexLock lock(observation_mutex_);
   for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {

@@ -21,7 +21,7 @@ SentMessages::~SentMessages() { ros::PollManager::instance()->removePollThreadLi
 bool SentMessages::Wait(std::chrono::milliseconds limit) {
   const auto end = std::chrono::steady_clock::now() + limit;
   MutexLock lock(mutex_);
-  // The present round may have emptied the queues before this call, so the next one must end, too.
+  // The current round may have emptied the queues before this call. The next round must also end.
   const std::uint64_t last = rounds_ + 2;
   while (rounds_ < last) {
     lock.Unlock();

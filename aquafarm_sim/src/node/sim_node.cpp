@@ -182,8 +182,8 @@ void SimNode::AdvertiseFarm() {
       node_, names::kSetDisaster, [this](const auto& q, auto& a) { ranch_.SetDisaster(q, a); }));
 }
 
-// Ctrl-C in a launch stops trainer and sim node at the same time. A running trainer gets time to
-// save.
+// Ctrl-C in a launch sends SIGINT to the trainer and to sim_node at the same time. A running
+// trainer then needs the services of sim_node to save.
 void SimNode::LetClientsSave() {
   const ros::WallTime start = ros::WallTime::now();
   const auto elapsed_s = [&start] { return (ros::WallTime::now() - start).toSec(); };
@@ -196,8 +196,7 @@ void SimNode::LetClientsSave() {
 }
 
 int RunSimNode() {
-  // rosconsole stops with the last node handle, so errors of the start are printed to stderr
-  // directly.
+  // rosconsole stops with the last node handle, so startup errors are printed to stderr directly.
   try {
     SimNode node(ros::NodeHandle(), ros::NodeHandle("~"));
     ros::AsyncSpinner spinner(kCommonThreads);

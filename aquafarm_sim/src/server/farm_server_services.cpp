@@ -96,8 +96,8 @@ std::optional<FarmServer::Refusal> FarmServer::Check(const aquafarm_msgs::Step::
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
     if (auto refusal = CheckHolder(ship, caller)) return refusal;
   }
-  // Checked after pauses and claims. A client that retries while the farms are paused or claimed
-  // receives STALE only once they are free.
+  // Checked after pauses and claims: a client that retries while the farms are paused or claimed
+  // receives PAUSED or CLAIMED, and STALE only after that.
   if (request.state_id != 0 && request.state_id != state_id_) {
     return Refusal{Outcome::STALE,
                    "state_id: got " + std::to_string(request.state_id) + ", the farms are at " +
@@ -451,8 +451,8 @@ void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
                       response);
       }
     }
-    // The checks above cover all differences between farms: if the first farm accepts the disaster,
-    // all farms do.
+    // The checks above cover all differences between farms: if one farm accepts the disaster, all
+    // farms do.
     for (std::int32_t i = first; i < end; ++i) {
       if (left(i) <= 0) continue;  // the storm has ended for this farm
       aquafarm::DisasterSpec fitted = spec;

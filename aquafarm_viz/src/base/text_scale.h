@@ -9,8 +9,9 @@
 
 namespace aquafarm_viz {
 
-/// Returns the relative size of texts: 1 on wide farms, up to 1.2 on square and tall ones. The
-/// height of the view limits the scale of a square farm, so that its texts would be smaller.
+/// Returns the relative size of texts: 1 on wide farms, up to 1.2 on square and tall farms. The
+/// height of the view limits the scale of a square farm. Without this factor its texts would be
+/// smaller than those of a wide farm.
 inline double TextScale(const aquafarm_msgs::FarmSpec& spec) {
   return std::clamp(0.2 + double(spec.height) / std::max(1, spec.width), 1.0, 1.2);
 }

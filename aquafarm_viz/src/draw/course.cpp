@@ -113,7 +113,7 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
   const double hours = MarkHours(spec, course.ahead, to_pixel, layout);
   const double steps = hours * 3600.0 / std::max(1.0, spec.step_duration_s);
   const double now = course.ahead.front().step;
-  const int rim = layout.Px(6);  // the edge would cut marks in this rim
+  const int rim = layout.Px(6);  // marks in this rim would be cut off at the edge
   const cv::Rect inside(rim, rim, image.cols - 2 * rim, image.rows - 2 * rim);
   for (std::size_t i = 1; i <= kMaxMarks && now + double(i) * steps <= course.ahead.back().step;
        ++i) {

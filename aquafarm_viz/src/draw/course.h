@@ -38,9 +38,9 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
 /// Blocks the positions of the marks, so that no label covers them.
 void BlockMarks(const std::vector<CourseMark>& marks, FreeSpace& space, const Layout& layout);
 
-/// Writes the text of each mark next to it, or farther away with a line to the mark. Omits the text
-/// if there is no free space, and blocks the space that it uses. Writes `longer` only if it fits at
-/// every mark.
+/// Writes the text of each mark next to the mark, or farther away with a line to the mark. Omits a
+/// text if there is no free space for it. Blocks the space of the written texts. Writes `longer`
+/// only if it fits at every mark.
 void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace& space,
                 const Layout& layout, const Fonts& fonts);
 

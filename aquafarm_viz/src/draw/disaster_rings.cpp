@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws the rings of disasters: an outline, a light tint and a pattern that differs by kind, so
-// that water and land stay visible below.
+// Draws the rings of disasters: an outline, a light tint, and a pattern for each kind of disaster.
+// Water and land stay visible below.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -232,7 +232,7 @@ void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land,
     const bool has_edge = std::any_of(all.begin(), all.end(), [&](const Rings& other) {
       return other.kind == rings.kind && HasEdgeOn(other, map.size());
     });
-    pattern.emplace(rings.kind, layout.Px(has_edge ? 13 : 30));  // wider without an edge on the map
+    pattern.emplace(rings.kind, layout.Px(has_edge ? 13 : 30));  // wider if no edge is on the map
   }
   const ShadeTable table = MakeShadeTable(*layout.style, is_tinted ? layout.style->ring_tint : 0.0);
   RingRow line(static_cast<std::size_t>(map.cols), all.front().kind);

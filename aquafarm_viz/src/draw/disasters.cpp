@@ -73,7 +73,8 @@ void DrawCentre(cv::Mat& map, const DisasterState& disaster, const SignPlace& si
                   Bgr(disaster.grade == 2 ? kInk : kPaper));
 }
 
-// Draws a pointer at the border. It has the direction from the middle of the map to the centre.
+// Draws a pointer at the border. It points in the direction from the middle of the map to the
+// centre of the disaster.
 void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, const SignPlace& sign,
                        const Layout& layout) {
   const cv::Point2d middle(map.cols / 2.0, map.rows / 2.0);
@@ -103,7 +104,7 @@ SignPlace PlaceSign(const DisasterState& disaster, const Layout& layout) {
     if (disaster.speed > 0.0F && fits) sign.arrow_to = tip;
     return sign;
   }
-  // The pointer lies where the line from the middle of the map to the centre reaches the edge.
+  // The pointer lies on the line from the middle of the map to the centre, just inside the edge.
   const cv::Point2d middle(map.width / 2.0, map.height / 2.0);
   const double margin = std::min(16.0 * layout.unit, std::min(middle.x, middle.y));
   const cv::Point2d away = centre - middle;

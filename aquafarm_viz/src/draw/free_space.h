@@ -28,7 +28,7 @@ class FreeSpace {
   /// Everything is free at first. @param size  size of the map [pixels]
   explicit FreeSpace(cv::Size size);
 
-  // Clones the map of used pixels, because copies of a cv::Mat share their pixels.
+  // Clones `used_`, because copies of a cv::Mat share their data.
   FreeSpace(const FreeSpace& other)
       : used_(other.used_.clone()), labels_(other.labels_), size_(other.size_) {}
   FreeSpace& operator=(const FreeSpace&) = delete;

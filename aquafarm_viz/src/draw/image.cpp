@@ -34,7 +34,7 @@ bool SameBackground(const FarmSpec& a, const FarmSpec& b) {
                     });
 }
 
-// Returns true if two maps of values are drawn equally. Compares bytes, because cells without a
+// Returns true if two maps of values look the same. Compares bytes, because cells without a
 // value are NaN, which is not equal to itself.
 bool SameMap(const Values& a, const Values& b) {
   return a.width == b.width && a.height == b.height && a.lowest == b.lowest &&
@@ -145,7 +145,8 @@ struct FarmPainter::Parts {
       LabelDevices(map, spec, state, labelled, space, layout, fonts);
       LabelFetched(map, spec, state, overlays.trail, space, layout, fonts);
     }
-    // Rings get no labels with best moves, which need the space. The key explains the rings.
+    // If best moves are drawn, rings get no labels, because the moves need the space. The key
+    // explains the rings.
     if (layers.risk && !layers.moves)
       LabelRings(map, state, forecasts.courses, space, layout, fonts);
   }
@@ -181,7 +182,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   forecasts.courses = p.courses.Read(spec, state);
   forecasts.outlook = ComputeOutlook(spec, state, forecasts.courses);
   FreeSpace space = BlockSymbols(spec, state, forecasts.outlook, p.layout);
-  const bool has_route = layers.route && overlays.route != nullptr;  // it contains the trail
+  const bool has_route = layers.route && overlays.route != nullptr;  // the route contains the trail
   if (layers.trail && overlays.trail != nullptr && !has_route) {
     DrawPaths(map, state, *overlays.trail, p.layout);
   }

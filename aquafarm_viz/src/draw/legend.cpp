@@ -37,7 +37,7 @@ int KeyPx(const RiskKey& key, const Layout& layout) {
 int SignColumns(const Layout& layout) { return layout.panel.width >= layout.Px(245.0) ? 3 : 2; }
 
 // Returns the column and row of each sign in the key. A sign that does not fit into the rest of a
-// row begins the next one.
+// row begins the next row.
 std::vector<cv::Point> SignCells(const std::vector<Sign>& signs, const Layout& layout) {
   std::vector<cv::Point> cells;
   cv::Point next;

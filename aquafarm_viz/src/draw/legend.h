@@ -47,7 +47,7 @@ std::string FittingRingName(std::int32_t wind_kt, int width_px, const Font& font
 enum class Sign {
   kAtRisk,        ///< pattern of the rings, unless the key of risks shows it
   kInDanger,      ///< circle around a device in danger, in the colour of its worst ring
-  kFirstReached,  ///< two circles around a device that is the first in danger
+  kFirstReached,  ///< two circles around a device that is hit first
   kDelivered,     ///< small device at a port
   kFetched,       ///< outline in the former cell of a fetched device
   kPath,          ///< path of a self-propelled device

@@ -55,10 +55,10 @@ void DrawLeader(cv::Mat& map, cv::Point2d symbol, double radius, cv::Rect label,
   DrawLine(map, from, to, Bgr(color), layout.Px(1.2));
 }
 
-constexpr double kPlateMargins = 13.0;  // left and right of a text, in sum [design units]
+constexpr double kPlateMargins = 13.0;  // left and right margin of a text together [design units]
 constexpr double kPlateRow = 16.0;      // height of a line on a plate [design units]
 
-// Draws lines of text on a plate with a bar in a colour.
+// Draws lines of text on a plate with a coloured bar at its left edge.
 void DrawPlate(cv::Mat& map, cv::Rect plate, const std::vector<std::string>& lines, Rgb color,
                const Layout& layout, const Fonts& fonts) {
   const Style& style = *layout.style;
@@ -145,7 +145,7 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlo
   for (std::size_t i = 0; i < signs.size(); ++i) {
     if (!IsDrawn(state.disasters[i])) continue;
     const SignPlace& sign = signs[i];
-    // Only the label of a pointer may be close to it.
+    // LabelPointers places the label of a pointer just outside this square.
     space.Block(Around(sign.at, (sign.is_inside ? 12.0 : 14.0) * layout.unit));
     const cv::Point2d middle = (sign.at + sign.arrow_to) * 0.5;
     const cv::Point2d half(std::abs(sign.arrow_to.x - sign.at.x) / 2.0 + 8.0 * layout.unit,
@@ -294,7 +294,7 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
         place = PlaceBesideRing(points, PlateSize(lines, layout, fonts), water, layout);
         if (place) break;
       }
-      if (!place) continue;  // only the key of risks explains it
+      if (!place) continue;  // only the key of risks explains the ring
       space.Add(*place);
       DrawPlate(map, *place, lines, RiskColor(double(disaster.risks[ring]), layout), layout, fonts);
     }

@@ -44,7 +44,7 @@ class Panel {
   cv::Point2d SymbolAt() const { return {double(left_ + layout_.Px(7)), y_ + RowPx() / 2.0}; }
   cv::Point2d SecondSymbolAt() const { return {double(Middle() + layout_.Px(7)), SymbolAt().y}; }
   cv::Mat& image() { return image_; }
-  /// Returns the part between the lists and the legend [pixels].
+  /// Returns the part of the panel between the lists and the legend [pixels].
   cv::Rect Room() const {
     return {left_, y_ + layout_.Px(8), right_ - left_, end_ - y_ - layout_.Px(8)};
   }
@@ -76,7 +76,7 @@ class Panel {
     y_ += RowPx();
   }
 
-  /// Returns whether a text fits in a half of Pair.
+  /// Returns whether a text fits in one half of a row (Pair).
   bool FitsInHalf(const std::string& text) const {
     return fonts_.small.Width(text) <= Middle() - left_ - layout_.Px(21 + 4);
   }
@@ -154,7 +154,8 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
   }
 }
 
-// Returns the label of a device with its danger or status, as long as half a row allows.
+// Returns the label of a device with its danger or status: the longest text that fits in half a
+// row.
 ColoredText DeviceInHalf(const Panel& panel, const FarmSpec& spec, const DeviceState& device,
                          const Trail* trail, const Outlook& outlook, const Layout& layout) {
   const bool done = device.status == DeviceState::DELIVERED;
@@ -174,7 +175,7 @@ ColoredText DeviceInHalf(const Panel& panel, const FarmSpec& spec, const DeviceS
           done ? layout.style->good : layout.style->faint};
 }
 
-// Draws one device in each half of a row. The left halves contain the first devices.
+// Draws two devices in each row. The left column contains the first half of the devices.
 void ListInHalves(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                   const Outlook& outlook, const Layout& layout) {
   const std::size_t rows = (state.devices.size() + 1) / 2;
@@ -299,7 +300,7 @@ void ListShips(Panel& panel, const FarmSpec& spec, const FarmState& state, const
     }
     const std::string name = ship.own_device >= 0 ? "device " + std::to_string(ship.own_device)
                                                   : "ship " + std::to_string(ship.id);
-    // The axes of a map with a geographic position do not number the cells.
+    // If HasGraticule is true, the axes of the map do not number the cells.
     const std::string cell =
         HasGraticule(spec) ? ""
                            : "(" + std::to_string(ship.x) + ", " + std::to_string(ship.y) + ")";
@@ -327,7 +328,7 @@ std::string PolicyName(const Overlays& overlays) {
   return overlays.training != nullptr ? overlays.training->algorithm : "";
 }
 
-// Returns the choice of a compared policy as text, one line for each ship.
+// Returns the choice of a compared policy (PolicyChoice) as text, one line for each ship.
 std::vector<std::string> ChoiceLines(const FarmState& state, const Overlays& overlays) {
   std::vector<std::string> lines;
   if (overlays.choice == nullptr || !IsOf(*overlays.choice, state)) return lines;
@@ -340,8 +341,8 @@ std::vector<std::string> ChoiceLines(const FarmState& state, const Overlays& ove
   return lines;
 }
 
-// Returns whether a symbol of a pickup or drop-off is visible on the map. Symbols of ports and
-// devices cover most of them.
+// Returns whether the symbol of a greedy pickup or drop-off is visible on the map. The symbols of
+// ports and devices cover most of these symbols.
 bool HasPickupSigns(const FarmSpec& spec, const FarmState& state, const Values& values, int every) {
   const auto is_covered = [&](cv::Point cell) {
     return std::any_of(
@@ -359,7 +360,7 @@ bool HasPickupSigns(const FarmSpec& spec, const FarmState& state, const Values& 
 }
 
 // Explains the colours and symbols of a policy, if there is a policy and space for the explanation.
-// Returns whether it was drawn.
+// Returns whether the explanation was drawn.
 bool ListPolicy(Panel& panel, const FarmSpec& spec, const FarmState& state,
                 const Overlays& overlays, const Values* values, const Layout& layout) {
   const std::vector<std::string> choices = ChoiceLines(state, overlays);

@@ -12,17 +12,18 @@ using aquafarm_msgs::FarmState;
 
 namespace {
 
-constexpr double kBetweenHeads = 50.0;  // min distance of two arrowheads on a path [design units]
+constexpr double kBetweenHeads = 50.0;  // min distance between arrowheads [design units]
 
-// Returns the colour of a part of a ship's path. The path of the only ship is green, which no risk
-// has. The paths of several ships have the colours of the ships. Older parts fade into the sea.
+// Returns the colour of a part of a ship's path. If there is only one ship, its path is green,
+// because no risk is green. If there are several ships, each path has the colour of its ship, mixed
+// with the colour of labels. Older parts have a colour that is closer to that of the sea.
 // @param age  0: now, 1: the oldest part
 Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
   const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.5) : style.good;
   return Mix(fresh, style.sea_south, 0.4 * age);
 }
 
-// Draws one move of a path: a line, or a shorter line that is a dash of the path.
+// Draws one move of a path: a line or, on a dashed path, a shorter line as one dash.
 // @param casing  added to the width on each side [design units]
 void DrawMoved(cv::Mat& map, cv::Point2d from, cv::Point2d to, bool is_dashed,
                const cv::Scalar& color, const Layout& layout, double casing = 0.0) {
@@ -30,23 +31,24 @@ void DrawMoved(cv::Mat& map, cv::Point2d from, cv::Point2d to, bool is_dashed,
   DrawLine(map, from + gap, to - gap, color, layout.Px((is_dashed ? 1.8 : 3.2) + 2.0 * casing));
 }
 
-// Returns the unit vector to the right of a direction on the map; {0, 0} without a direction.
+// Returns the unit vector to the right of a direction on the map; {0, 0} if `along` is {0, 0}.
 cv::Point2d RightOf(cv::Point2d along) {
   const double length = cv::norm(along);
   return length > 0.0 ? cv::Point2d(-along.y, along.x) / length : cv::Point2d();
 }
 
-// Returns where a path that is `aside` pixels to the right of its points turns at a point. At a
-// turn of more than a right angle, where the common point is far away, the result is next to the
-// end of `own`.
-// @param own, other  right sides of the two moves that meet at the point
+// Returns the corner of a path at the point `at`. The path runs `aside` pixels to the right of its
+// points, and the corner is where the lines of two successive moves meet. After a sharp turn (more
+// than about 100 degrees) they meet far away; the result is then the end of the line of `own`.
+// @param own, other  RightOf the two moves that meet at the point
 cv::Point2d Turn(cv::Point2d at, cv::Point2d own, cv::Point2d other, double aside) {
   const double cosine = own.dot(other);
   return cosine < -0.2 ? at + aside * own : at + (own + other) * (aside / (1.0 + cosine));
 }
 
-// Returns the distance of a ship's path from the centres of the cells [pixels]. Of several ships,
-// each three in turn have different distances, so that paths on the same cells are both visible.
+// Returns the distance of a ship's path from the centres of the cells [pixels]. If there are
+// several ships, there are three distances, by id, so that two paths on the same cells are usually
+// both visible.
 double AsideOf(std::int32_t ship, bool are_several, const Layout& layout) {
   const double units = 2.2 + (are_several ? 2.4 * (ship % 3) : 0.0);
   return std::min(units * layout.unit, 0.3 * layout.view.cell_px());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The paths of ships on the map; private to this package.
+/// Computes and draws the paths of ships on the map; private to this package.
 
 #include <aquafarm_msgs/FarmState.h>
 
@@ -20,22 +20,23 @@ struct Moved {
   cv::Point2d from;  ///< [pixels]
   cv::Point2d to;
   bool is_dashed{};  ///< the ship had nothing aboard
-  double age{};      ///< near 0: the last move; below 1: the oldest
+  double age{};      ///< in (0, 1): lowest for the newest move, highest for the oldest
 };
 
 /// Returns the moves of a ship, the oldest first. They run to the right of the cells' centres, so
-/// that opposite ways do not cover each other. At a sharp turn, an additional short move joins the
-/// two sides.
-/// @param are_several  whether the farm has several ships; their distances from the centres differ
+/// that moves in opposite directions do not cover each other. At a sharp turn, an additional short
+/// move joins the ends of the two moves.
+/// @param are_several  true: the farm has several ships, whose paths have different distances from
+///                     the centres
 std::vector<Moved> MovesOf(const ShipTrail& way, std::int32_t ship, bool are_several,
                            const Layout& layout);
 
-/// Draws the trails or routes of the ships. Older parts fade into the sea. Moves of a rescue ship
-/// with nothing aboard are dashed.
+/// Draws the trails or routes of the ships. Older parts have a colour that is closer to that of the
+/// sea. Moves of a rescue ship with nothing aboard are dashed.
 void DrawPaths(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& paths,
                const Layout& layout);
 
-/// Draws a short line that looks like a path.
+/// Draws a short line that looks like a path, for the legend.
 void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, bool is_dashed,
                     const aquafarm_msgs::FarmState& state, const Layout& layout);
 

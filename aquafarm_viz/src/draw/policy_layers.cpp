@@ -12,9 +12,9 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr Rgb kNoValue{0x4c, 0x54, 0x5c};  // cells of rocks; no value has a grey
+constexpr Rgb kNoValue{0x4c, 0x54, 0x5c};  // colour of cells of rocks; no value is grey
 constexpr double kValueShare = 0.82;       // opacity of V_π over the sea
-constexpr double kArrowSpacing = 34.0;     // min distance of two arrows [design units]
+constexpr double kArrowSpacing = 34.0;     // min distance between arrows [design units]
 constexpr double kLargestArrow = 19.0;     // max size of a symbol [design units]
 
 cv::Mat Colors(const cv::Mat& shares) {
@@ -44,7 +44,7 @@ void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px
 
 void DrawValues(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Values& values,
                 const Layout& layout) {
-  // A matrix header for the values without a copy. They are only read. Row 0 is the southernmost.
+  // Refers to the values without copying them, and is only read. Row 0 is the southernmost.
   const cv::Mat from_south(values.height, values.width, CV_32F,
                            const_cast<float*>(values.values.data()));
   cv::Mat north_up;
@@ -52,7 +52,7 @@ void DrawValues(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Values&
   const cv::Mat known = north_up == north_up;  // not NaN
   cv::Mat shares(north_up.size(), CV_8U, cv::Scalar(128));
   if (const double span = double(values.highest) - double(values.lowest); span > 0.0) {
-    // Subtracts before it scales, because values far from 0 would lose precision.
+    // Subtracts the lowest value before scaling, because values far from 0 would lose precision.
     cv::subtract(north_up, cv::Scalar(double(values.lowest)), north_up);
     north_up.convertTo(shares, CV_8U, 255.0 / span);
   }
@@ -118,7 +118,7 @@ MoveSigns::MoveSigns(const Layout& layout)
     : view_(layout.view),
       every_(MoveSpacing(layout)),
       size_px_(std::min(0.8 * every_ * view_.cell_px(), kLargestArrow * layout.unit)) {
-  // If the size of a cell is an integer, all cell centres have this sub-pixel position.
+  // `phase_` is the same for all cells if the size of a cell is an integer.
   const int half = cvCeil(0.5 * size_px_) + 3;
   const cv::Point2d middle = view_.ToPixel(0, view_.height() - 1);
   phase_ = middle - cv::Point2d(std::floor(middle.x), std::floor(middle.y));

@@ -50,7 +50,7 @@ using Outline = std::vector<cv::Point2d>;  // [pixels]
 // Fills the land of the region and draws its coasts.
 void DrawLand(Inset& inset, const FarmSpec& spec, const std::vector<CoastRing>& coast,
               const Style& style) {
-  constexpr double kSmallest_m = 300e3;  // narrower insets would show the error of the coast
+  constexpr double kSmallest_m = 300e3;  // coasts are not exact enough for less
   const cv::Point2d size(inset.image.cols / inset.px_per_cell,
                          inset.image.rows / inset.px_per_cell);
   if (size.x * spec.cell_size_m < kSmallest_m) return;
@@ -92,13 +92,13 @@ void DrawRings(Inset& inset, const DisasterState& disaster, const Style& style,
   }
 }
 
-// The disaster that the words are about.
+// The disaster that RegionText describes.
 struct Subject {
   std::size_t disaster{};
   double danger{};      // steps until a ring covers a part of the farm; infinite: never
-  TrackPoint nearest;   // the point of its course that is nearest to the middle of the farm
-  double nearest_m{};   // distance of this point from the middle of the farm
-  bool comes_nearer{};  // true: this point is not the present one
+  TrackPoint nearest;   // point of the course that is nearest to the middle of the farm
+  double nearest_m{};   // distance of `nearest` from the middle of the farm
+  bool comes_nearer{};  // true: `nearest` is later than the present point
 };
 
 bool IsMoreUrgent(const Subject& a, const Subject& b) {
@@ -125,8 +125,8 @@ std::string PlaceText(const FarmSpec& spec, double x, double y) {
   return DistanceText(MetresFromFarm(spec, x, y)) + " " + PointFromFarm(spec, x, y);
 }
 
-// If the disaster lasts longer than its course is known, returns until when it is known. If not,
-// returns how the course is drawn; empty for an extrapolated course.
+// If the course is not known until the disaster ends, returns the time until which it is known. If
+// it is, returns how the course is drawn; empty for an extrapolated course.
 std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, const Course& course) {
   const double known = course.known_until - course.ahead.front().step;
   if (known < disaster.steps_left) return "known until +" + AheadText(spec, known);
@@ -141,11 +141,12 @@ std::string Upper(std::string text) {
   return text;
 }
 
-// Returns the heading if a ring covers a part of the farm.
+// Returns the heading for the case that a ring covers a part of the farm now.
 std::string OverText(const std::string& wind) { return Upper(wind) + " OVER THE RANCH"; }
 
-// Returns the heading if a ring reaches the farm in a later step. It names the strongest wind over
-// the farm in that step, "NEAR GALE IN 2.0 h", or is "REACHES THE RANCH IN 2.0 h" without winds.
+// Returns the heading for the case that a ring reaches the farm in a later step. It contains the
+// strongest wind over the farm in that step: "NEAR GALE IN 2.0 h". If winds are not given, it is
+// "REACHES THE RANCH IN 2.0 h". After the end of the known course, "IN ABOUT" replaces "IN".
 std::string ReachesText(const FarmSpec& spec, const Course& course, double step) {
   const std::string wind = Upper(WindOverFarm(spec, course, TrackAt(course.ahead, step)));
   return (wind.empty() ? "REACHES THE RANCH" : wind) +
@@ -211,7 +212,7 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
     }
     return words;
   }
-  // An extrapolated course predicts when a ring arrives. It does not show that none will.
+  // An extrapolated course can show that a ring will arrive, but not that no ring will.
   words.lines[0] =
       DisasterName(disaster.kind) + ", centre " + PlaceText(spec, disaster.x, disaster.y);
   words.lines[1] = subject->danger == 0.0 ? RiskOverFarm(spec, course) + " over a part of the ranch"
@@ -223,9 +224,10 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
 
 namespace {
 
-// Returns the part of the region that the inset shows [cells]. It contains the farm, all centres,
-// the closest approaches, and the points of courses within half the distance of the farthest
-// centre.
+// Returns the part of the region that the inset shows [cells]. It contains the farm and the centres
+// of all disasters. For each course that is not extrapolated, it also contains the closest approach
+// and the points at less than half of `farthest_m` from the middle of the farm.
+// @param farthest_m  distance of the farthest centre from the middle of the farm [m]
 cv::Rect2d ShownPart(const FarmSpec& spec, const FarmState& state,
                      const std::vector<Course>& courses, double farthest_m) {
   cv::Rect2d part(-0.5, -0.5, spec.width, spec.height);
@@ -367,15 +369,15 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
   }
   const RegionWords words = RegionText(spec, state, courses);
   const bool has_course = words.heading != RegionWords().heading;
-  // If there is no space for both the lines and the inset, the lines are left out, unless they are
-  // about a known course or an arrival.
+  // If there is no space for both the lines and the inset, the lines are left out, unless they
+  // describe a course that is not extrapolated, or the arrival of a ring.
   const int smallest = layout.Px(kSmallestSide);
   const int for_inset = room.height - row_px - layout.Px(4);
   const bool has_lines = has_course || words.is_urgent || for_inset - 2 * row_px >= smallest;
-  // The inset is smaller without a known course, because it then contains little.
+  // The inset is lower if the course is extrapolated, because it then contains little.
   const int max_side = has_course ? room.width : room.width * 2 / 3;
   const int side = std::min(max_side, for_inset - (has_lines ? 2 * row_px : 0));
-  // An inset is not needed for disasters whose centres are on the map.
+  // The inset is needed only for centres outside the farm.
   const bool is_drawn = farthest_m > 0.0 && side >= smallest;
   if (!is_drawn && !has_course) return;
   fonts.bold.Draw(image, fonts.bold.Fit(words.heading, room.width),

@@ -19,7 +19,7 @@ struct SeaLayer {
   std::vector<float> values;  // [H, W] row-major; row 0 is the southernmost
 };
 
-// Reads a sea layer of the spec's scenario, which contains one number per cell for each layer.
+// Reads a sea layer of the spec's scenario. A layer has one number per cell.
 SeaLayer LayerOf(const aquafarm_msgs::FarmSpec& spec, const std::string& name) {
   std::string names;
   try {

@@ -24,7 +24,7 @@ namespace aquafarm_viz {
 
 class FreeSpace;
 
-/// The expected motion of the disasters of a state, and the danger from them.
+/// The expected courses of the disasters of a state, and the danger to the devices.
 struct Forecasts {
   std::vector<Course> courses;  ///< one per disaster of the state
   Outlook outlook;              ///< danger to the devices
@@ -59,7 +59,7 @@ struct Fonts {
   Font small;
   Font bold;
   Font title;
-  Font headline;  ///< between bold and title
+  Font headline;  ///< its size is between those of `bold` and `title`
 };
 
 /// Draws the parts that are constant during an episode: sea, islands, rocks, axes and the constant
@@ -68,8 +68,9 @@ cv::Mat DrawBackground(const aquafarm_msgs::FarmSpec& spec, const Layout& layout
                        const Fonts& fonts, ImageSize size);
 
 /// Draws a sea layer of the spec's scenario onto the map of a background.
-/// @throws std::invalid_argument if the scenario has no such layer, or a layer of another size:
-///         "layers: got 'sea:salt', expected one of the scenario's sea layers: warmth"
+/// @throws std::invalid_argument if the scenario cannot be read, if the size of the layer is not
+///         that of the farm, or if there is no such layer: "layers: got 'sea:salt', expected one of
+///         the scenario's sea layers: warmth"
 void DrawSea(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const std::string& name,
              const Layout& layout, const Fonts& fonts);
 
@@ -105,8 +106,8 @@ struct SignPlace {
   cv::Point2d arrow_to;  ///< tip of the arrow of its motion; equals `at` if there is no arrow
   bool is_inside{};      ///< false: the centre lies outside the map
 };
-/// Returns the position of the sign of one disaster. A sign has an arrow if the disaster moves, its
-/// centre is on the map, and so is the tip of the arrow.
+/// Returns the position of the sign of one disaster. A sign has an arrow if the disaster moves, and
+/// both its centre and the tip of the arrow are on the map.
 SignPlace PlaceSign(const aquafarm_msgs::DisasterState& disaster, const Layout& layout);
 /// Returns the position of the sign of each disaster of the state. Pointers that would overlap are
 /// moved apart along the border if there is space.
@@ -161,7 +162,7 @@ void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px
 
 /// Draws the arrows of the legal moves around each port.
 void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, const Layout& layout);
-/// Marks the arrows of DrawDirections as used.
+/// Marks the space of the arrows of DrawDirections as used.
 void BlockDirections(const std::vector<PortDirections>& ports, const Layout& layout,
                      FreeSpace& space);
 
@@ -173,8 +174,8 @@ void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
 /// Returns the distance between symbols of greedy actions along each axis [cells].
 int MoveSpacing(const Layout& layout);
 
-/// Draws the greedy actions that ShownActions selects. Their symbols are drawn once, and then
-/// copied to the nearest pixels.
+/// Draws the greedy actions that ShownActions selects. The symbol of each action is drawn once and
+/// then copied to the pixel that is nearest to the centre of each cell.
 class MoveSigns {
  public:
   explicit MoveSigns(const Layout& layout);
@@ -195,14 +196,14 @@ class MoveSigns {
   std::vector<Overlay> signs_;
 };
 
-/// Draws the action that a compared policy chooses for each ship. Draws nothing if the choice was
-/// made in another state.
+/// Draws the action that a policy chooses for each ship, for comparison with the recorded action
+/// (PolicyChoice). Draws nothing if the choice was made in another state.
 void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                 const aquafarm_msgs::FarmState& state, const aquafarm_msgs::PolicyChoice& choice,
                 const Layout& layout);
 
-/// Writes the actions of DrawChoice near the lower right corner of the map, if the choice was made
-/// in this state.
+/// Writes the actions of DrawChoice near the lower right corner of the map. Writes nothing if the
+/// choice was made in another state.
 /// @param space  free part of the map; the part under the text is then marked as used
 void DrawChoiceWords(cv::Mat& map, const aquafarm_msgs::FarmState& state,
                      const aquafarm_msgs::PolicyChoice& choice, FreeSpace& space,

@@ -73,7 +73,7 @@ class EncodedVideo final : public Video {
     ++pictures_;
   }
 
-  // OpenCV does not report a full disk, so this counts the pictures of the written file.
+  // OpenCV does not report a full disk. Therefore Close counts the pictures of the written file.
   void Close() override {
     writer_.release();
     if (Pictures() < pictures_) {
@@ -95,7 +95,8 @@ class EncodedVideo final : public Video {
   int pictures_{};
 };
 
-/// Finds the nearest colour of a palette with a lookup table of 32 levels per channel.
+/// Finds the nearest colour of a palette, approximately, with a lookup table of 32 levels per
+/// channel.
 class Quantizer {
  public:
   explicit Quantizer(const std::vector<cv::Vec3b>& palette) : nearest_(kSide * kSide * kSide) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The texts above and below the map.
+// Draws the texts above and below the map.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,8 +39,8 @@ class Line {
   int right_;
 };
 
-// Draws the danger in the first row: the longest headline that fits, in the largest font. Returns
-// false if there is nothing to draw.
+// Draws the danger in the first row: the longest headline that fits, in the largest font in which
+// it fits. Returns false if there is nothing to draw.
 bool DrawDanger(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                 const Outlook& outlook, cv::Point at, int width, const Layout& layout,
                 const Fonts& fonts) {
@@ -58,8 +58,9 @@ bool DrawDanger(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   return true;
 }
 
-// Draws two rows: the next danger, or how the episode has ended; below it the scenario, the episode
-// and the time. Texts of the second row that leave no space for the time are cut.
+// Draws two rows. The first row contains the danger or, if there is none, the scenario. After the
+// end of an episode it is empty, because DrawEnd uses it. The second row contains the scenario (if
+// the first row does not), the episode, step, return and time. Its texts end before the time.
 void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
              const Layout& layout, const Fonts& fonts) {
   const int left = layout.Px(10);
@@ -74,7 +75,7 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
   const std::string name = spec.scenario_name.empty() ? "aquafarm" : spec.scenario_name;
   const bool is_over = state.terminated || state.truncated;
   if (is_over || DrawDanger(image, spec, state, outlook, first, right - left, layout, fonts)) {
-    // A long name leaves space for the step and the return.
+    // A long name is cut, so that there is space for the step and the return.
     line.Put(fonts.bold, fonts.bold.Fit(name, (time_left - left) / 3), layout.style->words, gap);
   } else {
     fonts.title.Draw(image, fonts.title.Fit(name, right - left), first, Bgr(layout.style->words));
@@ -97,7 +98,7 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
   }
 }
 
-// @param y  base of the line below the map [design units]
+// @param y  base of the line, from the upper edge of Layout::bottom down [design units]
 void DrawRewardLine(cv::Mat& image, const FarmState& state, double y, const Layout& layout,
                     const Fonts& fonts) {
   Line line(image, {layout.Px(10), layout.bottom.y + layout.Px(y)},
@@ -167,7 +168,7 @@ void DrawWords(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   if (layout.top.empty()) return DrawEnd(image, state, layout, fonts);
   DrawTop(image, spec, state, outlook, layout, fonts);
   DrawEnd(image, state, layout, fonts);
-  // Without a line about a training, the rewards are in the middle.
+  // Without a line about a training, the rewards are in the middle of Layout::bottom.
   DrawRewardLine(image, state, overlays.training != nullptr ? 17.0 : 26.0, layout, fonts);
   if (overlays.training != nullptr) DrawTrainingLine(image, *overlays.training, layout, fonts);
 }

@@ -32,7 +32,7 @@ using visualization_msgs::MarkerArray;
 
 constexpr std::size_t kMaxLabels = 40;  // more labels would be hard to read and slow
 constexpr double kRim = 0.2;            // min distance of a label from the edge of the farm [cells]
-constexpr double kMaxLine = 0.98;       // max width of a line above the farm [longer side of farm]
+constexpr double kMaxLine = 0.98;       // max width of a line of text [longer sides of the farm]
 constexpr Rgb kAlarm{0xff, 0xb4, 0x54};
 
 // A rectangle that a label covers [cells].
@@ -57,7 +57,7 @@ class Labels {
       : spec_(spec), word_(maker.word_m() / maker.cell_m()) {
     const double half = 0.75 * maker.thing_m() / maker.cell_m();  // with the health bar
     for (const auto& device : state.devices) {
-      const bool has_circle = device.status == DeviceState::DEPLOYED;  // perhaps, see AddCircle
+      const bool has_circle = device.status == DeviceState::DEPLOYED;  // if in danger (AddCircle)
       Block(device.x, device.y, has_circle ? 1.2 * half : half);
     }
     for (const auto& ship : state.ships) {
@@ -109,7 +109,7 @@ class Labels {
   }
 
   // Returns the place of a label: below, above or next to a point, or as near to it as possible. If
-  // no place is free, returns nullopt, or the last place that was tried if the label must be shown.
+  // no place is free, returns the last place that was tried if `must_show` is true, else nullopt.
   std::optional<Plate> Place(const std::string& text, double x, double y, bool must_show) {
     const auto lines = 1 + std::count(text.begin(), text.end(), '\n');
     const double half_width = std::min(0.5 * (TextWidth(text) + 0.8) * word_,
@@ -146,7 +146,7 @@ class Labels {
   }
 
   // Returns the offsets of a label from its point that are tried: first below, above, right and
-  // left, then others, the nearest first. `is_anywhere` adds distant ones.
+  // left, then others, the nearest first. `is_anywhere` adds distant offsets.
   std::vector<cv::Point2d> OffsetsOf(double half_width, double row, bool is_anywhere) const {
     const double aside = half_width + std::max(1.5, 1.5 * word_);
     std::vector<cv::Point2d> offsets{{0.0, -row}, {0.0, row}, {aside, 0.0}, {-aside, 0.0}};
@@ -263,7 +263,7 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     AddLeader(array, maker, "danger_label", one.id,
               labels.Leader(cv::Point2d(device.x, device.y), radius, *plate));
     labelled.insert(one.id);
-    array.markers.push_back(maker.Delete("device_label", one.id));  // the new label names it too
+    array.markers.push_back(maker.Delete("device_label", one.id));  // the new label contains it
   }
   for (const auto& device : state.devices) {
     if (circled.count(device.id) == 0) array.markers.push_back(maker.Delete("danger", device.id));
@@ -271,8 +271,8 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
   }
 }
 
-// Adds a pointer at the edge of the farm towards each centre outside it. Returns the indices of
-// these disasters.
+// Adds a pointer at the edge of the farm for each disaster whose centre is outside the farm.
+// Returns the indices of these disasters.
 std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                                      const FarmState& state, Labels& labels) {
   const double middle_x = (spec.width - 1) / 2.0;
@@ -309,7 +309,8 @@ std::vector<std::size_t> AddPointers(MarkerArray& array, const Maker& maker, con
   return outside;
 }
 
-// Adds one or two lines of text above the farm, next to the clock. Deletes them if `text` is empty.
+// Adds one or two lines of text north of the farm, directly above or below the clock. Deletes them
+// if `text` is empty.
 // @param side  1: above the clock, -1: below it
 void AddLines(MarkerArray& array, const Maker& maker, const FarmSpec& spec, const char* space,
               double side, const std::string& text, Rgb color) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The legend below the map in rviz; private to this package.
+/// Adds the legend below the map in rviz; private to this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -13,12 +13,12 @@ namespace aquafarm_viz {
 /// Adds a scale bar and the colours of risks, in the namespaces `legend` and `legend_text`.
 void AddLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec);
 
-/// The signs that are on the map.
+/// The signs that AddSignLegend explains.
 struct MapSigns {
-  bool circle{};   ///< around a device in danger
-  bool pointer{};  ///< to a centre outside the farm
-  bool pattern{};  ///< of rings
-  bool dashes{};   ///< path of a ship with nothing aboard
+  bool circle{};   ///< circle around a device in danger
+  bool pointer{};  ///< pointer to a centre outside the farm
+  bool pattern{};  ///< pattern of rings
+  bool dashes{};   ///< dashed path of a ship with nothing aboard
 };
 
 /// Adds a second line with the meanings of these signs, in the namespaces `sign_legend` and

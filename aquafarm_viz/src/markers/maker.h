@@ -119,7 +119,9 @@ class Maker {
     return marker;
   }
 
-  /// Returns a text. @param x, y  its middle [cells] @param size_m  height of its letters [m]
+  /// Returns a text marker.
+  /// @param x, y  middle of the text [cells]
+  /// @param size_m  height of the letters [m]
   visualization_msgs::Marker Text(const char* space, int id, double x, double y,
                                   const std::string& text, double size_m, Rgb color) const {
     visualization_msgs::Marker marker =
@@ -130,13 +132,13 @@ class Maker {
     return marker;
   }
 
-  /// Returns a text above the farm that starts above its western edge.
+  /// Returns a line of text north of the farm. The text starts at the western edge of the farm.
   /// @param line  number of the line, see LineAbove
   visualization_msgs::Marker Line(const char* space, double line, const std::string& text,
                                   Rgb color) const;
 
-  /// Returns a flat shape as triangles around its origin. Each line from the origin to a
-  /// corner must lie inside the shape, as in a convex shape.
+  /// Returns a flat shape as triangles around its origin. Each line from the origin to a corner
+  /// must lie inside the shape.
   /// @param size_m  length of one unit of the outline [m]
   visualization_msgs::Marker Shape(const char* space, int id, Layer layer, double x, double y,
                                    const std::vector<cv::Point2f>& outline, double size_m,

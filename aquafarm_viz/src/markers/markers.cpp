@@ -38,7 +38,7 @@ using visualization_msgs::MarkerArray;
 constexpr double kShapeNorthDeg = 0.0;   // outlines point north
 constexpr double kArrowNorthDeg = 90.0;  // rviz arrows point along x
 constexpr double kShipSize = 0.74;       // half the length of a rescue ship [thing_m()]
-constexpr double kBetweenHeads = 2.5;    // min distance of two arrowheads on a path [thing_m()]
+constexpr double kBetweenHeads = 2.5;    // min distance between arrowheads [thing_m()]
 
 Marker Sea(const Maker& maker, const FarmSpec& spec) {
   Marker sea = maker.Make("sea", 0, Marker::CUBE, kSeaLayer, (spec.width - 1) / 2.0,
@@ -266,7 +266,7 @@ void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, cv::
                                      std::to_string(ship.id), maker.word_m(), kPaper));
 }
 
-// Adds the last moves of a ship. Older ones are more transparent. Each move is a rectangle, because
+// Adds the trail of a ship. Older moves are more transparent. Each move is a rectangle, because
 // the lines of rviz have an uneven width in the top-down view.
 void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, const ShipState& ship,
              const Trail* trail) {
@@ -348,9 +348,10 @@ bool CoversSymbol(const FarmSpec& spec, const FarmState& state, double x, double
                      [&](const auto& port) { return is_near(port.cell.x, port.cell.y); });
 }
 
-// Returns how far north of the centre the name of a disaster is [cells]: on the side without the
-// arrow of the motion, outside small rings, but next to the centre of large ones. A name that would
-// be off the map or cover a symbol is at another place on this side, or on the other side.
+// Returns how far north of the centre the name of a disaster is [cells]; negative: south of it. The
+// preferred place is on the side without the arrow of the motion: outside the rings if they are
+// small, next to the centre if they are large. If the name would be off the map or cover a symbol
+// there, the other of these two places is tried, and then two places on the other side.
 double NameOffset(const Maker& maker, const FarmSpec& spec, const FarmState& state,
                   const DisasterState& disaster, double name_width) {
   const double near =

@@ -21,7 +21,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 using Points = std::vector<geometry_msgs::Point>;
 
-constexpr double kLinesAcross = 18.0;  // lines of a pattern along the longer side of a farm
+constexpr double kLinesAcross = 18.0;  // number of lines along the longer side of a farm
 
 // The borders of the farm relative to the centre of a disaster [m].
 struct Frame {
@@ -105,7 +105,7 @@ Marker RingEdge(const Maker& maker, const DisasterState& disaster, int ring) {
 // The lines of a kind's pattern, as in pictures.
 struct Pattern {
   std::vector<std::pair<double, double>> directions;  // east, north; of length 1
-  double wave{};                                      // amplitude of waves [periods]
+  double wave{};                                      // amplitude of waves [line spacings]
   bool is_dotted{};
 };
 
@@ -218,7 +218,7 @@ class PatternPainter {
     }
   }
 
-  // Draws a line in pieces that lie under one ring each. The pieces of a curved line are short.
+  // Draws a line in pieces, each of which is in one ring. The pieces of a curved line are short.
   template <typename At>
   void DrawLine(const At& at, const std::array<double, 2>& along, bool is_curved) {
     const double step = period_ / kSamples;
@@ -237,7 +237,7 @@ class PatternPainter {
   }
 
   Frame farm_;
-  double period_;  // distance of two lines [m]
+  double period_;  // distance between lines [m]
   Marker marker_;
   std::vector<QuadrantRadii> rings_;  // [m], the innermost first
   std::vector<std_msgs::ColorRGBA> colors_;

@@ -29,7 +29,7 @@ void Refuse(const std::string& message, Response& response) {
   response.message = message;
 }
 
-// Returns true for drawings. They are not replayed, because viz draws the replayed states.
+// Returns true for drawings. They are not replayed, because viz_node draws the replayed states.
 bool IsDrawn(const rosbag::MessageInstance& message) {
   static const std::set<std::string> kDrawn{"visualization_msgs/MarkerArray", "nav_msgs/Path",
                                             "sensor_msgs/Image", "sensor_msgs/CompressedImage"};

@@ -52,7 +52,7 @@ CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve) {
   if (low->mean_return < 0.0 && high->mean_return > 0.0) {
     return {low->mean_return - margin, 1.06 * high->mean_return};
   }
-  // The margin must not cross 0, because the scale is then logarithmic below 0.
+  // The margin must not cross 0, because a range across 0 makes the scale logarithmic below 0.
   return {low->mean_return >= 0.0 ? std::max(0.0, low->mean_return - margin)
                                   : low->mean_return - margin,
           high->mean_return <= 0.0 ? std::min(0.0, high->mean_return + margin)

@@ -23,8 +23,8 @@ struct WindowFit {
 /// @param frame  size that the window manager adds to the window
 WindowFit FitToScreen(const WindowFit& now, const QSize& frame, const QSize& screen);
 
-/// Applies FitToScreen to the main window that contains a docked panel, and moves it to the upper
-/// left corner of the primary screen if it was reduced.
+/// Applies FitToScreen to the main window that contains a docked panel. If the window was reduced,
+/// moves it to the upper left corner of the primary screen.
 void FitWindow(QWidget& panel);
 
 }  // namespace aquafarm_viz

@@ -10,7 +10,7 @@
 namespace aquafarm_viz {
 namespace {
 
-// A space of Liberation Sans is 0.278 em wide, and rviz draws a letter of 1 em 0.853 heights wide.
+// A space of Liberation Sans is 0.278 em wide. In rviz, 1 em is 0.853 heights of a text.
 constexpr float kSpace = 0.237F;  // [heights of a text]
 
 void NarrowSpacesBelow(Ogre::Node& node) {
@@ -19,7 +19,7 @@ void NarrowSpacesBelow(Ogre::Node& node) {
       auto* text = dynamic_cast<rviz::MovableText*>(scene_node->getAttachedObject(i));
       if (text == nullptr) continue;
       const float wanted = kSpace * text->getCharacterHeight();
-      // Setting a width makes rviz rebuild the text.
+      // Setting a width makes rviz rebuild the text, so an unchanged width is not set.
       if (std::abs(text->getSpaceWidth() - wanted) > 1e-3F * wanted) text->setSpaceWidth(wanted);
     }
   }

@@ -48,7 +48,7 @@ RanchPanel::RanchPanel(QWidget* parent)
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(widget_);
   caller_ = MakeCaller(kCallLimit_s);
-  // rviz spins in its window thread, so these callbacks may use the model.
+  // rviz calls these callbacks in the thread of its window, so they may use the model.
   spec_ = aquafarm_sim::Subscribe<aquafarm_msgs::FarmSpec>(
       node_, names::kSpec, Pairing::kSpecs, [this](const aquafarm_msgs::FarmSpecConstPtr& spec) {
         model_.Take(spec);
@@ -73,7 +73,7 @@ RanchPanel::RanchPanel(QWidget* parent)
       node_, names::kPlanHeartbeat, 2, [this](const std_msgs::TimeConstPtr&) {
         model_.MarkPlanNodePresent(ros::SteadyTime::now());
       });
-  QTimer::singleShot(kRefresh_ms, this, [this] { FitWindow(*this); });  // when it is shown
+  QTimer::singleShot(kRefresh_ms, this, [this] { FitWindow(*this); });  // now shown
   connect(&timer_, &QTimer::timeout, this, [this] {
     // Adjusts the view also without new messages, because the size of the window may have changed.
     if (rviz_ != nullptr && model_.shown().spec) {

@@ -13,8 +13,8 @@
 
 namespace aquafarm_viz {
 
-/// The rviz panel "Ranch". It shows the topics of the ranch whose namespace is that of the rviz
-/// node, live or replayed, and calls the services of the ranch.
+/// The rviz panel "Ranch". It shows the topics of the ranch, running or replayed, whose namespace
+/// is that of the rviz node. It also calls the services of this ranch.
 class RanchPanel : public rviz::Panel {
  public:
   explicit RanchPanel(QWidget* parent = nullptr);

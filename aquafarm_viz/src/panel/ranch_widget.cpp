@@ -235,7 +235,7 @@ void RanchWidget::Refresh() {
   Fill(ships_, model_.Ships(), 2);
   Fill(devices_, model_.Devices(), 4);
   AddSymbols();
-  const bool has_curve = !model_.curve().empty();  // then there is no space for the disasters
+  const bool has_curve = !model_.curve().empty();  // true: no space for the disasters
   if (!has_curve) Fill(disasters_, model_.Disasters(), 2);
   disasters_->setVisible(!has_curve && disasters_->rowCount() > 0);
   curve_->Show(model_.curve());

@@ -48,7 +48,7 @@ class RanchWidget : public QWidget {
   QLabel* AddLine(QBoxLayout* layout);
   QPushButton* AddButton(QBoxLayout* layout, const QString& text, std::function<void()> act);
   void RefreshPlan();
-  /// Adds the symbol of each device in the column of its kind.
+  /// Adds the symbol of each device in the column "kind".
   void AddSymbols();
   void AddTime(QBoxLayout* layout);
   void AddPlaces(QBoxLayout* layout);

@@ -19,7 +19,8 @@
 namespace aquafarm_viz {
 
 /// Calls services one after another from a separate thread, so that a window never blocks. A call
-/// is aborted if there is no response within a time limit. A call is refused if eight others wait.
+/// is aborted if there is no response within a time limit. A call is refused if eight calls are
+/// already waiting.
 class ServiceCaller {
  public:
   using OnAnswer = std::function<void(const std::string& line)>;
@@ -32,8 +33,8 @@ class ServiceCaller {
   ServiceCaller(const ServiceCaller&) = delete;
   ServiceCaller& operator=(const ServiceCaller&) = delete;
 
-  /// Calls a service of the ranch. Its response must have the fields ok and message; in the
-  /// response of Command, they are in `result`. Returns immediately.
+  /// Queues a call of a service of the ranch and returns immediately. The response of the service
+  /// must have the fields `ok` and `message`; in the response of Command, they are in `result`.
   /// @param describe returns the line for a response whose `ok` is true; for Command, for each
   ///        response
   template <typename Service>

@@ -12,8 +12,8 @@
 
 namespace aquafarm_viz {
 
-// Space for the texts around the farm, in longer sides of a farm with TextScale 1: latitudes on the
-// left, five lines above, longitudes and three lines of the legend below.
+// Space for the texts around the farm, in units of TextScale times the longer side of the farm:
+// latitudes on the left, five lines above, longitudes and three lines of the legend below.
 constexpr double kLeft = 0.115;
 constexpr double kRight = 0.035;
 constexpr double kAbove = 0.18;

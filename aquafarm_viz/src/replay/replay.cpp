@@ -29,11 +29,11 @@ bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// Returns the part of a topic up to its last slash.
+// Returns the part of a topic up to and including its last slash.
 std::string Namespace(const std::string& topic) { return topic.substr(0, topic.rfind('/') + 1); }
 
-// The following functions translate messages of earlier versions to this version. The message types
-// are those of kOlderMessages.
+// The following functions handle messages that an earlier version recorded. `Message` and
+// `Messages` are the message types in kOlderMessages.
 
 template <typename Message>
 bool IsOlder(const rosbag::MessageInstance& message) {
@@ -55,8 +55,8 @@ ros::AdvertiseOptions OptionsOf(const rosbag::MessageInstance& message, std::uin
   return options;
 }
 
-// Returns true if an earlier version recorded the message. It is then published if it can be
-// translated.
+// Returns true if an earlier version recorded the message. In this case, translates the message to
+// this version and publishes it; if the translation fails, publishes nothing.
 template <typename... Messages>
 bool PublishOlder(const rosbag::MessageInstance& message, const ros::Publisher& publisher) {
   const auto publish = [&](const auto& translated) {
@@ -157,8 +157,8 @@ std::optional<ReplayTape::Step> ReplayTape::Find(const Step& shown, std::uint64_
 }
 
 // Returns the position of the last spec of the step's episode that was recorded before the step. If
-// there is none, returns the first one after it: each topic has a separate connection, so a spec
-// may be late.
+// there is none, returns the first spec of the episode after the step: each topic has a separate
+// connection, so a spec may be recorded later than its states.
 std::optional<std::size_t> ReplayTape::SpecOf(const Step& step) const {
   const std::string space = Namespace(messages_[step.position].getTopic());
   std::optional<std::size_t> found;

@@ -5,7 +5,7 @@
 
 namespace aquafarm_viz {
 
-/// Adds a flat arrow with a shaft and a head to a triangle list: 9 points.
+/// Adds the 9 points of a flat arrow, a shaft and a head, to a triangle list.
 /// @param x, y  middle of the arrow [cells]
 /// @param cell_m  side of a cell [m]
 /// @param bearing_deg  direction, clockwise from north
@@ -13,8 +13,8 @@ namespace aquafarm_viz {
 void AddArrow(visualization_msgs::Marker& marker, double x, double y, int bearing_deg,
               double cell_m, double size = 1.0);
 
-/// Adds a square frame just inside the border of cell (x, y) to a triangle list: 24 points. A
-/// symbol in the cell does not cover the corners of the frame.
+/// Adds the 24 points of a square frame to a triangle list. The frame is just inside the border of
+/// cell (x, y). A symbol in the cell does not cover the corners of the frame.
 void AddFrame(visualization_msgs::Marker& marker, double x, double y, double cell_m);
 
 }  // namespace aquafarm_viz

@@ -13,7 +13,8 @@
 namespace aquafarm_viz {
 namespace {
 
-// For each ring the number of its corners, then their longitudes and latitudes [0.01 degrees].
+// For each ring: the number of its corners, then the longitude and the latitude of each corner
+// [0.01 degrees].
 constexpr std::int16_t kCoast[] = {
 #include "../../data/coast.csv"
 };

@@ -10,14 +10,14 @@
 
 namespace aquafarm_viz {
 
-/// A closed ring of land.
+/// The closed outline of an area of land.
 struct CoastRing {
   std::vector<cv::Point2d> corners;  ///< [cells], at least 3
   cv::Rect2d box;                    ///< contains all corners [cells]
 };
 
-/// Returns the land within about 60 degrees of arc of a farm. A ring that extends beyond it is
-/// closed by straight lines there. Empty if the farm has no geographic position.
+/// Returns the land within about 60 degrees of arc of a farm. If a ring extends farther, straight
+/// lines replace the part beyond this distance. Empty if HasGraticule (graticule.h) is false.
 std::vector<CoastRing> CoastAround(const aquafarm_msgs::FarmSpec& spec);
 
 }  // namespace aquafarm_viz

@@ -9,8 +9,8 @@ namespace {
 
 using aquafarm_msgs::FarmSpec;
 
-// @param start_deg  latitude or longitude of the southern or western edge of the farm
-// @param length  of the axis [cells]
+// @param start_deg  latitude of the southern edge, or longitude of the western edge, of the farm
+// @param length  length of the axis [cells]
 std::vector<ArcTick> Ticks(double start_deg, double cells_per_deg, int length, double min_cells) {
   int step = 1;
   for (const int minutes : {1, 2, 5, 10, 15, 30, 60, 120, 300, 600}) {
@@ -26,8 +26,9 @@ std::vector<ArcTick> Ticks(double start_deg, double cells_per_deg, int length, d
   }
 }
 
-// The following functions return the length of a degree of latitude and of longitude on the
-// ellipsoid of WGS 84 [m]: the first two terms of its series. `latitude` is in radians.
+// The following two functions return the length of a degree of latitude, and of a degree of
+// longitude, on the ellipsoid of WGS 84 [m]. They use the first two terms of a series. `latitude`
+// is in radians.
 double LatitudeMetres(double latitude) { return 111132.95 - 559.85 * std::cos(2.0 * latitude); }
 
 double LongitudeMetres(double latitude) {

@@ -15,16 +15,18 @@ struct ArcTick {
   double at{};    ///< distance from the western or southern edge of the farm [cells]
 };
 
-/// Returns true if the axes of a farm show longitude and latitude: the farm has a geographic
-/// position, and the latitude of cell (0, 0) is less than 85 degrees north or south.
+/// Returns true if the axes of a map show longitude and latitude: the farm has a geographic
+/// position, and cell (0, 0) is between 85 degrees south and 85 degrees north.
 bool HasGraticule(const aquafarm_msgs::FarmSpec& spec);
 
-/// Returns the ticks of longitude, at least `min_cells` apart. HasGraticule must be true. The scale
-/// is that at the latitude of cell (0, 0), so it fits the southern edge of the map. 100 km farther
-/// north at latitude 30 degrees, a degree of longitude is 0.9 % shorter.
+/// Returns the ticks of longitude, at least `min_cells` but at most 10 degrees apart. HasGraticule
+/// must be true. All ticks have the scale at the latitude of cell (0, 0), which is exact at the
+/// southern edge of the map. For a farm at 30 degrees north, a degree of longitude is 0.9 % shorter
+/// 100 km north of this edge.
 std::vector<ArcTick> LongitudeTicks(const aquafarm_msgs::FarmSpec& spec, double min_cells);
 
-/// Returns the ticks of latitude, at least `min_cells` apart. HasGraticule must be true.
+/// Returns the ticks of latitude, at least `min_cells` but at most 10 degrees apart. HasGraticule
+/// must be true.
 std::vector<ArcTick> LatitudeTicks(const aquafarm_msgs::FarmSpec& spec, double min_cells);
 
 /// Returns the tick spacing of an axis in cells: the smallest of 1, 2, 5, 10, 20, 50, … that is at

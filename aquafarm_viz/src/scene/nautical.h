@@ -59,8 +59,8 @@ std::string NameNow(const aquafarm_msgs::DisasterState& disaster, const Course& 
 /// not given.
 std::string StrengthText(const TrackPoint& point);
 
-/// Returns a world time in hours and minutes, such as "13:58": local time (LocalTimeText), or the
-/// time since the start of the scenario if it has no start time.
+/// Returns a world time in hours and minutes, such as "13:58". This is the local time
+/// (LocalTimeText) or, if the scenario has no start time, the time since its start.
 /// @param at_s world time [s]
 std::string TimeOfDay(const aquafarm_msgs::FarmSpec& spec, std::int64_t at_s);
 

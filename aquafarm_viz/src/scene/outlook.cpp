@@ -19,7 +19,7 @@ using aquafarm_msgs::FarmState;
 
 constexpr std::size_t kMaxOutlookDevices = 1000;  // with more, the outlook is not computed
 constexpr int kMaxSteps = 1000;                   // steps ahead
-constexpr double kWorse = 0.5;  // a risk must be lower by this much to count as another ring
+constexpr double kWorse = 0.5;  // a ring counts as worse if its risk is lower by more than this
 
 double LargestRadius(const TrackPoint& storm) {
   double largest = 0.0;
@@ -63,7 +63,9 @@ double DistanceToQuadrant(double east, double north, std::size_t quadrant, doubl
   return std::hypot(a - std::clamp(a, 0.0, radius), b - std::clamp(b, 0.0, radius));
 }
 
-// Keeps the ring of a disaster that is nearest to a device, if it is nearer than the one so far.
+// Finds the ring of a disaster that is nearest to a device. If it is nearer than `nearest`, it
+// replaces `nearest`.
+// @param candidate  contains the step, the device and the disaster
 void AddMiss(const TrackPoint& storm, const Course& course, const DeviceState& device,
              RingMiss candidate, RingMiss& nearest) {
   for (std::size_t ring = 0; ring < std::min(storm.radii.size(), storm.risks.size()); ++ring) {
@@ -163,8 +165,7 @@ bool IsOverFarm(const FarmSpec& spec, const TrackPoint& storm) {
                      [&](const auto& ring) { return IsOverFarm(spec, storm, ring); });
 }
 
-// Returns whether a leg of a course is so far from the farm that no ring can cover a part of the
-// farm.
+// Returns whether a leg of a course is so far from the farm that no ring can reach the farm.
 bool IsFar(const FarmSpec& spec, const TrackPoint& from, const TrackPoint& to) {
   const TrackPoint nearest = ClosestApproach(spec, {from, to}, from.step);
   const double away =

@@ -37,10 +37,11 @@ struct RingMiss {
 /// The danger to one deployed device.
 struct DeviceOutlook {
   std::int32_t id{};
-  double risk_now{};                  ///< risk at its cell; 0 outside all rings
-  std::size_t disaster_now{};         ///< index of the disaster with this risk; 0 outside all rings
-  std::int32_t wind_now_kt{};         ///< min wind within that ring [kn]; 0: not given
-  std::vector<RingArrival> arrivals;  ///< by time; each is worse than those before and now
+  double risk_now{};           ///< risk at its cell; 0 outside all rings
+  std::size_t disaster_now{};  ///< index of the disaster with this risk; 0 outside all rings
+  std::int32_t wind_now_kt{};  ///< min wind within that ring [kn]; 0: not given
+  /// In order of time. Each risk is worse than the one before; the first is worse than risk_now.
+  std::vector<RingArrival> arrivals;
 };
 
 /// The danger to all deployed devices.
@@ -51,14 +52,15 @@ struct Outlook {
   /// Compass points from the farm to the disasters of the state; empty if the centre is in the
   /// farm.
   std::vector<std::string> directions;
-  /// Steps from now until which all courses are known and computed; infinite if that is until the
-  /// disasters end.
+  /// Number of steps from now for which all courses are known and computed; infinite if they are
+  /// known and computed until the disasters end.
   double known_until{std::numeric_limits<double>::infinity()};
   /// Deployed devices inside the grid, the most urgent first: by the time at which the first ring
   /// covers them, then by the risk in that ring, by the next arrival, and by the worst risk.
   std::vector<DeviceOutlook> devices;
-  /// The nearest ring to any device and the earliest such moment. Its distance is infinite if no
-  /// ring comes within a diagonal of the farm. It has no meaning if a device is in danger.
+  /// The nearest approach of a ring to any device; the earliest one if there are several. `cells`
+  /// is infinite if no ring comes nearer than the length of the farm's diagonal. The member has no
+  /// meaning if a device is in danger.
   RingMiss miss;
 };
 
@@ -69,7 +71,7 @@ Outlook ComputeOutlook(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs:
                        const std::vector<Course>& courses);
 
 /// Returns when a ring of a disaster first covers a part of the farm [steps from now]: 0 if one
-/// does now; infinite if none does along the course.
+/// does now; infinite if none does along the course, or if the disaster is unknown or has ended.
 double StepsToFarm(const aquafarm_msgs::FarmSpec& spec,
                    const aquafarm_msgs::DisasterState& disaster, const Course& course);
 
@@ -83,13 +85,13 @@ const char* WindOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& cour
 /// ring does.
 std::string RiskOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& course);
 
-/// Returns the risk of the worst ring that covers or reaches a device; 0 if none does.
+/// Returns the risk of the worst ring that covers a device now or reaches it later; 0 if none does.
 double WorstRisk(const DeviceOutlook& device);
 
-/// Returns whether a ring covers or reaches any device.
+/// Returns whether a ring covers any device now or reaches one later.
 bool IsInDanger(const Outlook& outlook);
 
-/// Returns the number of devices that a ring covers or reaches.
+/// Returns the number of devices that a ring covers now or reaches later.
 std::size_t CountInDanger(const Outlook& outlook);
 
 }  // namespace aquafarm_viz

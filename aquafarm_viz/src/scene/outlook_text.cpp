@@ -35,8 +35,9 @@ std::string RingText(double risk, std::int32_t wind_kt) {
   return wind_kt > 0 ? aquafarm::WindName(wind_kt) : "risk " + Number(risk, 0);
 }
 
-// Returns the labels of the devices for which `applies` is true, by id: "F0", "F0 and F1" or "3
-// devices". It must be true for at least one.
+// Returns the labels of the devices for which `applies` is true, in order of id: "F0" or "F0 and
+// F1". For more than two devices, returns their number: "3 devices". `applies` must be true for at
+// least one device.
 std::string Names(const Outlook& outlook,
                   const std::function<bool(const DeviceOutlook& device)>& applies) {
   constexpr std::size_t kMaxNames = 2;
@@ -53,7 +54,8 @@ std::string Names(const Outlook& outlook,
                                      : names[0];
 }
 
-// Returns the first arrival at any device in the order `is_before`; null if no ring arrives.
+// Returns the arrival that comes first in the order `is_before`, of the arrivals at all devices;
+// null if no ring arrives.
 const RingArrival* Extreme(
     const Outlook& outlook,
     const std::function<bool(const RingArrival&, const RingArrival&)>& is_before) {
@@ -66,8 +68,8 @@ const RingArrival* Extreme(
   return best;
 }
 
-// Returns the labels of the devices that the same ring reaches at the same time: "F0 and F1". Times
-// are the same if AheadText displays them equally.
+// Returns the labels of the devices that have the same arrival as `ring`, that is, the same ring at
+// the same time: "F0 and F1". Times are the same if AheadText returns the same text for them.
 std::string WhomText(const FarmSpec& spec, const Outlook& outlook, const RingArrival& ring) {
   return Names(outlook, [&](const DeviceOutlook& one) {
     return std::any_of(one.arrivals.begin(), one.arrivals.end(), [&](const RingArrival& other) {
@@ -77,13 +79,14 @@ std::string WhomText(const FarmSpec& spec, const Outlook& outlook, const RingArr
   });
 }
 
-// Returns "gale in 2 h"; the wind must be given.
+// Returns "gale in 2.0 h"; the wind must be given.
 std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
   return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
 }
 
-// Returns the local time `steps` steps from now, " (Sun 06:24 UTC+8)" or without its zone; empty if
-// that is less than an hour away or if the scenario has no start time.
+// Returns the local time `steps` steps from now: " (Sun 06:24 UTC+8)", or " (Sun 06:24)" if
+// `has_zone` is false. Empty if this time is less than an hour away, or if the scenario has no
+// start time.
 std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double steps, bool has_zone) {
   if (!spec.has_start_time || steps * spec.step_duration_s < 3600.0) return "";
   const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
@@ -91,7 +94,7 @@ std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double step
   return " (" + time + (has_zone ? " " + ZoneText(spec) : "") + ")";
 }
 
-// Shortens "hurricane force in 9 h" to "hurricane in 9 h".
+// Shortens "hurricane force in 9.0 h" to "hurricane in 9.0 h".
 std::string WithoutForce(std::string text) {
   const std::string word = " force";
   const std::size_t at = text.find(word);
@@ -105,8 +108,8 @@ std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
   return "no known danger to devices for the next " + AheadText(spec, outlook.known_until);
 }
 
-// Returns the ring that comes nearest to a device: "risk -5 is 900 m from F2 now" or "gale passes
-// 12 km from F2 in 9.0 h".
+// Returns a text about the ring that comes nearest to a device: "risk -5 is 900 m from F2 now" or
+// "gale passes 12 km from F2 in 9.0 h".
 std::string MissText(const FarmSpec& spec, const Outlook& outlook) {
   const RingMiss& miss = outlook.miss;
   const std::string ring = RingText(miss.risk, miss.wind_kt);
@@ -119,8 +122,8 @@ std::string MissText(const FarmSpec& spec, const Outlook& outlook) {
                            : ring + " passes " + about + where + when;
 }
 
-// Returns the nearest ring and the time until which the courses are known: "risk -5 is 900 m from
-// F2 now; no known danger to devices for the next 3.0 h". A part that does not apply is left out.
+// Returns MissText and KnownText: "risk -5 is 900 m from F2 now; no known danger to devices for the
+// next 3.0 h". A part that does not apply is left out.
 std::string SafeText(const FarmSpec& spec, const Outlook& outlook) {
   const std::string known = KnownText(spec, outlook);
   if (!std::isfinite(outlook.miss.cells)) return known;
@@ -173,7 +176,7 @@ class Sentence {
     return (outlook_.is_extrapolated ? "about " : "") + AheadText(spec_, steps);
   }
 
-  // Returns the sentence if no device is in danger.
+  // Returns the sentence for the case that no device is in danger.
   std::string WriteSafe() const {
     const bool is_near = std::isfinite(outlook_.miss.cells);
     return (is_near ? Name(outlook_.miss.disaster) + ": " : "") + SafeText(spec_, outlook_);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Formats an outlook and the place of a disaster as text; private to this package.
+/// Formats an outlook, and the position and motion of a disaster, as text; private to this package.
 
 #include <aquafarm_msgs/DisasterState.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -25,48 +25,50 @@ std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 /// devices in that ring, the next ring that reaches any device, and the worst ring to come.
 /// Examples: "typhoon: risk -10 reaches F3 in 6.5 h" and "typhoon: risk -5 over F2 now, risk -20
 /// in 6.5 h". If the winds of the rings are given: "typhoon In-Fa: gale over F0 and F1 now, gale
-/// reaches F5 in 8 min, storm reaches F0 in 6.5 h". On a farm with a start time, the local time
-/// follows the next and the worst arrival if they are at least an hour away, the first one with its
-/// zone.
+/// reaches F5 in 8 min, storm reaches F0 in 6.5 h". If the scenario has a start time, the local
+/// time follows the next and the worst arrival, unless the arrival is less than an hour away. Only
+/// the first local time in the sentence has its time zone.
 ///
 /// If no worse ring comes, the devices that the same ring reaches later follow: "typhoon: near
 /// gale reaches F0 and F1 in 2.0 h, F2 in 2.2 h".
 ///
-/// If no ring covers or reaches a device, the text is the nearest ring (Outlook::miss) and the time
-/// until which the courses are known: "typhoon: risk -5 is 900 m from F2 now; no known danger to
-/// devices for the next 3.0 h". A part that does not apply is left out, so that the text can be
-/// empty. If the farm has devices but none is deployed, the text is "no device is deployed". The
+/// If no ring covers or reaches a device, the text contains the nearest ring (Outlook::miss) and
+/// the time until which the courses are known: "typhoon: risk -5 is 900 m from F2 now; no known
+/// danger to devices for the next 3.0 h". A part that does not apply is left out, so the text can
+/// be empty. If the farm has devices but none is deployed, the text is "no device is deployed". The
 /// text is also empty if the outlook is not known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
 
 /// Returns the outlook as headlines, the longest first: OutlookText with the direction of each
-/// disaster outside the farm, OutlookText, and the danger to the most urgent device. Empty if the
-/// outlook is not known or if there is nothing to report.
+/// disaster outside the farm, OutlookText, and ShortOutlookText. Each begins with a capital letter.
+/// Empty if ShortOutlookText is empty.
 std::vector<std::string> Headlines(const aquafarm_msgs::FarmSpec& spec,
                                    const aquafarm_msgs::FarmState& state, const Outlook& outlook);
 
 /// Returns a short form of OutlookText: the danger to the most urgent device, such as "F2: risk -20
-/// now". Without a danger, returns OutlookText without the name of the disaster.
+/// now". Without a danger, returns OutlookText without the name of the disaster. Returns an empty
+/// text if no device is deployed or the outlook is not known.
 std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook);
 
-/// Returns whether a ring covers or reaches a device as early as the most urgent device, and with
-/// the same risk. Times are the same if AheadText displays them equally.
+/// Returns whether a ring covers or reaches a device at the same time as the most urgent device,
+/// with the same risk. Times are the same if AheadText returns the same text for them.
 bool IsHitFirst(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook,
                 const DeviceOutlook& device);
 
 /// Returns the danger to a device: the ring that covers it now, the next worse ring and the worst
 /// ring to come. Examples: "risk -10 in 6.5 h", "risk -5 now", "risk -5 now, -20 in 6.5 h". If the
-/// winds of the rings are given: "gale now, storm in 6.5 h, hurricane force in 9 h". Returns an
+/// winds of the rings are given: "gale now, storm in 6.5 h, hurricane force in 9.0 h". Returns an
 /// empty text if no ring covers or reaches the device.
 std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
 
-/// Returns the worst ring to come: "hurricane force in 9 h". Returns DangerText if its wind is not
-/// given or no worse ring comes.
+/// Returns the worst ring to come: "hurricane force in 9.0 h". Returns DangerText if no worse ring
+/// comes, or if the wind of the worst ring is not given.
 std::string WorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
 
 /// Returns the ring that covers the device now and the worst ring to come: "gale now, hurricane in
-/// 9 h". Returns WorstText if one of the two is missing or has no wind.
+/// 9.0 h". Returns WorstText if one of the two rings is missing, if the wind of one is not given,
+/// or if both winds have the same name.
 std::string NowAndWorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
 
 /// Returns DangerText with risks instead of names of winds, and without the word "risk": "-5 now,
@@ -76,15 +78,15 @@ std::string RiskText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& d
                      const char* between = " in ");
 
 /// Returns the two texts of a row about a device: its label, with its kind if there is space, and
-/// its danger. Tries texts from the longest to the shortest until `fits` accepts both. If it
-/// accepts none, returns the shortest.
+/// its danger. Tries texts of the danger from the longest to the shortest until `fits` accepts both
+/// texts. If `fits` accepts none, returns the label and the shortest text of the danger.
 /// @param kind  DeviceName of the device
 std::pair<std::string, std::string> NameAndDanger(
     const aquafarm_msgs::FarmSpec& spec, const std::string& kind, const DeviceOutlook& device,
     const std::function<bool(const std::string& name, const std::string& danger)>& fits);
 
-/// Returns where the centre of a disaster is, seen from the middle of the farm: "typhoon, centre 89
-/// km SE", or with its wind, if that is given, "typhoon 37 m/s (72 kt), centre 89 km SE".
+/// Returns the position of the centre of a disaster, relative to the middle of the farm: "typhoon,
+/// centre 89 km SE". If its wind is given: "typhoon 37 m/s (72 kt), centre 89 km SE".
 std::string CentreText(const aquafarm_msgs::FarmSpec& spec,
                        const aquafarm_msgs::DisasterState& disaster, const Course& course);
 

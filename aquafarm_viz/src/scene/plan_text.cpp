@@ -43,7 +43,7 @@ std::string OrderText(const RescuePlan& plan, const RescueOrder& order) {
   }
 }
 
-// If the winds are unknown, no sampled future stops a ship, so the probabilities mean nothing.
+// If the winds are unknown, the plan has no probabilities (RescuePlan.STORM_UNKNOWN).
 std::string ChanceText(const RescuePlan& plan, float chance) {
   return plan.result == RescuePlan::STORM_UNKNOWN ? "unknown"
                                                   : PercentText(static_cast<double>(chance));

@@ -20,7 +20,7 @@ std::string CellText(int x, int y) {
   return "(" + std::to_string(x) + ", " + std::to_string(y) + ")";
 }
 
-// Replaces spaces with no-break spaces, so that the text stays in one line.
+// Replaces spaces with no-break spaces, so that the text stays on one line.
 std::string Unbroken(const std::string& text) {
   std::string result;
   for (const char letter : text) {
@@ -184,7 +184,7 @@ aquafarm_msgs::DisasterInfo RanchModel::MakeDisaster(std::uint8_t kind, std::uin
   info.kind = kind;
   info.grade = grade;
   // The risk of the innermost ring depends on the grade, from -5 (blue) to -20 (red). The outermost
-  // ring has -5, and the ring between them the mean.
+  // ring has the risk -5. The risk of the middle ring is the mean of these two.
   const float worst = -5.0F * static_cast<float>(grade);
   for (const float share : {1.0F / 3.0F, 2.0F / 3.0F, 1.0F}) {
     info.radii.push_back(static_cast<float>(radius) * share);

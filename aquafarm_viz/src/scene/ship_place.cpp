@@ -17,7 +17,8 @@ cv::Point2d ShipPlace(const FarmSpec& spec, const FarmState& state, int x, int y
     return one.cell.x == x && one.cell.y == y;
   });
   if (port == spec.ports.end()) return {double(x), double(y)};
-  // Returns the distance from a cell to the nearest other ship, other port or deployed device.
+  // Returns the distance from a cell to the nearest other port, deployed device, or ship outside
+  // this port.
   const auto free_around = [&](int column, int row) {
     double nearest = spec.width + spec.height;
     const auto keep_off = [&](int other_x, int other_y) {

@@ -19,9 +19,9 @@ inline int DeliveredSide(const aquafarm_msgs::FarmSpec& spec, int y) {
 
 /// Returns the position at which ships in a cell are drawn [cells]. In a cell without a port this
 /// is the cell itself. At a port it is one of four diagonal positions next to the port. The chosen
-/// position is the farthest from other ports, other ships and deployed devices; distances above 2
-/// cells count as 2. Positions on water are preferred to positions on land, and positions on land
-/// to positions off the map.
+/// position is the farthest from other ports, deployed devices and ships in other cells; distances
+/// above 2 cells count as 2. Positions on water are preferred to positions on land, and positions
+/// on land to positions off the map.
 /// @param aside  distance from the port along each axis [cells]
 cv::Point2d ShipPlace(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                       int x, int y, double aside);

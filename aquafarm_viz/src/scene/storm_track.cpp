@@ -23,7 +23,7 @@ using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
 constexpr double kErrorLead_h = 24.0;           // hours between two entries of forecast_error_km
-constexpr double kSameCells = 1.0;              // a disaster that is nearer to its track follows it
+constexpr double kSameCells = 1.0;              // a disaster nearer to its track follows it [cells]
 constexpr int kHorizon = 10000;                 // max length of a course [steps]
 constexpr std::size_t kMaxErrorPoints = 4096U;  // max points of a course with errors
 
@@ -67,7 +67,8 @@ TrackPoint Present(const DisasterState& disaster, double step) {
   return point;
 }
 
-// Adds the rings and risks that a course lacks. They are those of the true track at the same step.
+// Adds rings and risks to the points of a course that lack them. The added values are those of the
+// true track at the same step.
 void AddRings(Track& course, const Track& truth) {
   for (TrackPoint& point : course) {
     const TrackPoint true_storm = TrackAt(truth, point.step);
@@ -117,8 +118,8 @@ Course Extrapolated(const DisasterState& disaster, const TrackPoint& present, do
 }
 
 // Continues a forecast after its last point until the true track ends, as the farm does
-// (aquafarm/farm/forecast.h): with the motion between its last two points, or with the present
-// motion if it has only one point.
+// (aquafarm/farm/forecast.h): with the motion between the last two points of the forecast, or with
+// the present motion of the disaster if the forecast has only one point.
 void Continue(Track& ahead, const Track& forecast, const DisasterState& disaster, double until) {
   const TrackPoint& last = forecast.back();
   const double steps = until - last.step;

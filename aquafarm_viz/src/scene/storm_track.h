@@ -29,7 +29,7 @@ struct TrackPoint {
   std::optional<double> wind_mps{};  ///< max sustained wind; nullopt: not given
 };
 
-/// The track of one disaster, steps ascending; empty if it has none.
+/// Points of a track or forecast, steps ascending; empty if a disaster has no track.
 using Track = std::vector<TrackPoint>;
 
 /// A forecast that an authority has published.
@@ -38,7 +38,7 @@ struct PublishedForecast {
   Track points;
 };
 
-/// What a scenario states about the motion of its disasters.
+/// The data of a scenario about the motion of its disasters.
 struct StormTracks {
   std::vector<Track> tracks;                              ///< one per disaster
   std::vector<std::vector<PublishedForecast>> forecasts;  ///< one list per disaster
@@ -51,14 +51,15 @@ struct StormTracks {
 };
 
 /// Reads the disasters of a scenario. Returns empty lists if the text cannot be read. The track of
-/// a disaster is empty if the scenario has none, for example because each episode draws another
-/// storm.
+/// a disaster is empty if the scenario does not contain it, for example because each episode draws
+/// another storm.
 /// @param scenario_yaml  FarmSpec.scenario_yaml
 StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m);
 
-/// Returns the risks that a legend shows and their texts, the mildest first: those of all rings
-/// with their winds, such as "gale -5". If a ring has no wind, if two names share a risk, or if
-/// there are more than four risks, returns "-5", "-10", "-15" and "-20".
+/// Returns the risks that a legend shows and their texts, the mildest first. These are the risks of
+/// all rings, and the texts contain the name of the wind, such as "gale -5". If there is no ring,
+/// if a ring has no wind, if two names share a risk, or if there are more than four risks, the
+/// texts are "-5", "-10", "-15" and "-20".
 std::vector<std::pair<double, std::string>> NamedRisks(const aquafarm_msgs::FarmSpec& spec);
 
 /// Returns the point of a track at a step. Between two points, position, rings and wind are
@@ -77,7 +78,7 @@ TrackPoint ClosestApproach(const aquafarm_msgs::FarmSpec& spec, const Track& tra
 struct Course {
   enum class Kind {
     kRecorded,     ///< the track of the scenario
-    kPublished,    ///< the newest forecast of an authority, continued as the farm does
+    kPublished,    ///< the newest forecast of an authority, after its end continued as by the farm
     kExtrapolated  ///< present speed and heading; the rings grow by radius_growth, never shrink
   };
   Kind kind{Kind::kExtrapolated};
@@ -112,9 +113,9 @@ class CourseReader {
 };
 
 /// Returns the mean forecast error at a lead time [cells]. It is interpolated linearly between 0 at
-/// lead time 0 and the errors after 24, 48, … hours. Beyond them it is extrapolated from the last
-/// two.
-/// @param errors  at least one
+/// lead time 0 and the errors after 24, 48, … hours. Beyond the last error it is extrapolated from
+/// the last two of these points.
+/// @param errors  mean errors after 24, 48, … hours [cells], at least one
 double MeanForecastError(const std::vector<double>& errors, double lead_h);
 
 }  // namespace aquafarm_viz

@@ -5,7 +5,7 @@
 
 namespace aquafarm::agents {
 
-/// Seconds of an hour.
+/// Seconds per hour.
 inline constexpr std::int64_t kHour_s = 3600;
 /// Half the width of the central 95 % interval of a normal distribution, in standard deviations.
 inline constexpr double kNormal95 = 1.96;

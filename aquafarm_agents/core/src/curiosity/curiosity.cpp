@@ -10,8 +10,8 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr float kMeanShare = 0.01F;    // weight of a step in the moving average of the error
-constexpr float kMaxIntrinsic = 5.0F;  // of a step, in multiples of the mean
+constexpr float kMeanShare = 0.01F;    // weight of a step in the moving average ē of the error e
+constexpr float kMaxIntrinsic = 5.0F;  // max of e / ē (curiosity.h)
 
 class CuriousLearner final : public Learner {
  public:
@@ -47,7 +47,7 @@ class CuriousLearner final : public Learner {
   std::vector<float> seen_;               // [N, S, F] at the last step; empty before the first
   std::vector<std::uint8_t> taken_;       // [N, S] at the last step
   std::vector<std::uint8_t> was_active_;  // [N, S] at the last step
-  float mean_error_{};                    // moving average of e; 0 before the first transition
+  float mean_error_{};                    // ē, moving average of e; 0 before the first transition
   std::uint64_t steps_{};                 // farm steps so far
   // Scratch memory: the transitions of this step.
   std::vector<float> from_;

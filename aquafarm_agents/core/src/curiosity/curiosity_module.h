@@ -40,8 +40,8 @@ class CuriosityModule {
  public:
   CuriosityModule(std::int64_t features, std::uint64_t seed);
 
-  /// Returns the errors of B transitions, then makes an update if at least 64 transitions have been
-  /// added since the last one.
+  /// Computes the errors of B transitions, then makes an update if at least 64 transitions have
+  /// been added since the last update.
   /// @param from, to [B, F] observations before and after the transition, row-major
   /// @param actions [B]
   /// @param farm_steps farm steps so far, for the message of LearnerFailed

@@ -118,7 +118,7 @@ class RecurrentDqnLearner final : public QLearner<float, RecurrentNetwork> {
   const std::unique_ptr<RecurrentValueNetwork> target_values_;
   const std::unique_ptr<RecurrentValueNetwork> average_values_;  // null without a moving average
   SequenceBatch batch_;
-  std::vector<float> state_;      // for Forward: [B, 2, hidden]; with paper_tuple [2, B, 2, hidden]
+  std::vector<float> state_;      // for Forward, [B, 2, hidden]; with paper_tuple [2, B, 2, hidden]
   std::vector<float> predicted_;  // [T, B]
   std::vector<float> targets_;    // [T, B]
   std::vector<float> slopes_;     // [T, B] d loss / d predicted
@@ -168,9 +168,9 @@ void RecurrentDqnLearner::Draw() {
 }
 
 // Returns the values at all time steps of the batch, [T + 1, B, kActionCount]. A sequence is
-// evaluated from the recurrent state at its beginning. With paper_tuple, each end of a tuple is
-// evaluated with the recurrent state stored there (Algorithm 2), so both ends are rows of one time
-// step.
+// evaluated from the recurrent state at its beginning. With paper_tuple, a sequence is a single
+// transition (T = 1). Each of its two observations is evaluated with the recurrent state stored for
+// it (Algorithm 2), so that the network evaluates 2 B rows in one time step.
 const float* RecurrentDqnLearner::ValuesAlong(RecurrentValueNetwork& network) {
   state_ = batch_.recurrent_state;
   if (options_.paper_tuple) {

@@ -115,7 +115,7 @@ void WriteDevices(const DeviceOutcomes& outcomes, nlohmann::json& json) {
 }
 
 // Returns half the width of the 95 % interval of the mean return: kNormal95 standard errors. The
-// sample size is the number of distinct starts. NaN with fewer than two distinct starts.
+// sample size is the number of distinct starts. Returns NaN if there are fewer than two.
 double ReturnMargin(const Evaluation& evaluation) {
   const auto count = static_cast<double>(evaluation.episodes.size());
   if (evaluation.distinct < 2) return std::numeric_limits<double>::quiet_NaN();
@@ -160,14 +160,15 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
 }
 
 // Sets `distinct` and `losses`. To compare the starts of the episodes, it starts the episodes again
-// in this process. A start depends only on scenario, seed and number, even if the episode was
-// played through ROS services. @param accounts [episodes]; empty if they are unknown
+// in this process. This is possible because a start depends only on the scenario, the seed and the
+// episode number, even if the episode was played through ROS services.
+// @param accounts [episodes]; empty if they are unknown
 void CompareStarts(const EnvironmentSpec& spec, std::vector<Accounts> accounts,
                    Evaluation& evaluation) {
   const auto scenario =
       std::make_shared<const Scenario>(ParseScenario(spec.scenario_yaml, "scenario"));
   Farm farm(scenario);
-  std::unordered_map<std::uint64_t, std::size_t> index;  // by the hash of a start
+  std::unordered_map<std::uint64_t, std::size_t> index;  // of a start, by its hash
   std::vector<std::size_t> starts;
   for (const EpisodeSummary& result : evaluation.episodes) {
     if (scenario->family) {

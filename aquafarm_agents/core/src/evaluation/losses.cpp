@@ -50,8 +50,8 @@ Tail TailOf(const std::vector<Loss>& descending, const std::vector<std::size_t>&
   return tail;
 }
 
-// Returns `value` with the interval from the 2.5th to the 97.5th percentile of `resampled`; NaN if
-// `resampled` is empty.
+// Returns `value` with the interval from the 2.5th to the 97.5th percentile of `resampled`. The
+// bounds of the interval are NaN if `resampled` is empty.
 Estimate WithInterval(double value, std::vector<double> resampled) {
   if (resampled.empty()) return {value, kNan, kNan};
   std::sort(resampled.begin(), resampled.end());
@@ -59,8 +59,8 @@ Estimate WithInterval(double value, std::vector<double> resampled) {
   return {value, resampled[cut], resampled[resampled.size() - 1 - cut]};
 }
 
-// Returns the cluster-robust standard error of the mean: from the sums of deviations of each start,
-// with the factor G / (G - 1) for G distinct starts.
+// Returns the cluster-robust standard error of the mean. It is computed from the sum of the
+// deviations of each start, with the factor G / (G - 1) for G distinct starts.
 double StandardError(const std::vector<Loss>& losses, double mean, std::size_t starts,
                      std::size_t distinct) {
   if (distinct < 2) return kNan;

@@ -29,7 +29,7 @@ void Put(T value, std::string& text) {
 
 void Put(EndReason reason, std::string& text) { text += ToString(reason); }
 
-// Returns the columns that the file of every version has.
+// Returns the leading columns, which are the same in files of all versions.
 std::string FirstColumns() {
   return "number,total_steps," + EpisodeColumns() + ",exploration,learning_rate,loss";
 }
@@ -81,7 +81,7 @@ namespace {
 // has other columns
 std::size_t CountAdded(const std::string& path) {
   std::ifstream file(path);
-  if (!file) return 0;  // the constructor reports it when it opens the file
+  if (!file) return 0;  // the constructor reports the error when it opens the file
   std::string columns;
   std::getline(file, columns);
   const std::string first = FirstColumns();

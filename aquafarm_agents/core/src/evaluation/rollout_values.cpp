@@ -18,18 +18,20 @@ namespace {
 
 using nlohmann::json;
 
-// Returns the reward of all agents of a farm in the last step.
+// Returns the sum of the rewards of all agents of a farm in the last step. With a team reward, each
+// agent receives this sum.
 double RewardOf(const StepResults& results, const EnvironmentSpec& spec, std::size_t farm) {
   const auto agents = static_cast<std::size_t>(spec.agents);
   double sum = 0.0;
   for (std::size_t i = 0; i < agents; ++i) {
     sum += static_cast<double>(results.rewards[farm * agents + i]);
   }
-  return spec.team_reward ? sum / static_cast<double>(agents) : sum;  // each agent receives the sum
+  return spec.team_reward ? sum / static_cast<double>(agents) : sum;
 }
 
 // Plays all farms to the end of their current episodes. @param results current results of the farms
-// @returns the return of each farm, from now on if it is discounted, else of the whole episode
+// @returns the return of each farm: if `discount` is below 1, the discounted sum of the rewards
+//   from now on, else the return of the whole episode
 std::vector<double> PlayOut(LocalEnvironment& environment, const StepResults* results,
                             Policy& policy, std::uint64_t seed, double discount,
                             const std::atomic<bool>* stop) {

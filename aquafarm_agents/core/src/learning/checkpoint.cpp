@@ -67,7 +67,8 @@ nlohmann::json ToIndex(const Checkpoint& c) {
 }
 
 // Returns recorded options as this version would record them. Old names are replaced by the current
-// ones. Options that did not exist are added, with the value that keeps the earlier behaviour.
+// ones. Options that are newer than the checkpoint are added, with the value that keeps the earlier
+// behaviour.
 std::string CompleteOptions(const std::string& algorithm, const std::string& recorded) {
   struct Added {
     std::string_view algorithm;  // part of the algorithm's name

@@ -31,7 +31,7 @@ void ReadNetworkOptions(OptionReader& reader, Options& options) {
 }
 
 /// Reads the options that all learners with a replay buffer have.
-/// @param max_priority max of priority_exponent
+/// @param max_priority largest allowed value of priority_exponent
 /// @throws InputError if a value is invalid or out of range
 template <typename Options>
 void ReadReplayOptions(OptionReader& reader, double max_priority, Options& options) {

@@ -13,11 +13,13 @@ namespace {
 constexpr double kMinTemperature = 1e-6;
 constexpr double kMaxTemperature = 1e6;
 
-// Rewards are of the order of 100, so the choice changes from nearly uniform to nearly greedy.
+// The temperature falls from 20 to 0.5 in the first half of the run. Rewards are of the order of
+// 100, so the choice changes from nearly uniform to nearly greedy.
 const Schedule kBoltzmannDefault{ScheduleKind::kExponential, 20.0, 0.5, 0.5};
 
-// At the start, the mean intrinsic reward of a step is 1, about the cost of a step. It is 0 in the
-// second half of the run, so that the learner finally learns values of the farm's reward alone.
+// At the start of the run, the mean intrinsic reward of a step is 1, which is about the cost of a
+// step. In the second half of the run, the intrinsic reward is 0, so that the learner finally
+// learns values of the farm's reward alone.
 const Schedule kCuriosityDefault{ScheduleKind::kLinear, 1.0, 0.0, 0.5};
 constexpr double kMaxCuriosity = 1e6;
 constexpr std::string_view kCuriosity = "icm";

@@ -47,7 +47,7 @@ class Share {
   }
 
  private:
-  // [N, S, size] → [N, size]
+  // Copies [farms, agents, size] to [farms, size].
   template <typename T>
   static void Take(const std::vector<T>& from, std::size_t agent, std::size_t agents,
                    std::size_t farms, std::vector<T>& to) {

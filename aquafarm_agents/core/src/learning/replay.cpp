@@ -99,7 +99,8 @@ Transition Replay<Scalar>::At(std::size_t age, std::size_t slot, std::size_t ste
   transition.discount = 1.0F;
   for (std::size_t k = 1; k <= steps; ++k) {
     const std::size_t row = Row(age + k, slot);
-    if (k > 1 && is_first(row)) break;  // the farms were lost; ends at the time step before
+    // If the farms were lost, the transition ends at the previous time step.
+    if (k > 1 && is_first(row)) break;
     transition.reward += transition.discount * rewards_[row];
     transition.discount *= discount;
     transition.to = row;

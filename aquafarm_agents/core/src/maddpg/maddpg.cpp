@@ -37,13 +37,14 @@ void MarkOne(std::uint8_t action, float mark, float* out) {
   out[action] = mark;
 }
 
-/// Inputs of the actors for B samples, each with T consecutive time steps of one farm. The last one
-/// is the sampled time step, or the time step from which its target bootstraps.
+/// Inputs of the actors for B samples. A sample has T consecutive time steps of one farm with S
+/// agents. Its last time step is the drawn one (from_), or the one from which the target of the
+/// drawn one bootstraps (to_).
 struct Window {
   std::vector<float> observations;     // [T, B, S, F]
   std::vector<float> keeps;            // [T, B, S] as in ActorTeam::Forward
   std::vector<float> recurrent_state;  // [B, S, recurrent_size] before the first step
-  std::vector<float> forbidden;        // [B, S, kActionCount] MaskLogits at the last step
+  std::vector<float> forbidden;        // [B, S, kActionCount] from MaskLogits, at the last step
   std::vector<float> present;          // [B, S] 1 if the agent is not done at the last step
 };
 
@@ -118,7 +119,7 @@ class MaddpgLearner final : public ReplayLearner<float> {
   FlatAdam critic_optimizer_;
   FlatParameters actor_target_;
   FlatParameters target_critic_parameters_;
-  RandomStream acting_;  // for exploration
+  RandomStream acting_;  // draws the Gumbel noise of the chosen actions
   std::vector<float> recurrent_state_;
   double due_{};
   std::uint64_t steps_{};
@@ -134,7 +135,7 @@ class MaddpgLearner final : public ReplayLearner<float> {
       critic_actions_;          // [B, S, kActionCount] one-hot; action 0 for an agent that is done
   std::vector<float> rewards_;  // [B, S]
   std::vector<float> discounts_;      // [B, S]
-  std::vector<float> weights_;        // [B, S] without a team reward 0 for agents already done
+  std::vector<float> weights_;        // [B, S] of the loss; without a team reward, 0 if done
   std::vector<float> noise_;          // [B, S, kActionCount]
   std::vector<float> agent_rewards_;  // scratch, [S]
 };
@@ -215,9 +216,9 @@ void MaddpgLearner::Choose(const StepResults& results, std::vector<std::uint8_t>
   }
 }
 
-// Draws a time step. Its window must be stored completely, or back to the first step of its
-// episode. This can be false for the oldest time steps of the replay. Such a time step is replaced
-// by the oldest one of the same farm with a complete window, if there is one.
+// Draws a time step. The replay must contain its complete window, or the part of the window that
+// lies in its episode. The oldest time steps of the replay may violate this condition. Such a time
+// step is replaced by the oldest one of the same farm with a complete window, if there is one.
 TransitionIndex MaddpgLearner::DrawMoment(std::size_t i) {
   const TransitionIndex drawn = sampler_.Draw(rng_, i);
   for (std::size_t back = 0; back <= drawn.age; ++back) {
@@ -254,13 +255,13 @@ void MaddpgLearner::Draw() {
     }
     for (std::size_t agent = 0; agent < agents(); ++agent) {
       const std::size_t k = i * agents() + agent;
-      // With a team reward an agent receives rewards until all agents are done.
+      // With a team reward, an agent receives rewards until all agents are done.
       const bool is_done =
           spec_.team_reward ? all_done : IsTerminated(replay_.reason(all.to + agent));
       rewards_[k] = agent_rewards_[agent] * scale;
       discounts_[k] = is_done ? 0.0F : all.discount;
-      // With a team reward the values of agents that are done are trained as well, because the
-      // target of an agent's last transition bootstraps from them.
+      // With a team reward, the values of agents that are done are also trained, because the target
+      // of an agent's last transition bootstraps from them.
       weights_[k] = spec_.team_reward ? 1.0F : from_.present[k];
     }
   }
@@ -269,7 +270,7 @@ void MaddpgLearner::Draw() {
 }
 
 // Sets the priority of each transition to the mean error of the agents that learn from it.
-// @param errors [B, S]
+// @param errors [B, S] absolute TD errors
 void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
   const torch::Tensor learnt = ToDevice(weights_, {options_.batch_size, spec_.agents}) > 0.0F;
   const torch::Tensor means =
@@ -280,8 +281,8 @@ void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
   }
 }
 
-// Near the start of an episode the window is padded with the first time step, and the recurrent
-// state is reset after the padding.
+// Near the start of an episode, the window is padded with copies of the first time step. The
+// recurrent state is reset after this padding.
 void MaddpgLearner::Fill(std::size_t i, std::size_t age, std::size_t first, Window& to) {
   std::size_t back = 0;
   while (back + 1 < window() && back < age && !replay_.is_first(replay_.Row(age - back, first))) {
@@ -357,7 +358,8 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
     const torch::Tensor values = target_critic_.Forward(Observations(to_)[options_.window - 1],
                                                         chosen * present.unsqueeze(2));
     torch::Tensor next = (values * chosen).sum(2);
-    // For an agent that is done only the value of action 0 is trained; it represents "no action".
+    // For an agent that is done, only the value of action 0 is trained. Here, action 0 represents
+    // "no action".
     if (options_.best_response) {
       next = torch::where(present > 0.0F, (values + forbidden).amax(2), next);
     }
@@ -375,7 +377,8 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
   return (torch::smooth_l1_loss(predicted, targets, at::Reduction::None) * weights).sum();
 }
 
-// The critic is linear in an agent's own action, so its gradient is the vector of action values.
+// The value of an agent's own one-hot action is the scalar product of this action and the agent's Q
+// values. The gradient with respect to the action is therefore the vector of the Q values.
 void MaddpgLearner::UpdateActors(const torch::Tensor& observations, std::uint64_t position) {
   const std::vector<std::int64_t> joint{options_.batch_size, spec_.agents, kActionCount};
   torch::Tensor slope;

@@ -76,8 +76,8 @@ JointCritic::JointCritic(const EnvironmentSpec& spec, std::int64_t hidden)
       second_(register_module("second", nn::Linear(hidden, hidden))),
       head_(register_module("head", nn::Linear(hidden, kActionCount))) {}
 
-// In each row of the input, the evaluated agent comes first and the others follow in cyclic order.
-// One network can thus evaluate every agent.
+// In each row of the input, the evaluated agent comes first. The other agents follow in cyclic
+// order. One network can thus evaluate every agent.
 torch::Tensor JointCritic::Forward(const torch::Tensor& observations,
                                    const torch::Tensor& actions) {
   const std::int64_t count = observations.size(0);

@@ -23,11 +23,11 @@ class ActorTeam final : public torch::nn::Module {
   /// recurrent.
   std::int64_t recurrent_size() const { return recurrent_size_; }
 
-  /// Returns the logits at the last step of a window of T steps.
+  /// Returns the logits at the last step of a window of T steps, for B farms with S agents each.
   /// @param observations [T, B, S, F]
   /// @param keeps [T, B, S] 0 resets the recurrent state before that step, 1 keeps it
-  /// @param recurrent_state [B, S, recurrent_size] before the window; receives the state after it.
-  ///   An undefined tensor if the actors are not recurrent
+  /// @param recurrent_state [B, S, recurrent_size] before the window; receives the state after the
+  ///   window. It is an undefined tensor if the actors are not recurrent
   /// @returns [B, S, kActionCount]
   torch::Tensor Forward(const torch::Tensor& observations, const torch::Tensor& keeps,
                         torch::Tensor& recurrent_state);

@@ -20,14 +20,14 @@ DeepOptions Tuned(bool recurrent) {
   return options;
 }
 
-// The discount factor that §2.3 of the paper calls usual.
+// The discount factor that §2.3 of the paper (docs/model.md) calls usual.
 constexpr double kPaperDiscount = 0.99;
 // τ of Algorithm 2, line 22. The paper gives only the range [0, 1]; this is the value of Haarnoja
 // et al. 2018.
 constexpr double kPaperTargetRate = 0.005;
 
-// Sets the values printed in Eq. 15 and Algorithm 2 and disables the extensions. The other options
-// keep the tuned defaults.
+// Returns the values printed in Eq. 15 and Algorithm 2 of the paper, with the extensions disabled.
+// The other options keep the tuned defaults. The line numbers are those of Algorithm 2.
 DeepOptions Paper(bool recurrent) {
   DeepOptions options = Tuned(recurrent);
   options.gamma = kPaperDiscount;

@@ -32,8 +32,8 @@ inline std::uint64_t FarmSteps(const StepResults& results) {
 /// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
 void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, NetworkKind network);
 
-/// Checks that the features of a policy fit farms of `spec`. The number of agents may differ, for
-/// policies that evaluate the same network for each agent.
+/// Checks that the features of a policy fit farms of `spec`. The number of agents may differ,
+/// because a network that all agents share can be used for any number of agents.
 /// @throws InputError in the same cases as CheckFits
 void CheckFeaturesFit(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 

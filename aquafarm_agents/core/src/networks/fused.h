@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Differentiable functions of libtorch tensors that each compute several layers, with the products
-/// of gemm.h. For small batches, the overhead of libtorch's single operations is as large as their
-/// arithmetic (docs/decisions/fused_layers.md). All tensors are floats in the memory of the CPU.
+/// Differentiable functions of libtorch tensors. Each function computes several layers, with the
+/// matrix products of gemm.h. In libtorch, each layer consists of separate operations, whose
+/// overhead is as large as their arithmetic for small batches (docs/decisions/fused_layers.md). All
+/// tensors are floats in the memory of the CPU.
 
 #include <torch/torch.h>
 
@@ -29,7 +30,8 @@ torch::Tensor FusedMlp(const torch::Tensor& input, const torch::Tensor& first_we
                        const torch::Tensor& advantage_bias, const torch::Tensor& value_weight,
                        const torch::Tensor& value_bias);
 
-/// Evaluates an LSTM of one layer with H units, with weights as in torch::nn::LSTM.
+/// Evaluates an LSTM of one layer with H units on B sequences of T steps, with weights as in
+/// torch::nn::LSTM.
 /// @param input [T, B, F] @param hidden, cell [1, B, H] state before the first step
 /// @param input_weight [4H, F] @param hidden_weight [4H, H] @param input_bias, hidden_bias [4H]
 /// @returns h of each step [T, B, H], and h and c after the last step, each [1, B, H]

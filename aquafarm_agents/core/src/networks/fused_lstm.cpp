@@ -19,7 +19,7 @@ LstmShape ShapeOf(const Tensor& input, const Tensor& hidden_weight) {
 }
 
 struct Sequence {
-  Tensor gates;      // [T, B, 4H] after the nonlinear function
+  Tensor gates;      // [T, B, 4H] after the activation functions
   Tensor cells;      // [T + 1, B, H]; element 0 is c before the first step
   Tensor cell_tanh;  // [T, B, H]
   Tensor output;     // [T, B, H]
@@ -53,11 +53,12 @@ Sequence Evaluate(const Tensor& input, const Tensor& hidden, const Tensor& cell,
   return made;
 }
 
-// Returns the last element along the first dimension; the result has size 1 there.
+// Returns the last element along the first dimension. The result keeps this dimension, with size 1.
 Tensor Last(const Tensor& tensor) { return tensor.narrow(0, tensor.size(0) - 1, 1); }
 
-// Returns `slopes` as a vector. If they are undefined, the loss does not depend on the value, and
-// the result is zeros.
+// Returns `slopes`, the gradient of the loss with respect to h or c after the last step, as a
+// vector. An undefined tensor means that the loss does not depend on h or c; the result is then
+// zeros.
 std::vector<float> EndSlopes(const Tensor& slopes, std::size_t size) {
   if (!slopes.defined()) return std::vector<float>(size);
   const Tensor values = slopes.contiguous();

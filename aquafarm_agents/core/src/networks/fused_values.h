@@ -102,10 +102,10 @@ class FusedLstmValues final : public RecurrentValueNetwork {
   HiddenAndHead rest_;
   LstmShape shape_;  // of the last Forward or WarmUp
   const float* seen_{};
-  std::vector<float> bias_;        // sum of the two biases of the LSTM
-  std::vector<float> transposed_;  // scratch
-  std::vector<float> hidden_before_;
-  std::vector<float> input_;  // x
+  std::vector<float> bias_;           // sum of the two biases of the LSTM
+  std::vector<float> transposed_;     // scratch
+  std::vector<float> hidden_before_;  // h before the first step
+  std::vector<float> input_;          // x
   std::vector<float> gates_;
   std::vector<float> cells_;
   std::vector<float> cell_tanh_;

@@ -275,7 +275,8 @@ bool MultiplyOwn(std::size_t m, std::size_t n, std::size_t k, const Left& left, 
                  float beta, float* c) {
   const Code& code = Selected();
   if (code.multiply == nullptr) return false;
-  constexpr std::size_t kFewRows = 16;  // up to here, copying a panel costs more than it saves
+  // With at most kFewRows rows, copying a panel costs more time than it saves.
+  constexpr std::size_t kFewRows = 16;
   constexpr std::size_t kFewTransposedRows = 4;
   if (right.column_step != 1 && m <= kFewTransposedRows) {
     for (std::size_t i = 0; i < m; ++i) {

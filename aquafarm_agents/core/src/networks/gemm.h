@@ -2,12 +2,13 @@
 #pragma once
 
 /// Products of row-major float matrices. If GCC 12 or later compiled this code for x86-64, the
-/// program selects code for AVX-512 or AVX2 when it runs; both give the same bits. Other compilers
-/// and processors use BLAS. The environment variable AQUAFARM_PRODUCTS (avx512, avx2 or blas)
-/// replaces this choice. The first product then throws InputError if the variable has another
-/// value, or one that the processor does not support. Code of other compilers ignores the variable.
-/// docs/decisions/fused_updates.md has measurements. If AQUAFARM_GEMM_BY_EIGEN is defined, Eigen
-/// (eigen) is used instead of BLAS, for a Python package that must not depend on BLAS.
+/// program selects code for AVX-512 or AVX2 when it runs; both give the same bits. With other
+/// compilers and on other processors, BLAS computes the products. The environment variable
+/// AQUAFARM_PRODUCTS (avx512, avx2 or blas) overrides this choice. The products and ProductsBy
+/// throw InputError if the variable has another value, or one that the processor does not support.
+/// Code from other compilers ignores the variable. docs/decisions/fused_updates.md has
+/// measurements. If AQUAFARM_GEMM_BY_EIGEN is defined, Eigen (eigen) is used instead of BLAS, for a
+/// Python package that must not depend on BLAS.
 ///
 /// In each product, c = product + beta · c. If beta is 0, the old values of c are not read.
 
@@ -20,7 +21,7 @@ void Multiply(std::size_t m, std::size_t n, std::size_t k, const float* a, const
               float beta, float* c);
 
 /// Computes c [m, n] = a [m, k] · bᵀ + beta · c with b [n, k]. If several matrices with few rows
-/// are multiplied by the same b, Transpose and Multiply are faster.
+/// are multiplied by the same bᵀ, it is faster to call Transpose once and Multiply for each matrix.
 void MultiplyByTransposed(std::size_t m, std::size_t n, std::size_t k, const float* a,
                           const float* b, float beta, float* c);
 

@@ -29,7 +29,7 @@ struct LstmWeights {
 
 /// Results of LstmForward, which LstmBackward needs.
 struct LstmTrace {
-  float* gates{};      ///< [T, B, 4H] gates, after the nonlinear function
+  float* gates{};      ///< [T, B, 4H] gates, after their nonlinear functions
   float* cells{};      ///< [T + 1, B, H] c; the caller sets element 0, c before the first step
   float* cell_tanh{};  ///< [T, B, H] tanh(c) after each step
   float* output{};     ///< [T, B, H] h after each step
@@ -47,8 +47,8 @@ void LstmForward(const LstmShape& shape, const float* in, const float* hidden,
 /// Computes the gradient of LstmForward.
 /// @param in, hidden, weights, trace as in LstmForward; weights.bias is not read
 /// @param output_slopes [T, B, H] d loss / d h after each step; null if all are 0
-/// @param hidden_slopes, cell_slopes [B, H] further slopes d loss / d (h, c) after the last step;
-///   receive those before the first step
+/// @param hidden_slopes, cell_slopes [B, H] d loss / d (h, c) after the last step, in addition to
+///   output_slopes; receive d loss / d (h, c) before the first step
 /// @param gate_slopes [T, B, 4H] scratch memory
 /// @param gradient receives d loss / d weights
 /// @param in_slopes receives d loss / d in, [T, B, F]

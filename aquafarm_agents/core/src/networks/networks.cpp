@@ -107,7 +107,7 @@ RecurrentNetwork::RecurrentNetwork(std::int64_t features, std::int64_t hidden, b
   head_ = register_module("head", Head(width, dueling));
 }
 
-// Advances the state over all steps of [T, B, hidden] and returns h after each.
+// Advances the state over all steps of `seen` [T, B, hidden]. Returns h after each step.
 torch::Tensor RecurrentNetwork::Step(const torch::Tensor& seen, State& state) {
   if (!CanFuse(seen, lstm_weights_[0])) {
     auto [output, after] = lstm_(seen, std::make_tuple(state.first, state.second));
@@ -180,7 +180,7 @@ void DrawWeights(nn::Module& module, std::uint64_t seed, std::uint32_t stream) {
   for (auto& item : module.named_parameters()) {
     torch::Tensor& weights = item.value();
     // A bias has the fan-in of the weights before it. The biases of an LSTM follow its recurrent
-    // weights, so that their fan-in is the hidden size.
+    // weights, so the fan-in of these biases is the hidden size.
     if (weights.dim() > 1) fan_in = weights.numel() / weights.size(0);
     const float limit = 1.0F / std::sqrt(static_cast<float>(fan_in));
     float* const values = weights.data_ptr<float>();

@@ -49,8 +49,8 @@ class QNetwork : public torch::nn::Module {
 std::shared_ptr<QNetwork> MakeNetwork(const EnvironmentSpec& spec, const DeepOptions& options,
                                       std::uint64_t seed);
 
-/// A network for Q with an LSTM between two hidden layers. With the skip connection, which the
-/// paper does not have, it learns several times as fast:
+/// A network for Q with an LSTM between two hidden layers. The skip connection makes it learn
+/// several times as fast. The paper (docs/model.md) does not have this connection.
 ///
 ///   Linear - ReLU --+-- LSTM --+-- Linear - ReLU - head
 ///                   +----------+   skip connection
@@ -96,7 +96,8 @@ class FlatParameters {
   std::vector<float> ToVector() const;
   /// @throws InputError unless `values` has size() values
   void FromVector(const std::vector<float>& values);
-  /// Moves each parameter towards that of `other` by `rate` times their difference; 1 copies it.
+  /// Moves each parameter towards that of `other` by `rate` times their difference. A rate of 1
+  /// copies the parameters.
   /// @param other parameters of a module of the same architecture
   void MoveTowards(const FlatParameters& other, double rate);
 
@@ -104,9 +105,9 @@ class FlatParameters {
   torch::Tensor values_;
 };
 
-/// Draws initial weights uniformly in ±1/√fan_in, the distribution of PyTorch, from stream `stream`
-/// of (seed, RngStream::kLearner). The weights do not depend on the version of libtorch. The
-/// parameters must be on the CPU.
+/// Draws initial weights uniformly in ±1/√fan_in, which is the distribution of PyTorch. `stream` is
+/// the index of the random stream of (seed, RngStream::kLearner). The weights do not depend on the
+/// version of libtorch. The parameters must be on the CPU.
 void DrawWeights(torch::nn::Module& module, std::uint64_t seed, std::uint32_t stream);
 
 }  // namespace aquafarm::agents

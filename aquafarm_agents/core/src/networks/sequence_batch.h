@@ -14,7 +14,7 @@ namespace aquafarm::agents {
 
 /// A minibatch of B runs of time steps, time-major. A run has burn_in time steps that only warm up
 /// the recurrent state, followed by time steps 0 … T, where T is sequence_length. The network is
-/// trained at time steps 0 … T − 1 that lie before the end of the episode.
+/// trained at those of the time steps 0 … T − 1 that lie before the end of the episode.
 struct SequenceBatch {
   std::vector<float> warm_up;          ///< [burn_in, B, F]
   std::vector<float> observations;     ///< [T + 1, B, F]
@@ -39,8 +39,9 @@ struct SequenceBatch {
   /// Returns the number of runs, B.
   std::size_t size() const { return warms_up.size(); }
 
-  /// Fills run b. Time step 0 is `moment`. The warm-up has the burn_in time steps before it and
-  /// starts with the recurrent state stored at the first of them. There is no warm-up in two cases:
+  /// Fills run b. Usually, time step 0 is `moment`. The warm-up has the burn_in time steps before
+  /// `moment`, and starts with the recurrent state stored at the first of them. There is no warm-up
+  /// in two cases, which also change time step 0:
   ///
   ///   moment is within burn_in steps of     time step 0 is that first time step, whose state is
   ///   the first time step of its episode    zero

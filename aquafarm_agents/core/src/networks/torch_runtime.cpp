@@ -31,8 +31,8 @@ bool HasFastBlas() {
 
 void PrepareTorch(std::int32_t threads) {
   at::set_num_threads(threads);
-  // Debian's OpenBLAS has its own threads. Their synchronization costs more time than they save
-  // with matrices of this size.
+  // Debian's OpenBLAS has its own threads. For the small matrices of the networks, the
+  // synchronization of these threads costs more time than they save.
   using SetThreads = void (*)(int);
   const auto set_threads =
       reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));

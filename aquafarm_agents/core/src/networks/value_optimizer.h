@@ -23,8 +23,8 @@ namespace aquafarm::agents {
 /// @throws InputError if the section is missing
 std::vector<float> ActingWeights(const Checkpoint& checkpoint);
 
-/// Position in the random stream from which a minibatch was drawn. With it, a minibatch that caused
-/// a non-finite loss can be reproduced.
+/// Origin of a minibatch in the random stream from which it was drawn. It makes a minibatch that
+/// caused a non-finite loss reproducible.
 struct BatchOrigin {
   std::uint64_t seed{};      ///< seed of the learner's random stream
   std::uint64_t position{};  ///< position in the stream before the first draw
@@ -34,8 +34,8 @@ struct BatchOrigin {
 /// weights.
 class ValueOptimizer {
  public:
-  /// All modules have the same architecture. The parameters of `target` and `acting` become those
-  /// of `online`.
+  /// All modules must have the same architecture. The parameters of `online` are copied to `target`
+  /// and `acting`.
   /// @param acting module for the moving average of the weights; unused if options.ema_rate is 0
   ValueOptimizer(const DeepOptions& options, torch::nn::Module& online, torch::nn::Module& target,
                  torch::nn::Module& acting, torch::Device device);
@@ -58,7 +58,7 @@ class ValueOptimizer {
   void Learn(const BatchOrigin& origin);
 
   /// Returns the statistics of the learner. For every loss function, the reported loss is a moving
-  /// average of the weighted mean squared TD error of unscaled rewards (Fig. 12).
+  /// average of the weighted mean squared TD error of unscaled rewards (Fig. 12 of the paper).
   LearnerStatus status(double exploration) const;
   /// Returns the parameters with which agents act: the online parameters, or their moving average.
   const FlatParameters& acting() const { return average_ ? *average_ : online_.parameters(); }

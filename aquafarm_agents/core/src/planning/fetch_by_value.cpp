@@ -17,7 +17,7 @@ std::size_t IndexOf(const Farm& farm, Cell cell) {
   return static_cast<std::size_t>(LinearIndex(cell, farm.scenario().width));
 }
 
-// Returns the steps until the episode ends, unless all devices are delivered earlier.
+// Returns the number of steps until the episode ends if not all devices are delivered before.
 std::int32_t StepsLeft(const Farm& farm) {
   std::int32_t left = farm.scenario().step_limit - farm.step();
   if (farm.disasters().empty()) return left;

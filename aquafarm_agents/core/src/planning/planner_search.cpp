@@ -241,7 +241,8 @@ void PlannerSolver::ReachStart(const Farm& farm) {
   }
 }
 
-// Keeps only the `widest` states of the newest layer with the highest upper bounds of the return.
+// Removes states from the newest layer until it has at most `widest` of them. The states with the
+// highest upper bounds of the return remain.
 void PlannerSolver::Narrow(std::int32_t step, std::size_t widest) {
   std::vector<Node>& layer = layers_.back();
   if (layer.size() <= widest) return;

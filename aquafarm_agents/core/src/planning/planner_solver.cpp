@@ -98,7 +98,7 @@ void PlannerSolver::ListOptions(const Farm& farm) {
   }
 }
 
-// Returns whether the options, moves and rewards of the last plan are valid for this one.
+// Returns whether the options, moves and rewards of the previous plan are valid for the new one.
 bool PlannerSolver::IsPrepared(const Farm& farm) const {
   const Layout& layout = farm.layout();
   const auto is_same = [](const auto& a, const auto& b) {
@@ -147,8 +147,8 @@ void PlannerSolver::PriceEnergy(const Farm& farm) {
   }
 }
 
-// Lists in sources_ the cells where a pickup or a drop-off changes the set, with the min moves from
-// there until the task is complete, in ascending order of the moves.
+// Fills sources_ with the cells where a pickup or a drop-off changes the set. Each cell has the min
+// number of moves from there until the task is complete. The cells are sorted by this number.
 void PlannerSolver::SeedMoves(std::size_t set) {
   const auto add = [this](std::size_t next, std::size_t cell) {
     const std::int32_t further = next == all_gone_ ? 0 : moves_[next * cells_ + cell];
@@ -179,8 +179,8 @@ std::vector<std::size_t> PlannerSolver::LastSetsFirst() const {
   return order;
 }
 
-// Computes the min moves of every state until the task is complete, for each set with a
-// breadth-first search from all cells where the set changes.
+// Computes, for every state, the min number of moves until the task is complete. Each set has its
+// own breadth-first search, which starts from all cells where the set changes.
 void PlannerSolver::CountMoves() {
   moves_.assign(state_count(), kUnreachable);
   std::fill_n(moves_.begin() + static_cast<std::ptrdiff_t>(all_gone_ * cells_), cells_, 0);
@@ -231,9 +231,9 @@ void PlannerSolver::SeedRewards(std::size_t set, std::vector<double>& best) cons
   }
 }
 
-// Computes for every state the max reward, without values, from there until the task is complete,
-// as if all water were calm. The number of moves does not determine this reward in two cases: with
-// a capacity above 1, one drop-off may unload several devices; with energy, the cost of a move
+// Computes, for every state, the max reward until the task is complete, as if all water were calm
+// and the devices had no value. The number of moves does not determine this reward in two cases:
+// with a capacity above 1, one drop-off may unload several devices; with energy, the cost of a move
 // depends on its length and load.
 void PlannerSolver::SumRewards() {
   rewards_.assign(state_count(), kNever);
@@ -306,7 +306,7 @@ PlannerSolver::BestRewards PlannerSolver::BestOf(const RiskLayers& layers) const
 }
 
 // Computes step_rewards_ and surcharges_. It reads the risks of twice as many steps as the task
-// takes in quiet water, plus kMargin. Later steps count with the best reward that any step may
+// takes in quiet water, plus kMargin. For later steps, it assumes the best reward that a step can
 // have.
 void PlannerSolver::SumStepRewards(const Farm& farm) {
   constexpr std::int32_t kMargin = 32;
@@ -326,7 +326,7 @@ void PlannerSolver::SumStepRewards(const Farm& farm) {
     BestRewards best{later, 0.0};
     if (k <= known) best = BestOf(risks_->At(first_step_ + static_cast<std::int32_t>(k)));
     step_rewards_[k] = step_rewards_[k - 1] + best.any - idle_cost_;
-    // In a step with a pickup or a drop-off, Gains has their reward. The step adds only the risk.
+    // The reward of a pickup or a drop-off is in Gains. Its step adds only the risk.
     surcharges_[k] =
         surcharges_[k - 1] + std::max(std::min(0.0, best.any - move_reward_), best.risk);
   }

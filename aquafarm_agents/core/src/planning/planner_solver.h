@@ -4,7 +4,7 @@
 /// Implementation of Planner. planner_solver.cpp prepares the farm and the task as a graph of
 /// states. planner_search.cpp searches the graph. A state consists of a cell of the ship and a
 /// *set*: the statuses (PickupPlan) of all devices of the task. The index of a state is
-/// set · cells + cell.
+/// (index of its set) · (number of cells) + (index of its cell).
 
 #include <cstdint>
 #include <limits>
@@ -15,24 +15,26 @@
 
 namespace aquafarm::agents {
 
-/// Status of a device in a plan.
+/// Status of a device in a plan: at its site, aboard as paid or unpaid (planner.h), or delivered.
+/// Positions of a set that the task does not use hold kGone.
 enum PickupPlan : std::uint8_t { kWaiting, kPaid, kUnpaid, kGone };
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 // Plans whose returns differ by at most this much count as equal, because rounding may cause such a
 // difference.
 constexpr double kTolerance = 1e-6;
-// The exact search starts with the return of the narrow search minus this margin, so that it finds
-// the same plan again if there is no better one.
+// A narrow search finds a first plan, then an exact search follows. The exact search prunes states
+// by the return of the first plan minus this margin. It thus finds the same plan again if there is
+// no better one.
 constexpr double kSlack = 1e-3;
 // Max number of states that the narrow search keeps in each step.
 constexpr std::size_t kBeam = 64;
 
-// One action in a cell that neither picks up nor drops off a device, without the effects of
-// disasters.
+// Result of one action in one cell. The action is a move, or an illegal pickup or drop-off. The
+// effects of disasters are not included.
 struct Option {
   std::int32_t to{};      // cell after the action
-  float reward{};         // of a crash or an illegal action; 0 for a move
+  float reward{};         // reward of a crash or an illegal action; 0 for a move
   float damage{};         // health that each device aboard loses in a crash, [0, 1]
   double km{};            // distance covered
   std::uint8_t action{};  // Action
@@ -46,7 +48,7 @@ class PlannerSolver {
   std::size_t state_count() const { return sets_.size() * cells_; }
 
  private:
-  // A state reached at some step, with its predecessor.
+  // A state reached at some step, with its predecessor. All nodes of a step form a layer.
   struct Node {
     std::uint32_t state;
     std::uint32_t parent;  // index of the predecessor in the previous layer
@@ -63,8 +65,9 @@ class PlannerSolver {
   struct Gains {
     double value{};        // present value of the waiting devices
     double actions{};      // rewards of pickups and drop-offs if each device is delivered alone
-    double if_not{};       // value + actions if the plan lasts until the end of the episode, minus
-                           // the step rewards that pickups and drop-offs replace
+    double if_not{};       // for a plan that lasts until the end of the episode: positive rewards
+                           // of pickups (with the value) and drop-offs, minus the step rewards
+                           // that these replace
     std::int32_t steps{};  // min number of pickups and drop-offs until all devices are delivered
   };
 
@@ -96,7 +99,7 @@ class PlannerSolver {
   // Max rewards over all cells in one step.
   struct BestRewards {
     double any{};   // max reward of a step without a pickup or a drop-off
-    double risk{};  // max risk: risks are negative, so it is the mildest one
+    double risk{};  // mildest risk; it is the max, because risks are at most 0
   };
   BestRewards BestOf(const RiskLayers& layers) const;
   double Bound(std::uint32_t state, std::int32_t step) const;
@@ -120,7 +123,8 @@ class PlannerSolver {
   std::size_t cells_;
   std::size_t devices_;                    // max devices of a task
   std::vector<std::uint32_t> sets_;        // two bits per device: its PickupPlan
-  std::vector<std::int32_t> set_of_bits_;  // inverse of sets_; kNone: more aboard than the capacity
+  std::vector<std::int32_t> set_of_bits_;  // inverse of sets_; kNone if the number of devices
+                                           // aboard exceeds the capacity
   std::size_t all_gone_{};                 // index of the set in which all devices are kGone
 
   // Data of the current farm and task.
@@ -136,7 +140,7 @@ class PlannerSolver {
   std::int32_t first_step_{};           // the farm's present step
   // Cumulative sums by step from first_step_ on.
   std::vector<double> step_rewards_;  // sum of (best reward − idle_cost_) of each step
-  // Sum of an upper bound, at most 0, of the amount that risks add to the reward of a move.
+  // Sum of an upper bound for each step, at most 0, of what risks add to the reward of the step.
   std::vector<double> surcharges_;
   bool crash_hurts_{};  // whether a crash in this step damages devices
 
@@ -147,7 +151,7 @@ class PlannerSolver {
   std::vector<double> load_;  // by set: factor of km_cost_ for the devices aboard
 
   // Data that the next plan reuses if the chart, the devices and move_reward_ are the same.
-  Layout chart_;                              // its cells, crash rewards and ports
+  Layout chart_;                              // only cells, crash_reward and ports are set
   std::vector<std::vector<Option>> options_;  // by cell
   float best_crash_{};                        // best reward of a crash on the chart
   std::vector<std::int32_t> site_;            // by device: its linear cell
@@ -155,8 +159,8 @@ class PlannerSolver {
   bool planned_self_propelled_{};             // whether the task's ship is a device
   std::vector<std::int32_t> moves_;  // by state: min moves until the task's devices are delivered
   double move_reward_{};             // upper bound of the reward of a move
-  // By state: max reward, without values, until the task's devices are delivered. Empty with a
-  // capacity of 1 and no cost of energy: the bound then uses moves_.
+  // By state: upper bound of the reward until the task's devices are delivered, without their
+  // values. Empty with a capacity of 1 and no cost of energy: the bound then uses moves_.
   std::vector<double> rewards_;
   std::vector<std::pair<std::int32_t, std::size_t>> sources_;  // (moves, cell), for CountMoves
   std::vector<std::size_t> queue_;

@@ -18,7 +18,7 @@ namespace {
 const double kDiagonal = MoveLength(Action::kNorthEast);
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-/// The best trip for one device, searched forward in time.
+/// Searches the best trip for one device (team_bound.h), forward in time.
 class Trip {
  public:
   Trip(const Farm& farm, std::size_t id, const std::vector<std::int32_t>& to_port)
@@ -67,7 +67,8 @@ class Trip {
 
   double best() const { return best_; }
 
-  /// Returns whether no unfinished trip can exceed the best one, even if all disasters ended now.
+  /// Returns whether the search is complete: trips that end later cannot exceed the best one, even
+  /// if all disasters end now.
   bool IsOver() const {
     // A risk replaces the step reward. A mild risk may therefore cost less than a step.
     const double move = shares_way_ ? 0.0 : std::max(move_, kMildestRisk);

@@ -18,8 +18,8 @@ constexpr std::int32_t kIdleSteps = 30;
 // finishes last has weight 1.
 constexpr double kWorkWeight = 1e-3;
 
-// Returns the max number of devices of one ship: the average per ship, rounded up, plus two. It is
-// in [1, number of devices]; 1 without devices.
+// Returns the max number of devices that are assigned to one ship: the average per ship, rounded
+// up, plus two. It is in [1, number of devices]; 1 without devices.
 std::int32_t MaxDevices(const Scenario& scenario) {
   const std::int32_t devices = scenario.devices.Total();
   const std::int32_t ships = std::max(1, scenario.ships.count);
@@ -174,7 +174,8 @@ class TeamPlanner::Impl {
       const Device& device = farm.devices()[id];
       if (device.carrier == kNone) continue;
       auto& share = shares[static_cast<std::size_t>(device.carrier)];
-      // If a ship carries more devices, a drop-off of the plan delivers them, too.
+      // A ship may carry more devices than its share holds. A drop-off of the plan delivers them,
+      // too.
       if (share.size() < max_devices) share.push_back(static_cast<std::int32_t>(id));
     }
     for (std::size_t id = shares.size(); id < farm.ships().size(); ++id) {
@@ -277,8 +278,8 @@ class TeamPlanner::Impl {
     auto& actions = plan.actions[static_cast<std::size_t>(id)];
     auto& path = plan.path[static_cast<std::size_t>(id)];
     actions = planner_.Solve(farm, risks, task).actions;
-    // There is no plan if other ships enclose this one. It then takes any move. In the next step
-    // all ships plan again.
+    // There is no plan if other ships enclose this one. It then takes an arbitrary move. In the
+    // next step all ships plan again.
     if (actions.empty()) actions = {static_cast<std::uint8_t>(farm.step() % kMoveCount)};
     Cell cell = farm.ships()[static_cast<std::size_t>(id)].cell;
     path.push_back(LinearIndex(cell, scenario_.width));

@@ -7,7 +7,7 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr ActionMask kDoneMask = 1;  // of an inactive agent, whose actions are ignored
+constexpr ActionMask kDoneMask = 1;  // mask of an inactive agent, whose actions are ignored
 
 }  // namespace
 
@@ -89,7 +89,8 @@ void Actor::Sample(AgentRng& rng, std::vector<std::uint8_t>& actions) const {
     for (std::uint8_t a = 0; a < kActionCount; ++a) {
       const float prob = distribution_.probs(row, a);
       if (prob <= 0.0F) continue;
-      actions[i] = a;  // stays the last allowed action if the sum is rounded below the draw
+      // If rounding makes the sum of all probabilities less than the draw, the last action remains.
+      actions[i] = a;
       left -= prob;
       if (left < 0.0F) break;
     }

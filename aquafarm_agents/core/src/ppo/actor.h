@@ -14,7 +14,8 @@
 
 namespace aquafarm::agents {
 
-/// Evaluates an ActorCritic for all agents of all farms and chooses their actions.
+/// Evaluates an ActorCritic for all agents of all farms and chooses their actions. Each agent of
+/// each farm has one slot: N farms with S agents have N · S slots.
 class Actor {
  public:
   Actor(const EnvironmentSpec& spec, const PpoOptions& options, std::size_t state_size);

@@ -41,7 +41,7 @@ CentralActorCritic::CentralActorCritic(std::size_t agents, std::unique_ptr<Actor
   gradient_.resize(weights_.size());
 }
 
-// Both networks use weights_ and gradient_, each its own part of them.
+// Both networks use weights_ and gradient_. Each network uses only its own part of them.
 const float* CentralActorCritic::ForwardPart(Part& part, const SequenceRows& rows,
                                              bool needs_state) {
   const Loan weights(weights_, part.network->weights());

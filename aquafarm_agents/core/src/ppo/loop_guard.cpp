@@ -16,7 +16,8 @@ LoopGuard::LoopGuard(const EnvironmentSpec& spec, std::size_t slots, std::int32_
     const bool is_port = name.rfind("port", 0) == 0;
     const bool is_state = EndsWith(name, ".deployed") || EndsWith(name, ".aboard");
     if (name == "ship.free_capacity" || (is_device && is_state)) task_features_.push_back(i);
-    // Ports do not move: their relative positions identify the cell of the ship.
+    // Ports do not move: their relative positions identify the cell of the ship. The features are
+    // clamped at 64 cells. At greater distances from all ports, several cells look the same.
     if (is_port && (EndsWith(name, ".east") || EndsWith(name, ".north"))) {
       cell_features_.push_back(i);
     }

@@ -9,9 +9,9 @@
 ///   loop        a situation occurs for the max_visits-th time since the load or the remaining
 ///               devices changed
 ///   exit        until the load or the remaining devices change, the ship follows the route to the
-///               target with the least cost (RouteRule), but only while the route has no more risk
-///               per step than the safest cell near the ship. (Under equal risks everywhere the
-///               route is taken.)
+///               target with the least cost (RouteRule), but only in steps in which the route has
+///               no more risk per step than the safest cell near the ship. (If the risk is the same
+///               everywhere, the ship follows the route.)
 
 #include <cstddef>
 #include <cstdint>

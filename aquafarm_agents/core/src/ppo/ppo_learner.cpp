@@ -22,11 +22,11 @@ namespace {
 // Stream 0 of kLearner draws the weights. Stream 1 + s draws the order of the samples of shard s.
 constexpr std::uint32_t kFirstOrderStream = 1;
 
-/// Which shards of the training belong to this process.
+/// Range of the training's shards (struct Shard) that belong to this process.
 struct ShardRange {
   std::size_t first{};
   std::size_t count{};
-  std::int32_t farms{};  ///< farms of one shard
+  std::int32_t farms{};  ///< number of farms of one shard
 };
 
 /// @param farms number of farms of this process

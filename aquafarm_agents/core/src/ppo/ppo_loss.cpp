@@ -80,7 +80,7 @@ void ActionDistribution::Compute(const float* outputs, const ActionMask* masks,
   }
   log_probs.colwise() -= log_probs.rowwise().maxCoeff().eval();
   probs = log_probs.exp();
-  // The vectorized exp() never returns exactly 0.
+  // Sets masked actions to exactly 0, which the vectorized exp() never returns.
   for (int a = 0; a < kActionCount; ++a) {
     for (Index row = 0; row < rows; ++row) {
       probs(row, a) = ((masks[row] >> a) & 1U) != 0 ? probs(row, a) : 0.0F;

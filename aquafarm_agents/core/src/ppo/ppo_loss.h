@@ -73,7 +73,7 @@ struct PpoLoss {
 /// of the returned loss.
 /// @param outputs [rows, kActorCriticOutputs], row-major
 /// @param distribution receives the distribution of the outputs
-/// @param slopes [rows, kActorCriticOutputs] receives d total / d outputs
+/// @param slopes [rows, kActorCriticOutputs] receives the gradient
 PpoLoss ComputeLoss(const float* outputs, std::size_t rows, const PpoRows& recorded,
                     const PpoCoefficients& coefficients, ActionDistribution& distribution,
                     float* slopes);

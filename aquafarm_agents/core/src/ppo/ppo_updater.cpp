@@ -19,7 +19,9 @@ constexpr float kErrorShare = 0.05F;  // weight of an update in the moving avera
 constexpr float kMinDeviation = 1e-6F;
 constexpr std::size_t kLossTerms = 5;  // members of PpoLoss
 enum AdvantageSum : std::size_t { kSum, kSquares, kRows, kSums };
-constexpr std::size_t kPrefetched = 4;  // sequences ahead; shuffled ones are scattered in memory
+// Gather prefetches the features of the sequence that is this many sequences ahead. Shuffled
+// sequences are scattered in memory.
+constexpr std::size_t kPrefetched = 4;
 
 void Prefetch(const float* values, std::size_t count) {
   constexpr std::size_t kCacheLine = 64 / sizeof(float);

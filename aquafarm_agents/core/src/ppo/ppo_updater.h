@@ -90,11 +90,11 @@ class PpoUpdater {
   ProcessGroup* const group_;
 
   // Scratch. By shard of this process:
-  std::vector<std::vector<std::uint32_t>> sequences_;  // first samples of sequences to learn from
+  std::vector<std::vector<std::uint32_t>> sequences_;  // first sample of each sequence
   std::vector<std::vector<float>> gradients_;          // of a minibatch
   std::vector<std::vector<double>> losses_;            // of a minibatch: the members of PpoLoss
   std::vector<std::vector<double>> advantage_sums_;    // by minibatch: Σ A, Σ A², number of rows
-  std::vector<float> nothing_;                         // empty, for sums of numbers alone
+  std::vector<float> nothing_;                         // empty argument `values` of Sum
   std::size_t batches_{};                              // minibatches of an epoch
   std::size_t length_;                                 // steps of a sequence
   float mean_{};                                       // mean of the advantages of a minibatch

@@ -2,8 +2,9 @@
 #pragma once
 
 /// A policy that PPO imitates (*kickstarting*, Schmitt et al. 2018, arXiv:1803.03835). The learner
-/// chooses all actions that are executed. At labelled steps the teacher also chooses the actions
-/// that it would take (as in DAgger, Ross et al. 2011). ppo_loss.h has the loss.
+/// chooses all actions that are executed. At labelled steps (PpoOptions::teacher_interval) the
+/// teacher also chooses the actions that it would take (as in DAgger, Ross et al. 2011). ppo_loss.h
+/// has the loss.
 
 #include <cstdint>
 #include <memory>
@@ -25,7 +26,7 @@ class Teacher {
   virtual void Act(const StepResults& results, const std::vector<ActionMask>& allowed,
                    std::vector<std::uint8_t>& actions) = 0;
   /// Returns whether the teacher reads StepResults::states instead of the features. Data
-  /// augmentation transforms only the features.
+  /// augmentation does not transform states, so the caller must transform the teacher's actions.
   virtual bool sees_farms() const = 0;
 };
 

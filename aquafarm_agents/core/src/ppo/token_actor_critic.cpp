@@ -25,7 +25,8 @@ ConstEmbedding At(const std::vector<float>& values, std::size_t begin) {
   return ConstEmbedding(values.data() + begin);
 }
 
-// Updates the maximum of each unit. It has no branches and no aliases, so compilers vectorize it.
+// Updates the maximum of each unit. The loops have no branches and no aliases, so that compilers
+// vectorize them.
 void KeepMax(const float* __restrict values, std::int32_t token, float* __restrict max,
              std::int32_t* __restrict best) {
   for (std::size_t i = 0; i < kE; ++i) best[i] = values[i] > max[i] ? token : best[i];

@@ -22,7 +22,7 @@ namespace aquafarm::agents {
 ///             q = Linear(x); a = 0 without a valid token
 ///   outputs   Linear(ReLU(Linear(ReLU(Linear([x, m…, a…])))))
 ///
-/// Slots without an entity are skipped and take no time.
+/// A token is valid if its slot holds an entity. The other slots are skipped and take no time.
 class TokenActorCritic final : public ActorCritic {
  public:
   TokenActorCritic(const TokenLayout& layout, std::size_t hidden, std::uint64_t seed);
@@ -50,7 +50,7 @@ class TokenActorCritic final : public ActorCritic {
     std::vector<float> embedding;    // [tokens, E]
     std::vector<float> middle_slopes;
     std::vector<float> slopes;
-    std::vector<float> scores;       // [tokens, kHeads] softmax weights, of devices and ports
+    std::vector<float> scores;       // [tokens, kHeads] softmax weights; devices and ports only
     std::vector<std::int32_t> best;  // [rows, E] token with the maximum; kNone: the maximum is 0
   };
 

@@ -36,8 +36,8 @@ using Store = c10d::TCPStore;
 // that the other ranks can read which rank was lost.
 constexpr std::chrono::seconds kStoreKept{2};
 constexpr std::chrono::seconds kReportLimit{3};  // max wait for the store after a failure
-constexpr int kNameTries = 5;                    // while the name server fails temporarily
-constexpr std::chrono::seconds kNamePause{1};    // between two tries
+constexpr int kNameTries = 5;                    // max look-ups if the name server fails at first
+constexpr std::chrono::seconds kNamePause{1};    // between two look-ups
 constexpr const char* kLost = "lost";  // key in the store: the first rank that was found lost
 constexpr int kSlot = 0;               // one slot is enough: messages of a pair arrive in order
 
@@ -55,8 +55,8 @@ std::string PlaceOf(const RankVariables& variables) {
   return variables.master_addr + " port " + std::to_string(variables.master_port);
 }
 
-// Silences glog, by which c10d logs each attempt to connect. The messages of this file contain the
-// address anyway. If the user sets GLOG_minloglevel, that level applies.
+// Silences glog, with which c10d logs each attempt to connect. The messages of this file contain
+// the address anyway. If the user sets GLOG_minloglevel, that level applies.
 void SilenceLog() {
   if (std::getenv("GLOG_minloglevel") != nullptr) return;
   constexpr int kFatal = 3;
@@ -70,9 +70,9 @@ std::string FirstLine(const std::exception& error) {
   return text.substr(0, text.find('\n'));
 }
 
-// Returns the address of the interface by which this host reaches `host`; `host` itself if it
-// cannot be determined. The host's own name cannot be used, because it is often an alias of the
-// loopback interface, which other hosts cannot reach.
+// Returns the address of the interface through which this host reaches `host`; `host` itself if
+// this address cannot be determined. The name of this host cannot be used, because it is often an
+// alias of the loopback interface, which other hosts cannot reach.
 std::string LocalAddress(const std::string& host) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_DGRAM;
@@ -213,14 +213,15 @@ void GlooGroup::OpenStore(const RankVariables& variables, const GroupTimes& time
   }
 }
 
-// Adds this rank, in the store, to the number of ranks that may run on each of its processors.
+// The store counts, for each processor, the ranks that may run on it. Adds 1 to the counts of the
+// processors of this rank.
 void GlooGroup::ClaimProcessors() {
   for (const std::string& processor : AllowedProcessors()) store_->add(processor, 1);
 }
 
-// Returns whether no other rank may run on the processors of this rank. Such a rank polls while it
-// waits, which avoids the delay of a wake-up. Ranks that share a processor must not poll, since a
-// polling rank takes it from the ranks that work.
+// Returns whether this rank shares none of its processors with another rank. If so, it polls while
+// it waits, which avoids the delay of a wake-up. Ranks that share a processor must not poll,
+// because a polling rank takes processor time from the ranks that work.
 bool GlooGroup::OwnsProcessors() {
   const std::vector<std::string> processors = AllowedProcessors();
   return !processors.empty() && std::all_of(processors.begin(), processors.end(),
@@ -331,8 +332,8 @@ void GlooGroup::Sum(std::vector<float>& values, std::vector<double>& numbers) {
     const int peer = rank_ ^ step;
     std::memcpy(own_.data(), values.data(), value_bytes);
     std::memcpy(own_.data() + value_bytes, numbers.data(), bytes - value_bytes);
-    // One rank sends first. If both sent at once more than the sockets hold, both would wait
-    // forever.
+    // One rank sends first, the other one receives first. If both sent first, and the message were
+    // larger than the buffers of the sockets, both would wait forever.
     WithPeer(peer, [&] {
       if (rank_ < peer) Send(peer, own_.data(), bytes);
       Receive(peer, other_.data(), bytes);
@@ -356,7 +357,7 @@ void GlooGroup::Sum(std::vector<float>& values, std::vector<double>& numbers) {
 
 // Sends the bytes up the binary tree of ranks, so that rank 0 receives from log2(size) ranks. With
 // 4 ranks: 1 → 0 and 3 → 2, then 2 → 0. After round k a receiver has the bytes of its own rank and
-// of the 2^k − 1 next ranks.
+// of the next 2^k − 1 ranks.
 std::vector<std::string> GlooGroup::Gather(const std::string& bytes) {
   std::vector<std::string> block{bytes};
   for (int step = 1; step < size_; step *= 2) {

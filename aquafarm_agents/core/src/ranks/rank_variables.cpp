@@ -15,7 +15,7 @@ struct Launcher {
   const char* rank;
   const char* size;
   const char* local_size;          ///< number of processes on this host; nullptr: no such variable
-  std::array<const char*, 2> job;  ///< identify the job; nullptr: no such variable
+  std::array<const char*, 2> job;  ///< names that identify the job; nullptr: unused
 };
 
 // The names of the variables that each launcher sets. SLURM_NTASKS is not listed, because it is

@@ -174,8 +174,9 @@ void ReadShips(const RescueRequest& request, RescueCase& rescue) {
   }
 }
 
-// Returns the energy of the ranch's ships. It contains prices only if the devices' values come from
-// a file and are in the currency of the prices. (Values of a layout are in units of the reward.)
+// Returns the energy parameters of the ranch's ships; nullopt if the scenario has none. They
+// contain prices only if the devices' values come from a file and are in the currency of the
+// prices. (Values of a layout are in units of the reward.)
 std::optional<RescueEnergy> EnergyOf(const Scenario& scenario, const RescueRequest& request) {
   if (!scenario.energy) return std::nullopt;
   const EnergyFigures& ships = scenario.energy->ships;

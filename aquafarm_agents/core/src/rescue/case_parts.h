@@ -12,10 +12,11 @@ inline constexpr double kOldBulletin_h = 12.0;
 
 /// Reads the storm file. Sets `start`, `storm`, `forecast` and `ensemble` of the case, and adds
 /// warnings.
-/// @throws InputError if the file is wrong or the storm is not known at the start of the plan
+/// @throws InputError if the file is wrong, or if the storm is not known at and after the start of
+///   the plan
 void ReadStorm(const RescueRequest& request, RescueCase& rescue);
-/// Sets the storm's name, rings and passage, the central forecast and the options of the ensemble.
-/// storm.file, storm.issued, storm.known_until and `start` must be set.
+/// Sets the storm's name, rings, `held` and passage, the central forecast and the options of the
+/// ensemble. storm.file, storm.issued, storm.known_until and `start` must be set.
 /// @param track the reports and the forecast as one track
 /// @throws InputError if the storm is not known after the start of the plan
 void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase& rescue);
@@ -23,7 +24,8 @@ void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase&
 /// ensemble.
 double ExposureDamage(const RescueCase& rescue);
 /// Sets the problem of the case, except abort_ring: water, ports, devices, ships and parameters.
-/// @throws InputError if a file is wrong or a position is not on water
+/// @throws InputError if a file is wrong, if a position is not on water, or if no water leads from
+///   a listed device to the first port
 void ReadFleet(const RescueRequest& request, RescueCase& rescue);
 /// Returns whether energy or ship-hours have a price.
 bool IsPriced(const RescueProblem& problem);

@@ -10,7 +10,8 @@
 namespace aquafarm::agents {
 namespace {
 
-// Returns the time before which a ship must depart in each member, in decreasing order.
+// Returns, for each member, the time before which a ship must depart. The times are sorted in
+// decreasing order, so they are not in the order of the members.
 std::vector<double> LatestDepartures(const TripModel& model, const std::vector<TimedCell>& trip) {
   const Ensemble& ensemble = model.ensemble();
   const double step_s = ensemble.options().step_s;

@@ -96,7 +96,8 @@ class EnsembleBuilder {
     }
   }
 
-  // Adds the cells that a ring covers. Returns false if the ring is too far from the ranch.
+  // Adds the cells that a ring covers. Returns false if the ring is absent or too far from the
+  // ranch.
   bool AddRing(std::size_t member, std::int32_t step, std::int32_t ring, const StormState& storm) {
     const auto& radius = storm.radius[static_cast<std::size_t>(ring)];
     const float widest = *std::max_element(radius.begin(), radius.end());
@@ -188,8 +189,7 @@ class EnsembleBuilder {
     }
   }
 
-  // Copies the arrivals from [rings, members, cells], the order of drawing, to [rings, cells,
-  // members].
+  // Copies the arrivals from first_ [rings, members, cells] to arrival_ [rings, cells, members].
   void Transpose() {
     out_.arrival_.resize(first_.size());
     for (std::size_t ring = 0; ring < static_cast<std::size_t>(out_.rings_); ++ring) {
@@ -242,8 +242,9 @@ class EnsembleBuilder {
   std::int32_t height_;
   std::size_t cells_;
   std::size_t members_;
-  std::vector<std::int16_t> first_;       // [rings, members, cells]
-  std::vector<std::int32_t> everywhere_;  // [rings, steps] members whose ring covers all cells
+  std::vector<std::int16_t> first_;       // [rings, members, cells] step of arrival, as arrival_
+  std::vector<std::int32_t> everywhere_;  // [rings, steps] number of members whose ring covers
+                                          // all cells
   std::vector<float> risk_everywhere_;    // [steps] sum of the risks that these rings add
   std::vector<Leg> legs_;                 // by step
   std::vector<StormState> states_;        // by point: states of the current member
@@ -278,7 +279,7 @@ RiskField Ensemble::MeanRisk(std::int32_t first_step, float step_reward) const {
     RiskLayers one;
     one.risk.resize(options_.height, options_.width);
     one.quiet.resize(options_.height, options_.width);
-    const std::uint16_t* covered = Covered(rings_ - 1, step);  // of the widest ring
+    const std::uint16_t* covered = Covered(rings_ - 1, step);  // by the widest ring
     const float* sum = risk_sum_.data() + static_cast<Eigen::Index>(step) * one.risk.size();
     for (Eigen::Index cell = 0; cell < one.risk.size(); ++cell) {
       one.risk.data()[cell] = sum[cell] / count;

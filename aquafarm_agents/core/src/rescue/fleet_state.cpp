@@ -85,7 +85,7 @@ std::vector<std::int32_t> CarriersOf(const FleetState& fleet) {
 }
 
 // Keeps the devices aboard ships, and the deployed devices that are not self-propelled. Adds notes
-// about the others.
+// about the other devices.
 void KeepDevices(const FleetState& fleet, RescueCase& rescue) {
   RescueProblem& problem = rescue.problem;
   const std::vector<std::int32_t> carriers = CarriersOf(fleet);

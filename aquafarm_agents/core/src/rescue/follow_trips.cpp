@@ -76,7 +76,7 @@ class Follower {
     Add(std::move(order), route);
   }
 
-  // Moves the ship to an end point of routes. Sets the distance and energy of the order.
+  // Moves the ship to `to`, an end point in TripModel. Sets distance and energy of `order`.
   void Sail(std::size_t to, ShipRoute& route, RescueOrder& order) {
     const SeaRoute& way = model_.routes().Between(place_, to);
     for (std::size_t i = 0; i < way.cells.size(); ++i) {
@@ -153,7 +153,7 @@ class Follower {
   std::vector<std::int32_t> aboard_;
 };
 
-// Assigns the devices to the ships by a rule, one after the other.
+// Assigns the devices to the ships by a rule, one device at a time.
 class SimpleRule {
  public:
   SimpleRule(const TripModel& model, FetchRule rule) : model_(model), rule_(rule) {

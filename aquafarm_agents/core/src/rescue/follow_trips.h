@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Computes orders, outcomes of devices, and losses of given trips.
+/// Computes the orders, the outcomes of the devices and the losses for given trips.
 
 #include <vector>
 
@@ -17,8 +17,9 @@ struct ShipTrips {
   std::vector<TripStop> stops;
 };
 
-/// Follows the trips in every member. Does not set bound, averse_gap or is_exhaustive of the plan.
-/// @param trips at most one element for each ship; other ships stay
+/// Follows the trips in every member of the ensemble. Does not set bound, averse_gap or
+/// is_exhaustive of the plan.
+/// @param trips at most one element for each ship; a ship without an element stays
 RescuePlan FollowTrips(const TripModel& model, const std::vector<ShipTrips>& trips);
 
 /// Returns the trips of FetchInOrder (rescue_plan.h), which ignore storms.

@@ -10,7 +10,8 @@
 namespace aquafarm::agents {
 namespace {
 
-// Interpolates linearly between the points, and extrapolates from the last two.
+// Interpolates linearly between the points. Before the first and after the last point, extrapolates
+// linearly from the nearest two points.
 double Interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
   AQUAFARM_CHECK_EQ(x.size(), y.size());
   AQUAFARM_CHECK_LE(std::size_t{2}, x.size());

@@ -55,8 +55,8 @@ class JsonReport {
   Json Kwh(double kwh) const {
     return case_.problem.energy ? Json(Rounded(kwh, 0.001)) : Json(nullptr);
   }
-  // Returns `value`, or null with unknown winds. The members' winds then reach cells too late or
-  // not at all, so their numbers would look safe.
+  // Returns `value`; null for kStormUnknown. In this case the members' winds reach cells too late
+  // or not at all, so the value would show too little danger.
   Json Known(Json value) const { return AreWindsUnknown() ? Json(nullptr) : std::move(value); }
   Json Chance(double share) const { return Known(Share(share)); }
   Json MemberShare(std::int32_t count) const {
@@ -217,8 +217,8 @@ class JsonReport {
             {"closest_approach", closest}};
   }
 
-  // Returns whether a point of the ensemble is also one of the forecast. (fine_rings.h adds points
-  // between them.)
+  // Returns whether a point of the ensemble is also a point of the storm's track. (ToFineRings adds
+  // points between those of the track.)
   bool IsPointOfForecast(const EnsembleSpread& at) const {
     const std::int64_t time = case_.start + std::llround(at.time_s);
     const auto& points = case_.storm.rings.waypoints;
@@ -263,7 +263,7 @@ class JsonReport {
     }
     Json frames = Json::array();
     for (const std::int32_t step : StepsEvery(2.0)) {
-      if (AreWindsUnknown()) break;  // no frames, since an empty grid would stand for zeros
+      if (AreWindsUnknown()) break;  // no frames: an empty grid would mean 0 % everywhere
       Json percents = Json::array();
       for (std::int32_t ring = 0; ring < ensemble_.rings(); ++ring) {
         percents.push_back(Percents(ring, step));

@@ -9,8 +9,8 @@
 namespace aquafarm::agents {
 namespace {
 
-// Returns a share of the members in percent. It is never 0 % or 100 %, since a sample gives no
-// certainty.
+// Returns a share of the members as a text in percent. It is never 0 % or 100 %, because a sample
+// gives no certainty.
 std::string Percent(double share) {
   if (share >= 0.995) return "> 99 %";
   return share <= 0.005 ? "< 1 %" : Short(100.0 * share, 0) + " %";
@@ -42,16 +42,16 @@ bool IsReached(const RescueCase& rescue, const Ensemble& ensemble, const RescueP
   });
 }
 
-// Returns whether the winds of the storm are unknown while it is near the ranch during the plan.
-// The members then interpolate from a state without winds. Their winds reach devices too late or
-// not at all, so no number of the plan is valid.
+// Returns whether the plan contains a time at which the storm is near the ranch and its winds are
+// unknown. The members then interpolate from a state without winds. Their winds reach devices too
+// late or not at all, so no number of the plan is valid.
 bool AreWindsUnknown(const RescueCase& rescue, const Ensemble& ensemble) {
   const double end_s = (ensemble.steps() - 1) * ensemble.options().step_s;
   const std::int64_t from = rescue.storm.passage.unknown[0];
   return from != 0 && from <= rescue.start + static_cast<std::int64_t>(end_s);
 }
 
-// Returns the problem with a value of 0 for all devices that are not aboard.
+// Returns the problem with a value of 0 for all devices that are not aboard a ship at the start.
 RescueProblem OnlyAboard(RescueProblem problem) {
   for (std::size_t d = 0; d < problem.devices.size(); ++d) {
     if (problem.CarrierOf(d) == kNone) problem.devices[d].value = 0.0;
@@ -147,8 +147,8 @@ void SetResult(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report)
                 Money(rescue, Summarize(report.plan.loss_idle).mean) + " on average.";
 }
 
-// Returns a chance as text. It is "unknown" with unknown winds, since the members' winds then reach
-// ships too late or not at all.
+// Returns a chance as text; "unknown" for kStormUnknown, because in this case the members' winds
+// reach ships too late or not at all.
 std::string Chance(const PlanReport& report, double share) {
   return report.result == PlanResult::kStormUnknown ? "unknown" : Percent(share);
 }
@@ -197,7 +197,7 @@ void AddDevices(const RescueCase& rescue, const PlanReport& report, std::string&
 }
 
 // Adds a warning for each ship whose chance to deliver a device aboard is below 50 %, unless the
-// ship already has the warning no_way_home. Removes the ship's note devices_aboard.
+// ship already has the warning no_way_home. Also removes the note devices_aboard of these ships.
 void WarnOfWaysHome(RescueCase& rescue, const PlanReport& report) {
   constexpr double kSafe = 0.5;
   const RescueProblem& problem = rescue.problem;
@@ -209,7 +209,7 @@ void WarnOfWaysHome(RescueCase& rescue, const PlanReport& report) {
         rescue.warnings.begin(), rescue.warnings.end(),
         [id](const RescueWarning& one) { return one.code == "no_way_home" && one.ship == id; });
     std::string names;
-    double home = 1.0;  // chance of the device with the lowest one
+    double home = 1.0;  // lowest chance of a device aboard to reach a port
     bool is_under_way = false;
     for (const std::int32_t device : ship.aboard) {
       const auto d = static_cast<std::size_t>(device);
@@ -219,8 +219,9 @@ void WarnOfWaysHome(RescueCase& rescue, const PlanReport& report) {
     }
     if (is_warned || home >= kSafe) continue;
     auto& warnings = rescue.warnings;
+    // The note devices_aboard states that the orders of the ship deliver its devices.
     const auto promises = [id](const RescueWarning& one) {
-      return one.code == "devices_aboard" && one.ship == id;  // its orders deliver them
+      return one.code == "devices_aboard" && one.ship == id;
     };
     warnings.erase(std::remove_if(warnings.begin(), warnings.end(), promises), warnings.end());
     rescue.warnings.push_back(
@@ -260,7 +261,8 @@ LastDeparture LastDepartureOf(const RescueProblem& problem, const PlanReport& re
 
 PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble) {
   PlanReport report;
-  // With unknown winds the value of a trip is unknown. Only ships with devices aboard get orders.
+  // With unknown winds the value of a trip is unknown. In this case only ships with devices aboard
+  // get orders.
   const RescueProblem problem =
       AreWindsUnknown(rescue, ensemble) ? OnlyAboard(rescue.problem) : rescue.problem;
   report.plan = PlanRescue(problem, ensemble);

@@ -42,7 +42,7 @@ struct TrialResult {
   double lead_h{};             ///< TrialStorm::lead_h
   double nearest_km{};         ///< TrialStorm::nearest_km
   double bulletin_mps{};       ///< greatest wind in the forecast of the first bulletin
-  std::vector<Promise> home;   ///< for each device that the plan fetches: it comes home
+  std::vector<Promise> home;   ///< for each device that the plan delivers: it reaches a port
   std::vector<Promise> gales;  ///< for each device: the widest ring reaches its site
   double promised{};           ///< value that the plan saves on average over its members
   double at_risk{};            ///< value that is lost in the true storm if no ship leaves
@@ -50,8 +50,8 @@ struct TrialResult {
   std::array<double, kTrialPolicyCount> saved{};
 };
 
-/// Mean of the worst 5 % of the losses of two plans. The losses are computed in an ensemble whose
-/// members differ from those for which the plans were made.
+/// For each of two plans: the mean of the worst 5 % of its losses. The losses are computed in an
+/// ensemble whose members differ from those for which the plans were made.
 struct AverseResult {
   std::size_t track{};  ///< TrialStorm::track
   double mean{};        ///< of the plan with RescueProblem::risk_averse = 0
@@ -73,7 +73,7 @@ class PlanTrials {
   /// @param reacts whether to play kPlanAgain and kPlanner, too
   TrialResult Run(const TrialStorm& storm, bool reacts = true) const;
   /// Compares a plan with a risk-averse plan.
-  /// @param members number of members of the ensemble that compares the plans
+  /// @param members number of members of the ensemble in which the losses are computed
   AverseResult CompareAverse(const TrialStorm& storm, std::int32_t members) const;
 
  private:
@@ -86,7 +86,7 @@ class PlanTrials {
   GeoPoint place_;
 };
 
-/// Number of the group of each value. Groups are independent of each other, but the values of one
+/// By value: the number of its group. Groups are independent of each other, but the values of one
 /// group may depend on each other. Empty: each value forms its own group.
 using Groups = std::vector<std::size_t>;
 
@@ -98,8 +98,8 @@ struct Estimate {
 };
 /// Returns the mean of the values.
 Estimate MeanOf(const std::vector<double>& values, const Groups& groups = {});
-/// Returns the ratio of the means of paired values, with the interval of the delta method; 0 ± 0 if
-/// the mean of `below` is 0.
+/// Returns the mean of `above` divided by the mean of `below`, whose values are paired, with the
+/// interval of the delta method; 0 ± 0 if the mean of `below` is 0.
 Estimate RatioOf(const std::vector<double>& above, const std::vector<double>& below,
                  const Groups& groups = {});
 
@@ -113,7 +113,7 @@ struct PromiseBin {
 };
 /// Returns the bin of [low, high). The promises of one trial may depend on each other.
 /// @param by_trial promises of each trial
-/// @param groups groups of the trials
+/// @param groups by trial
 PromiseBin BinOf(const std::vector<std::vector<Promise>>& by_trial, double low, double high,
                  const Groups& groups = {});
 

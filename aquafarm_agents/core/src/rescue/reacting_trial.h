@@ -32,7 +32,7 @@ struct TrialFleet {
 struct TrialAct {
   Cell cell{};                    ///< cell of the ship after the action
   double seconds{};               ///< duration [s]
-  std::optional<OrderKind> kind;  ///< fetch, or deliver all devices aboard; nullopt: a move
+  std::optional<OrderKind> kind;  ///< fetch, or deliver all devices aboard; nullopt: move or wait
   std::size_t device{};           ///< index of the device to fetch
 };
 
@@ -45,7 +45,7 @@ class Skipper {
   virtual ~Skipper() = default;
 
   /// Plans for a new bulletin.
-  /// @param known case with the storm of the bulletin; its start is the time of the bulletin
+  /// @param known case with the storm of the bulletin; it starts at the time of the bulletin
   /// @param fleet present state
   virtual void Plan(RescueCase known, const TrialFleet& fleet) = 0;
   /// Returns the next action; nullopt if the ship waits for the next bulletin.

@@ -17,7 +17,7 @@
 namespace aquafarm::agents {
 namespace {
 
-// Max number of teams that the combination of ships keeps.
+// Max number of teams (struct Team) that the search keeps after each ship.
 constexpr std::size_t kMaxTeams = 3000;
 // Max number of plans per set of devices in a risk-averse search.
 constexpr std::size_t kAlternatives = 8;
@@ -71,7 +71,7 @@ RescuePlan PlanOf(const TripModel& model, const Team& team) {
   return FollowTrips(model, trips);
 }
 
-// Sorts the teams, the best one first. Keeps at most `alternatives` teams of each set of devices,
+// Sorts the teams, the best one first. Keeps at most `alternatives` teams for each set of devices,
 // and at most kMaxTeams in total. Returns whether the latter limit was exceeded.
 bool Narrow(std::vector<Team>& teams, std::size_t alternatives) {
   std::stable_sort(teams.begin(), teams.end(),
@@ -84,7 +84,7 @@ bool Narrow(std::vector<Team>& teams, std::size_t alternatives) {
   return true;
 }
 
-// Searches the best teams by the weighted mean over the members.
+// Searches the teams with the highest net value. It is a weighted mean over the members.
 class TeamSearch {
  public:
   /// @param cache must outlive the search
@@ -131,9 +131,10 @@ class TeamSearch {
 // games by fictitious play). Each round averages the weights of AddTail over the first plan and the
 // best plans of all previous rounds. The trip search then finds the best plans for these weights.
 // The smallest weighted loss plus cost is a lower bound of the objective of every plan.
-// All members get a small additional weight, so that a trip that helps only in other members is
-// also made. The mixed weights are still at most 1 / (share · members) each, so the bound remains
-// valid. Of plans with equal objectives the one with the best mean is taken.
+// All members get a small additional weight, so that a plan also contains trips that help only in
+// members that are not among the worst. The mixed weights are still at most 1 / (share · members)
+// each, so the bound remains valid. Of plans with equal objectives the one with the best mean is
+// taken.
 class AverseSearch {
  public:
   AverseSearch(const TripModel& model, const TeamSearch& by_mean, RescuePlan best, int rounds)
@@ -168,9 +169,9 @@ class AverseSearch {
   }
 
  private:
-  static constexpr std::size_t kConsideredByMean = 300;  // max plans considered of the first search
-  static constexpr std::size_t kConsidered = 40;         // max plans considered of each round
-  static constexpr double kEnough = 1e-4;  // the search stops at this distance from the bound
+  static constexpr std::size_t kConsideredByMean = 300;  // max plans taken from the first search
+  static constexpr std::size_t kConsidered = 40;         // max plans taken from each round
+  static constexpr double kEnough = 1e-4;                // absolute tolerance in IsEnough
   static constexpr double kOthers = 1e-4;  // total weight that is spread equally over all members
 
   double Share() const { return model_.problem().risk_averse; }
@@ -257,7 +258,7 @@ RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble, in
   const TripModel model(problem, ensemble);
   const bool is_averse = problem.risk_averse > 0.0;
   const TeamSearch search(model, is_averse ? kAlternatives : 1, cache);
-  RescuePlan best = PlanOf(model, search.teams().front());  // the best mean
+  RescuePlan best = PlanOf(model, search.teams().front());  // the plan with the best mean
   if (is_averse) best = AverseSearch(model, search, std::move(best), averse_rounds).Take();
   for (std::size_t d = 0; d < problem.devices.size(); ++d) best.bound += model.BoundOf(d);
   best.is_exhaustive = search.is_exhaustive();

@@ -34,7 +34,7 @@ MemberSampler::MemberSampler(const CentralForecast& forecast, const EnsembleOpti
   AQUAFARM_CHECK_EQ(forecast.lead_h.size(), errors_.size());
   for (const double lead : forecast.lead_h) spread_.push_back(SpreadAt(options.errors, lead));
   const std::int32_t widest_kt = forecast.path.wind_kt[forecast.path.rings - 1];
-  double reported = 0.0;  // SizeSigma at the last report, or at the first point
+  double reported = 0.0;  // SizeSigma at the last report of radii; without one, at the first point
   for (std::size_t i = 0; i < forecast.lead_h.size(); ++i) {
     const StormPoint& point = forecast.path.points[i];
     size_sigma_.push_back(

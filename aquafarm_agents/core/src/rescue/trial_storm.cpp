@@ -19,7 +19,7 @@ namespace {
 constexpr double kKmPerDegree = 111.195;
 constexpr std::array<std::int32_t, 8> kLeads_h{12, 24, 36, 48, 60, 72, 96, 120};
 constexpr std::array<std::int32_t, 3> kWinds_kt{34, 50, 64};
-constexpr double kWeakest_mps = 8.0;  // assumed wind of a fix that gives none, or "below 10 m/s"
+constexpr double kWeakest_mps = 8.0;  // assumed wind of a fix if it is unknown or "below 10 m/s"
 
 double HoursBetween(std::int64_t from, std::int64_t to) {
   return static_cast<double>(to - from) / static_cast<double>(kHour_s);
@@ -70,8 +70,8 @@ StormFix At(const StormTrack& track, std::int64_t time) {
   return fix;
 }
 
-// Draws the logarithm of a storm's size at each fix, in units of the spread of recorded radii. It
-// is a stationary random process.
+// Draws the logarithm of a storm's size at each fix, in units of the spread of recorded radii. The
+// logarithm is a stationary random process.
 std::vector<double> DrawSizes(const TrialOptions& options, RandomStream& rng,
                               const StormTrack& track) {
   std::vector<double> sizes;
@@ -122,8 +122,9 @@ class BulletinErrors {
     }
     lead_h_ = lead_h;
   }
-  // Adds the errors of the bulletin to a true fix. Errors to the north and to the east are
-  // independent and equally large, and so are those along and across the track.
+  // Adds the errors of the bulletin to a true fix. The errors to the east and to the north are
+  // independent and have equal standard deviations. The errors along and across the track then have
+  // the same properties.
   void Apply(StormFix& fix) const {
     const ForecastSpread spread = SpreadAt(errors_, lead_h_);
     Move(fix.position, unit_[0] * spread.position_km, unit_[1] * spread.position_km);
@@ -177,7 +178,8 @@ StormTrack KnownOf(const StormTrack& truth, std::int64_t start, const TrialOptio
   return known;
 }
 
-// Draws the true winds from the start until the end of the bulletin: its winds plus errors.
+// Sets the true winds after the start of the trial, until the end of the bulletin: the winds of the
+// bulletin plus drawn errors.
 void DrawWinds(const StormTrack& known, const TrialOptions& options, RandomStream rng,
                StormTrack& truth) {
   StormTrack bulletin;

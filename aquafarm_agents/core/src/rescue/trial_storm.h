@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Simulated storms with bulletins that forecast them. They allow plans to be compared with true
-/// outcomes.
+/// Simulated storms, and the bulletins that forecast them. A trial compares a plan with its outcome
+/// in the true storm.
 ///
 ///   recorded track ── moved, with radii ──> the true storm
 ///   true storm ── + published errors by lead time ──> the bulletin, with points 12 to 24 h apart
 ///
-/// The errors use neither the code nor the random numbers of the ensemble (storm_member.h).
+/// Trials and the ensemble use the same spreads (forecast_errors.h). Trials draw their errors with
+/// code and random numbers that the ensemble (storm_member.h) does not use.
 
 #include <cstdint>
 #include <vector>
@@ -29,8 +30,9 @@ struct TrialOptions {
   double min_lead_h{4.0};
   double max_lead_h{24.0};
   double report_share{0.5};  ///< probability that the bulletins of a trial report radii
-  /// true: the true radii differ from EstimateRadius by its spread times errors.scale and
-  /// errors.size_factor; false: they equal EstimateRadius.
+  /// true: the true radii are those of EstimateRadius times a random factor. The spread of this
+  /// factor is that of EstimateRadius times errors.scale and errors.size_factor. false: the true
+  /// radii are those of EstimateRadius.
   bool draws_size{true};
   double bulletin_h{6.0};  ///< time between two bulletins [h]
   /// false: the true winds are those of the recorded track, and the winds of the bulletin differ

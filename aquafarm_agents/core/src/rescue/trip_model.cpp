@@ -43,7 +43,7 @@ void ClearFrom(const std::int16_t* arrival, std::int16_t now, std::size_t count,
   }
 }
 
-// Number of partial sums in SumOf. They are independent, so that the processor adds in parallel.
+// Number of partial sums in SumOf. They are independent, so the processor can add them in parallel.
 constexpr std::size_t kLanes = 16;
 
 template <typename Term>
@@ -87,7 +87,8 @@ double TripModel::Pace(std::size_t ship) const {
   return problem_.cell_size_km * 1000.0 / (problem_.ships[ship].speed_kn * kMpsPerKnot);
 }
 
-// Returns the last step that has started at a time; after the known time, the number of steps.
+// Returns the last step that starts at or before a time; after the end of the last step of the
+// ensemble, the number of steps.
 std::int32_t TripModel::StepOf(double time_s) const {
   const double step = std::floor(std::max(0.0, time_s) / ensemble_.options().step_s);
   return static_cast<std::int32_t>(std::min(step, static_cast<double>(ensemble_.steps())));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Computes times, survival and saved value of trips. Plans, deadlines and trials share it.
+/// Model of trips, which plans, deadlines and trials use.
 
 #include <cstdint>
 #include <vector>

@@ -93,8 +93,8 @@ class TripSearch {
     return ports;
   }
 
-  // Returns the nearest open port and, for each remaining device, the open port with the shortest
-  // way through it to the device.
+  // Returns the nearest open port and, for each remaining device, the open port through which the
+  // route of the ship to this device is shortest.
   std::vector<std::size_t> PortsAfter(const Node& node) const {
     const std::int32_t nearest = model_.NearestPort(node.place);
     if (nearest == kNone) return {};
@@ -142,8 +142,9 @@ class TripSearch {
       if ((child.aboard & Bit(d)) == 0) continue;
       child.net += model_.Saved(d, child.time_s, child.alive, weights_);
     }
-    // A delivery that does not increase the net value is left out. A ship that starts with devices
-    // aboard must deliver them anyway, except in a port if winds stop it in all members.
+    // A delivery that does not increase the net value is left out. If it is the first stop, it is
+    // kept, because a ship that starts with devices aboard must deliver them. Such a ship stays
+    // only if it is in a port and winds stop it in all members.
     if (child.net <= node.settled && !node.stops.empty()) return;
     if (node.stops.empty() && IsInPort() && CountAlive(child.alive) == 0) return;
     child.aboard = 0;

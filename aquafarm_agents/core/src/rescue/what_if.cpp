@@ -60,7 +60,8 @@ class Changes {
   RescuePlan Plan(const RescueProblem& changed) const {
     return PlanRescue(changed, ensemble_, kAverseRoundsToCompare);
   }
-  // Does the same as Plan, for changes that only add or remove ships.
+  // Does the same as Plan, but with the cache. `changed` must differ only in ships without devices
+  // aboard.
   RescuePlan PlanShips(const RescueProblem& changed) {
     return PlanRescue(changed, ensemble_, kAverseRoundsToCompare, cache_);
   }

@@ -17,8 +17,8 @@ struct Registration {
   std::string built_with;
 };
 
-// All registrations. A function-local static, because the first registration may run before the
-// other static objects of this library are initialized.
+// Returns all registrations. The vector is a function-local static, because the first registration
+// may run before the other static objects of this library are initialized.
 std::vector<Registration>& Registrations() {
   static std::vector<Registration> registrations;
   return registrations;

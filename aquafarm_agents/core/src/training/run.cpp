@@ -23,7 +23,7 @@
 namespace aquafarm::agents {
 namespace {
 
-// Default seed of aquafarm_evaluate, evaluate.launch and reports, so that their figures agree.
+// Seed of the evaluation. Equals the default of aquafarm_evaluate, evaluate.launch and benchmarks.
 constexpr std::uint64_t kSummarySeed = 1000;
 
 std::string LearnerOptionsOf(const RunOptions& options) {
@@ -188,7 +188,7 @@ void Run::Choose(const MakeEnvironment& make_environment) {
   CheckRunOptions(options_);
 }
 
-// Reads run.json of a resumed run: `init` (and its hidden_size), and the limits if none are given.
+// Reads run.json of a resumed run: `init` with hidden_size, and the limits if no limit is given.
 void Run::TakeOver(const RunFolder& folder) {
   const std::string path = folder.path() + "/run.json";
   std::error_code ignored;
@@ -253,7 +253,7 @@ bool Run::ResumeFromRank0(Trainer& trainer, const RunFolder* folder) {
   return true;
 }
 
-// Returns the path of the checkpoint, empty if there is none.
+// Reads the newest undamaged checkpoint. Returns its path; empty if there is no checkpoint.
 std::string Run::FindCheckpoint(const RunFolder& folder, Checkpoint& checkpoint) {
   std::string damage;
   std::string path = folder.ReadNewestCheckpoint(checkpoint, damage);

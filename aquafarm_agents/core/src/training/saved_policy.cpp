@@ -43,8 +43,8 @@ SavedPolicy FindPolicy(const std::string& where) {
   if (where == kGeneralist) {
     saved.checkpoint = ReadCheckpoint(GeneralistPath());
     saved.observation_types = ObservationTypesOf(saved.checkpoint);
-    // MakePolicy compares the names of the features, so the generalist fits every version with
-    // these features.
+    // The check in MakePolicy is skipped for an empty version. The algorithm's make_policy compares
+    // the names of the features, so the generalist fits every version with these features.
     saved.checkpoint.version.clear();
     return saved;
   }

@@ -10,13 +10,13 @@
 
 namespace aquafarm::agents {
 
-/// Plays a policy that reads entity tokens on farms whose features are not tokens. Each Act copies
-/// the farms into local farms of the same scenario with view.tokens. All other view settings stay
-/// the same, so a ship observes no more than its scenario allows.
+/// Plays a policy that reads entity tokens. It is for farms whose features are not tokens: each Act
+/// copies the farms into local farms of the same scenario with view.tokens. All other view settings
+/// stay the same, so a ship observes no more than its scenario allows.
 class TokenPolicy final : public Policy {
  public:
   /// @param make makes the policy for farms with tokens
-  /// @throws InputError if the scenario cannot have tokens, and what `make` throws
+  /// @throws InputError if the scenario cannot have tokens. Also throws what `make` throws
   TokenPolicy(const EnvironmentSpec& spec,
               const std::function<std::unique_ptr<Policy>(const EnvironmentSpec&)>& make);
 

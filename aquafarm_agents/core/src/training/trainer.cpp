@@ -35,7 +35,7 @@ Trainer::Trainer(Environment& environment, Learner& learner, const TrainerOption
       folder_(folder),
       sync_interval_(SyncInterval(learner)),
       pending_(std::make_unique<PendingSteps>()) {
-  if (options_.group != nullptr) AQUAFARM_CHECK_LT(1U, sync_interval_);  // has shards
+  if (options_.group != nullptr) AQUAFARM_CHECK_LT(1U, sync_interval_);  // ranks need shards
   if (options_.episodes == 0 && options_.steps == 0) {
     throw InputError("steps, episodes: got 0 for both, expected a limit");
   }
@@ -260,7 +260,7 @@ void Trainer::Save(bool with_environment) {
   saved_ = Clock::now();
   if (folder_ == nullptr && options_.group == nullptr) return;
   Checkpoint checkpoint;
-  checkpoint.lends = options_.group == nullptr;  // ranks send their sections to rank 0
+  checkpoint.lends = options_.group == nullptr;  // CollectSections needs copies
   checkpoint.kind = Checkpoint::kTraining;
   checkpoint.algorithm = options_.algorithm;
   checkpoint.options = learner_.options();

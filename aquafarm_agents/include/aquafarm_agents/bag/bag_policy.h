@@ -22,7 +22,7 @@ struct EpisodeChoices {
   std::uint64_t episode{};
   std::uint64_t steps{};    ///< step of the last simulated state
   std::uint64_t choices{};  ///< number of recorded actions of active agents
-  std::uint64_t agreed{};   ///< number of these actions that the policy also chooses
+  std::uint64_t agreed{};   ///< number of these actions that the policy also chose
   float value_at_start{};   ///< sum over agents of V_π in the first compared state; NaN: no V_π
   double mean_value{};      ///< mean of this sum over the compared states; NaN: no V_π
   float episode_return{};   ///< return of the episode up to step `steps`
@@ -34,15 +34,15 @@ struct BagChoices {
   /// First difference between the recording and its simulation; empty if there is none. The
   /// comparison ends at the difference, and no output is written.
   std::string difference;
-  std::string no_maps;  ///< why requested value maps are missing; empty if they are not missing
+  std::string no_maps;  ///< why requested value maps are missing; empty if none is missing
 };
 
 struct BagPolicyOptions {
   std::string ns;  ///< namespace of the ranch; empty: the bag must contain exactly one ranch
   /// Path of the output, a copy of the bag with new messages on the topics choice, values and
-  /// values/points. They replace earlier messages on these topics. Empty: no output.
+  /// values/points. The new messages replace those of the bag on these topics. Empty: no output.
   std::string output;
-  /// The output has value maps at the multiples of this number of steps; 0: no maps.
+  /// The output contains a value map at each step that is a multiple of this number; 0: no maps.
   std::uint64_t values_every{10};
   std::set<std::uint64_t> values_at;  ///< steps with a value map; empty: values_every selects them
 };

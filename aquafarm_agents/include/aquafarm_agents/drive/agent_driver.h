@@ -20,10 +20,10 @@ struct AgentDriverOptions {
 };
 
 /// Agent of one ship, as in a deployment. It subscribes only to the observation of its ship. It
-/// claims the ship and calls the ship's services move, pickup and drop_off. In lockstep, a command
-/// waits for the commands of the other ships, and the agent calls reset when the episode has ended.
-/// In paced running, the ship holds if its command is late. An agent that starts during an episode
-/// joins this episode.
+/// claims the ship and steers it through the service `command`. In lockstep, a command waits for
+/// the commands of the other ships, and the agent calls reset when the episode has ended. In paced
+/// running, the ship holds if its command is late. An agent that starts during an episode joins
+/// this episode.
 class AgentDriver {
  public:
   /// Waits for the sim node.

@@ -47,9 +47,10 @@ struct RosEnvironmentOptions {
 /// then resets the farms to new episodes of the same seed, and ConsumeRestart() returns true once.
 ///
 /// Reset, Step, Save and Load throw EnvironmentLost if the sim node does not respond within the
-/// limits, or if `stop` ends a wait. Step also throws it at the 21st such reset without the end of
-/// an episode. If the sim node refuses the request, Reset and Load throw InputError, and Step and
-/// Save throw EnvironmentLost.
+/// limits, or if `stop` ends a wait. Step also throws EnvironmentLost if it must reset the farms
+/// more than 20 times before an episode ends. If the sim node refuses the request, Reset and Load
+/// throw InputError, and Step and Save throw EnvironmentLost. Reset also throws InputError if the
+/// sim node plays another scenario than before. A Step that resets the farms also throws as Reset.
 class RosEnvironment final : public aquafarm::agents::Environment {
  public:
   /// Waits for the sim node.

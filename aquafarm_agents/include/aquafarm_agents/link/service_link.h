@@ -39,7 +39,8 @@ class ServiceLink {
       if (!client_.isValid()) client_ = node_.serviceClient<Service>(name, true);
       if (client_.isValid() && limit_.Call(client_, service)) return;
       const ros::WallTime now = ros::WallTime::now();
-      // The wait starts at the end of the first failed attempt, or at its start if it timed out.
+      // The wait starts at the end of the first failed attempt. If this attempt timed out, the wait
+      // starts at the start of the attempt.
       if (lost_since.isZero()) lost_since = (now - begun).toSec() < call_limit_s_ ? now : begun;
       const bool stopped = !ros::ok() || (stop_ != nullptr && *stop_);
       if (stopped || (now - lost_since).toSec() >= wait_limit_s_) {

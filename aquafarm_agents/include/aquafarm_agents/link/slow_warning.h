@@ -9,7 +9,7 @@
 
 namespace aquafarm_agents {
 
-/// Logs warnings at most once per 5 s of wall time and drops the others. ROS_WARN_THROTTLE is not
+/// Logs at most one warning per 5 s of wall time and drops all others. ROS_WARN_THROTTLE is not
 /// used, because it counts ROS time, which may stand still. Thread-safe.
 class SlowWarning {
  public:

@@ -88,7 +88,7 @@ class NewestWork {
   std::condition_variable changed_;
   std::optional<Request> waiting_ AQUAFARM_GUARDED_BY(mutex_);
   bool working_ AQUAFARM_GUARDED_BY(mutex_){};
-  Clock::time_point began_ AQUAFARM_GUARDED_BY(mutex_);  // of the present call
+  Clock::time_point began_ AQUAFARM_GUARDED_BY(mutex_);  // start of the present call
   bool ending_ AQUAFARM_GUARDED_BY(mutex_){};
   std::thread thread_;  // last, because the thread uses all other members
 };

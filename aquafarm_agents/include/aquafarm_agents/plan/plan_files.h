@@ -18,7 +18,7 @@ StampedFile StampOf(const std::string& path);
 /// Returns the file at `path`, or the files of the folder at `path`, the newest first. Subfolders
 /// are skipped. Hidden files and files that end in ".part" are skipped in a folder, because they
 /// may be incomplete.
-/// @throws InputError if `path` does not exist, or the folder cannot be read
+/// @throws InputError if `path` is neither a regular file nor a readable folder
 std::vector<StampedFile> NewestFiles(const std::string& path);
 
 }  // namespace aquafarm_agents

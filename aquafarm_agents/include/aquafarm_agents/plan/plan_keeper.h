@@ -25,25 +25,25 @@ struct PlanInputs {
   std::uint64_t step{};                                ///< step of this state
   std::int64_t refresh{};                              ///< number whose change causes a new plan
   std::string command;                                 ///< value of RescuePlan.command
-  std::string fault;  ///< why the inputs are incomplete or outdated; empty: they are complete
+  std::string fault;  ///< why the inputs are incomplete or outdated; empty: no fault
 };
 
 /// Returns false if the change from `a` to `b` requires a new plan. Compares scenario, bulletins,
-/// files, request.at, refresh, the fleet and its step. Ignores request.now. All other fields of
-/// `request` must be equal.
+/// files, request.at, refresh, the fleet and its step. Ignores request.now. Assumes that all
+/// other fields of `request` are equal.
 bool SamePlan(const PlanInputs& a, const PlanInputs& b);
 
 /// Makes a plan with one bulletin.
-/// @param inputs with a scenario
+/// @param inputs must contain a scenario
 /// @param bulletin path; empty with request.storm
 /// @throws InputError in the same cases as MakeRescueCase, UseFleet, Ensemble, PlanRescue, ToJson
 ///   and ReadPlan
 PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin);
 
-/// Keeps the last plan. If the newest bulletin cannot be used, plans with the bulletin of the last
-/// plan. Before the first plan, plans with the newest usable bulletin. A bulletin file that was
-/// issued earlier does not replace the one in use. A bulletin of another storm does not replace it
-/// before the plan ends.
+/// Makes plans with the newest bulletin, and keeps the last plan. If the newest bulletin cannot be
+/// used, plans with the bulletin of the last plan; before the first plan, with the newest usable
+/// bulletin. A newer file is not used if its bulletin was issued before the bulletin of the last
+/// plan. A bulletin of another storm is not used before the end of the last plan.
 class PlanKeeper {
  public:
   /// Plans again if the inputs have changed and include a scenario and a bulletin or storm. Never

@@ -14,7 +14,8 @@
 ///     | plan_outcome | 0            | RescuePlan.text, and RescuePlan.fault if it is set  |
 ///
 /// A point is an index in RescuePlan.forecast_error. If no ship fetches a device, its name is
-/// followed by "stays", "left behind" or "odds unknown".
+/// followed by "stays" or "left behind". If the result of the plan is STORM_UNKNOWN, the name of
+/// each device is followed by "odds unknown".
 
 #include <aquafarm_msgs/RescuePlan.h>
 #include <visualization_msgs/MarkerArray.h>

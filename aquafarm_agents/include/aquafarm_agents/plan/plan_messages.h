@@ -18,8 +18,8 @@ struct PlanMessages {
   nav_msgs::OccupancyGrid chart;   ///< land and rocks are 100, water is 0; without header
 };
 
-/// Converts the content of a plan file (plan.schema.json). A null becomes NaN, time 0, id -1 or an
-/// empty string, by the type of the field.
+/// Converts the content of a plan file (plan.schema.json). A null becomes NaN, time 0, id -1,
+/// grade 0 or an empty string, depending on the field.
 /// @param where name of the file for errors
 /// @throws InputError "plan.json: …; expected a plan file of version 1, …"
 PlanMessages ReadPlan(const std::string& json, const std::string& where);

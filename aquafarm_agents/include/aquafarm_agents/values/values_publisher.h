@@ -19,9 +19,9 @@ namespace aquafarm_agents {
 
 /// Publishes V_π and the greedy action of ship 0 in each free cell of farm 0, for the farm's
 /// current state. The topics are `values` and `values/points`, both latched. A low-priority thread
-/// computes them while there are subscribers. Its pauses are at least nine times as long as its
-/// computations, so that it hardly slows down playing and training. Farms of more than kMaxCells
-/// cells have no values.
+/// computes the messages while there are subscribers. The pause after a computation is at least
+/// nine times as long as the computation, so that the thread hardly slows down playing and
+/// training. Farms of more than kMaxCells (greedy_actions.h) cells have no values.
 class ValuesPublisher {
  public:
   /// @param period_s min time between the starts of two computations; 0: nothing is published

@@ -18,8 +18,8 @@ void NeedRegularFile(const std::string& path) {
 
 namespace {
 
-// Returns the max size of a file [bytes]. A file whose first non-blank character is { or [ counts
-// as JSON.
+// Returns the max size at which a file is read [bytes]. A file whose first non-blank character is {
+// or [ counts as JSON, for which the max size is smaller.
 std::streamoff SizeLimit(std::ifstream& file) {
   constexpr std::streamoff kMaxBytes = std::streamoff{512} << 20U;
   constexpr std::streamoff kMaxJsonBytes = std::streamoff{64} << 20U;

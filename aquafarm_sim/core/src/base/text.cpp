@@ -53,7 +53,8 @@ bool ParseAll(std::string_view text, T& value) {
   return true;
 }
 
-// As ParseAll, but accepts a leading '+', and refuses "inf" and "nan".
+// Parses a complete text like ParseAll. Also accepts a leading '+'. Rejects "inf" and "nan".
+// Returns nullopt if the text is not a number of type T.
 template <typename T>
 std::optional<T> ParseSigned(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);

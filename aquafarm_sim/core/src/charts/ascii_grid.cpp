@@ -25,7 +25,7 @@ float LandAt(float value, float sea_level) {
 // Maps the spellings of a header key to one name.
 std::string KeyOf(std::string_view word) {
   const std::string key = internal::Upper(word);
-  // GeoClaw's xlower and ylower are the position of the first value.
+  // GeoClaw's xlower and ylower are the position of the south-west value.
   if (key == "XLOWER") return "XLLCENTER";
   if (key == "YLOWER") return "YLLCENTER";
   if (key == "XLL") return "XLLCORNER";
@@ -64,7 +64,7 @@ struct Header {
     return Get(corner, -kFar, kFar, place) + cell_size / 2.0;
   }
   /// Checks that the centres of `count` cells starting at `first` lie in [-max, max] degrees. A
-  /// tolerance of half a cell permits grids with a node on the edge of this range.
+  /// tolerance of half a cell accepts a header that gives the outermost node as the corner.
   void NeedDegrees(const std::string& center, const std::string& corner, double first,
                    Eigen::Index count, double max, const AsciiGrid& grid,
                    const ParseContext& place) const {

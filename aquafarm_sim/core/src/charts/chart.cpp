@@ -21,7 +21,8 @@ std::int64_t DistanceSquared(Cell a, Cell b) {
   return dx * dx + dy * dy;
 }
 
-// Labels the body of water around a cell with a number; returns its size [cells].
+// Sets `body` to `number` in all cells of the body of water that contains `from`. Returns how many
+// cells these are.
 std::int32_t Paint(const Grid<std::uint8_t>& kind, Cell from, std::int32_t number,
                    Grid<std::int32_t>& body) {
   std::vector<Cell> queue{from};

@@ -31,7 +31,7 @@ bool Cross(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c, const GeoPoi
   return Cross(a, b, c) * Cross(a, b, d) < 0.0 && Cross(c, d, a) * Cross(c, d, b) < 0.0;
 }
 
-// Returns whether two collinear segments share more than an end point.
+// Returns whether two segments are collinear and share more than one point.
 bool Doubles(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c, const GeoPoint& d) {
   if (Cross(a, b, c) != 0.0 || Cross(a, b, d) != 0.0) return false;
   const auto overlap = [&](double GeoPoint::*along) {
@@ -179,8 +179,8 @@ struct GeoBox {
   std::array<double, 2> latitude{};
 };
 
-// Returns the bounding box of the ranch. On each side, a margin is added: the size of the box along
-// that axis, but at least one degree.
+// Returns the bounding box of the ranch with a margin on each side. The margin is the size of the
+// box along this axis, but at least one degree.
 GeoBox BoxOf(const GeoFrame& frame, std::int32_t width, std::int32_t height) {
   GeoBox box;
   box.middle = frame.ToGeo(width / 2.0, height / 2.0).longitude;
@@ -241,7 +241,7 @@ CoastRing Clip(CoastRing ring, double shift, const GeoBox& box) {
 
 constexpr int kSamples = 5;  // per side of a cell
 
-// Appends the x at which a ring crosses a line of constant y.
+// Appends the x coordinates at which a ring crosses the line of constant `y`.
 void Crossings(const std::vector<std::array<double, 2>>& points, double y,
                std::vector<double>& crossings) {
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
@@ -252,8 +252,8 @@ void Crossings(const std::vector<std::array<double, 2>>& points, double y,
   }
 }
 
-// Counts the samples of one line that lie between pairs of crossings. Adds them to row y of
-// `samples`.
+// Counts the sample points of one line that lie between the two crossings of each pair. Adds the
+// counts to row y of `samples`.
 void AddSpans(const std::vector<double>& crossings, std::int32_t y, Grid<std::uint16_t>& samples) {
   const auto last = static_cast<double>(samples.cols() * kSamples - 1);
   // Sample k of a row lies at (k + 1/2) / kSamples - 1/2.
@@ -261,7 +261,8 @@ void AddSpans(const std::vector<double>& crossings, std::int32_t y, Grid<std::ui
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
     const double from = std::max(first_from(crossings[i]), 0.0);
     const double to = std::min(first_from(crossings[i + 1]) - 1.0, last);
-    if (!(from <= to)) continue;  // if not skipped: whole numbers with 0 <= from <= to <= last
+    if (!(from <= to)) continue;
+    // Here `from` and `to` are whole numbers with 0 <= from <= to <= last.
     for (auto k = static_cast<Eigen::Index>(from); k <= static_cast<Eigen::Index>(to); ++k) {
       ++samples(y, k / kSamples);
     }

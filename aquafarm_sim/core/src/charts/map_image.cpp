@@ -17,7 +17,8 @@
 namespace aquafarm::internal {
 namespace {
 
-// Reads the words of a PGM header: numbers between blanks, with comments from # to the end of line.
+// Reads the numbers of a PGM header, and pixels written as text. Blanks separate the numbers. A
+// comment extends from # to the end of its line.
 class PgmHeader {
  public:
   PgmHeader(const std::string& bytes, ParseContext& place) : bytes_(bytes), place_(place) {
@@ -29,8 +30,8 @@ class PgmHeader {
   }
   /// Reads a pixel written as text.
   std::int32_t Pixel(std::int32_t max) { return ReadWhole(Word(), "pixel", 0, max, place_); }
-  /// Skips to the pixels. One blank or a line end of two bytes terminates the header. After a
-  /// header that ends with one blank, one line feed after the pixels is accepted.
+  /// Skips the end of the header: one blank, or CR and LF. If it is one blank, one line feed after
+  /// the pixels is accepted.
   void SkipEnd(std::size_t pixels) {
     const std::size_t left = bytes_.size() - std::min(bytes_.size(), at_);
     const bool one_more = left == pixels + 2;
@@ -91,7 +92,8 @@ MapImage ParsePgm(const std::string& bytes, ParseContext& place) {
   const bool text = bytes[1] == '2';
   const std::size_t depth = white > 255 ? 2 : 1;
   if (!text) header.SkipEnd(columns * rows * depth);
-  // In text format each pixel except the last has at least a digit and a blank.
+  // In text format each pixel takes at least two bytes, a digit and a blank. The last pixel needs
+  // no blank.
   CheckSize(text ? (bytes.size() - header.at_ + 1) / 2
                  : bytes.size() - std::min(bytes.size(), header.at_),
             columns, rows, text ? 1 : depth, place);
@@ -118,7 +120,7 @@ MapImage ParsePgm(const std::string& bytes, ParseContext& place) {
 
 // Rejects a PNG with a chunk that is longer than the rest of the file: stb allocates the stated
 // length before it reads. Also rejects a PNG whose first chunk of pixels (IDAT) is empty: stb would
-// copy its pixels to a null pointer.
+// pass a null pointer to memcpy.
 void CheckPngChunks(const std::string& bytes, const ParseContext& place) {
   constexpr std::size_t kSignature = 8;
   constexpr std::size_t kAround = 12;  // length and name before a chunk's data, checksum after it

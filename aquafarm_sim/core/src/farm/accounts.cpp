@@ -7,8 +7,8 @@
 namespace aquafarm {
 namespace {
 
-// Returns amount × share, rounded to cents, with the share clamped to [0, 1]. Shares of 0 and 1 are
-// exact.
+// Returns amount × share, rounded to cents, with the share clamped to [0, 1]. The result is exact
+// for shares of 0 and 1.
 Cents Share(Cents amount, double share) {
   return std::llround(static_cast<double>(amount) * std::clamp(share, 0.0, 1.0));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forecasts that are issued during an episode, and bulletins.
+// Forecasts and storms that arrive during an episode, and access to bulletins.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -25,8 +25,8 @@ const Disaster& Present(const Farm& farm, std::int32_t disaster) {
                    "forecast_only");
 }
 
-// Checks the numbers of a forecast with ValidateDisaster, as part of a disaster that has as many
-// rings as the current one.
+// Checks the numbers of a forecast with ValidateDisaster. The forecast is checked as part of a spec
+// that has as many rings as `disaster`. All other values of this spec are valid.
 void CheckNumbers(const Disaster& disaster, const IssuedForecast& forecast) {
   DisasterSpec spec;
   spec.track = {RingsOf(disaster)};
@@ -44,9 +44,9 @@ void CheckNumbers(const Disaster& disaster, const IssuedForecast& forecast) {
   ValidateDisaster(spec);
 }
 
-// Returns the newest forecast of a storm, as issued at `step` or earlier. If it is issued after
-// `step`, the result has `step` as its step of issue. Its points are then the waypoints of the
-// track after `step`.
+// Returns the newest forecast of a storm. If this forecast is issued after `step`, returns another
+// forecast instead: it is issued at `step`, and its points are the waypoints of the track after
+// `step`.
 IssuedForecast IssuedBy(float step, const DisasterSpec& storm) {
   IssuedForecast forecast = storm.forecasts.back();
   if (forecast.step <= step) return forecast;
@@ -58,7 +58,7 @@ IssuedForecast IssuedBy(float step, const DisasterSpec& storm) {
   return forecast;
 }
 
-// Throws an error about a step of a forecast unless `fits`.
+// Throws InputError about a step of a forecast if `fits` is false.
 void RequireStep(const char* what, float got, const std::string& expected, bool fits) {
   if (fits) return;
   throw InputError(std::string("forecast.") + what + ": got " + internal::Format(got) +
@@ -120,8 +120,8 @@ const Bulletin& Farm::BulletinOf(std::size_t disaster) const {
 void Farm::IssueForecast(std::int32_t id, const IssuedForecast& forecast) {
   CheckForecast(*this, id, forecast);
   const auto k = static_cast<std::size_t>(id);
-  // Earlier forecasts are dropped. No ship can still observe one of them, because in partial view a
-  // bulletin is issued now.
+  // Drops the forecasts that were set earlier. No ship can still observe one of them, because in
+  // partial view a bulletin is issued now.
   forecasts_[k] = std::make_shared<const std::vector<IssuedForecast>>(1, forecast);
   if (scenario_->view.mode == ViewMode::kPartial) IssueBulletin(k);
 }

@@ -10,13 +10,14 @@
 namespace aquafarm {
 namespace {
 
-// Taylor series on [0, 45] degrees, where nine terms are exact to double precision. It uses only +,
-// * and /, so results are bit-identical on every machine; libm does not guarantee this.
 struct SineCosine {
   double sine{};
   double cosine{};
 };
 
+// Returns sine and cosine of an angle in [0, 45] degrees. On this range nine terms of each Taylor
+// series are exact to double precision. The series uses only +, * and /, so results are
+// bit-identical on every machine. libm does not guarantee this.
 SineCosine OfFirstOctant(int degrees) {
   const double x = degrees * kRadiansPerDegree;
   double sine = 0.0;
@@ -84,8 +85,8 @@ void SetRings(ObservableDisaster& disaster, const std::vector<float>& radii,
 }
 
 // Sets the state that is constant on the leg after a waypoint: index of the waypoint, grade,
-// displacement, speed and heading. Heading is the nearest whole degree. Displays and bulletins use
-// speed and heading.
+// displacement, speed and heading. The heading is rounded to the nearest whole degree. Displays and
+// bulletins use speed and heading.
 void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
               std::size_t waypoint) {
   disaster.waypoint = static_cast<std::int32_t>(waypoint);
@@ -109,7 +110,7 @@ void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
 // may already be outside before the step, for example after SetDisaster. Such a disaster continues
 // unless it moves farther away. If it moves farther away, the coordinate keeps its old value in
 // this step, and the heading is reflected.
-// @param mirror reflected heading plus heading [degrees]: 360 for x, 180 for y
+// @param mirror sum of the heading and the reflected heading [degrees]: 360 for x, 180 for y
 void Bounce(float& position, float before, float low, float high, std::int32_t mirror,
             Disaster& disaster) {
   const bool below = position < low;
@@ -124,7 +125,7 @@ void Bounce(float& position, float before, float low, float high, std::int32_t m
   SetMotion(disaster);
 }
 
-// Returns a coordinate. One outside [low, high] is moved to the opposite side.
+// Returns the wrapped coordinate: a coordinate outside [low, high] is moved to the opposite side.
 float Wrapped(float position, float low, float high) {
   if (position < low) return std::min(position + (high - low), high);
   if (position > high) return std::max(position - (high - low), low);

@@ -249,8 +249,8 @@ void Farm::Act(std::int32_t id, Action action) {
   }
 }
 
-// Returns whether an active ship is in the cell with a linear index. Callers must pass a cell that
-// the moved ship does not occupy itself.
+// Returns whether an active ship is in the cell with a linear index. Callers that want to move a
+// ship must not pass the cell that this ship occupies.
 bool Farm::Occupied(std::int32_t index) const {
   std::int32_t found = 0;
   for (const std::int32_t other : ship_index_) found += other == index ? 1 : 0;
@@ -311,8 +311,8 @@ void Farm::Move(Ship& ship, std::int32_t id, Action action) {
   if (ship.own_device != kNone) devices_[static_cast<std::size_t>(ship.own_device)].cell = to;
 }
 
-// The loss is applied before the damage phase. The order does not matter, because a ship that
-// crashes does not deliver in the same step.
+// Reduces the health of the devices that a crash damages. Step calls Damage() later. The order does
+// not matter, because a ship that crashes does not deliver in the same step.
 void Farm::CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits) {
   if (ship.aboard == 0 && ship.own_device == kNone) return;
   const float probability = scenario_->damage.crash_probability;
@@ -406,8 +406,8 @@ void Farm::Consume(const EnergySpec& energy) {
   for (Ship& ship : ships_) {
     if (ship.outcome == Outcome::kOutOfPlay) continue;
     const bool is_ship = ship.own_device == kNone;
-    // Uses the devices aboard after the action. Pickups and drop-offs cover no distance, so this is
-    // also the number during a move.
+    // ship.aboard is the number of devices after the action. During a move the number does not
+    // change, because pickups and drop-offs are separate actions.
     ship.energy = EnergyOf(is_ship ? energy.ships : energy.self_propelled, ship.distance,
                            ship.aboard, RiskAt(ship.cell));
     if (energy.weight > 0.0) ship.terms.energy = static_cast<float>(-energy.weight * ship.energy);

@@ -357,9 +357,9 @@ void Farm::CheckConsistent() const {
 }
 
 // Returns a track as a shared pointer. For a disaster with DisasterSpec::storms, a track equal to
-// the drawn track gets the pointer of the drawn track. For another disaster, a track equal to that
-// of the scenario gets the pointer of the scenario. NewestForecast then still finds the forecasts
-// of the scenario.
+// the drawn track gets the pointer of the drawn track. For every other disaster of the scenario, a
+// track equal to that in the scenario gets a pointer into the scenario. NewestForecast then still
+// finds the forecasts of the scenario.
 Track Farm::Owned(std::size_t id, std::vector<Waypoint> track) const {
   const auto& specs = scenario_->disasters;
   const bool drawn = id < specs.size() && specs[id].storms;
@@ -408,8 +408,8 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
     disasters_[k] = disaster;
     tracks_[k] = std::move(track);
   }
-  // Turn draws come in blocks of four steps, and a new disaster does not have the current block
-  // yet.
+  // Random turns are drawn in blocks of four steps, and the disaster does not have the current
+  // block yet.
   Disaster& placed = disasters_[k];
   placed.draws = Draw(
       {record_.seed, record_.episode, RngStream::kDisasterTurn, static_cast<std::uint32_t>(id)},

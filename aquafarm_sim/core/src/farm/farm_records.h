@@ -33,9 +33,9 @@ std::int32_t Int(Enum value) {
   return static_cast<std::int32_t>(value);
 }
 
-// Returns whether the rings of a bulletin must be stored: the rings of the disaster may have
-// changed since the bulletin was issued. Rings of a disaster with a track follow from its
-// waypoints.
+// Returns whether the rings of a bulletin must be stored, because the rings of the disaster may
+// have grown or shrunk since the bulletin was issued. Views compute the rings of a disaster with a
+// track from its waypoints.
 inline bool RingsMayHaveChanged(const Disaster& disaster, const Bulletin& bulletin) {
   return disaster.radius_growth != 0.0F && bulletin.step != kNone;
 }
@@ -55,8 +55,8 @@ class Writer {
   void Fields(const char* key, const T&... values) {
     state[key] = json::array({ToJson(values)...});
   }
-  /// Writes a field that saved states of older versions lack. Reader::Added keeps the value of a
-  /// missing field.
+  /// Writes a field that saved states of older versions lack. If a field is missing, Reader::Added
+  /// does not change the value.
   template <typename T>
   void Added(const char* key, const T& value) {
     Field(key, value);
@@ -226,7 +226,7 @@ struct FieldsOf<SavedDisaster> {
 
 // Reads a disaster.
 // @throws InputError if a value is out of range or the rings of the bulletin are missing
-// @throws json::exception if another field is missing or has another type
+// @throws json::exception if another field is missing or a field has the wrong type
 SavedDisaster DisasterFrom(const json& j);
 
 json TrackToJson(const std::vector<Waypoint>& track);

@@ -55,7 +55,7 @@ Waypoint TruthAt(const std::vector<Waypoint>& track, float step) {
 
 // Returns the position at which a forecast of step `issued` starts. With a track, it is the
 // position on the true track. Without a track, it is the current position if `issued` is the
-// current step, else that of the last bulletin: earlier positions are not stored.
+// current step, else the position in the last bulletin, because earlier positions are not stored.
 std::array<float, 2> PositionAt(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
   const std::vector<Waypoint>& track = TrackOf(farm, disaster);
   if (track.empty()) {
@@ -155,8 +155,9 @@ class Forecast {
   bool HasOwnRings() const { return newest_ != nullptr && !newest_->points[0].radii.empty(); }
   bool FollowsTrueRings() const { return !HasOwnRings() && !track_.empty(); }
   const Disaster& Present() const { return farm_.disasters()[static_cast<std::size_t>(disaster_)]; }
-  // Returns the step until which a forecast is extrapolated beyond its last point: the end of the
-  // true track or, without a track, of the disaster. It is not before the last point.
+  // Returns the step until which a forecast is extrapolated beyond its last point. This is the last
+  // step of the true track or, without a track, the step at which the disaster ends, but at least
+  // `last`.
   // @param last step of the last point
   float EndAfter(float last) const {
     const float end =
@@ -165,9 +166,9 @@ class Forecast {
     return std::max(end, last);
   }
 
-  // Returns the steps of the waypoints of AsTrack in ascending order: the step of issue, the later
-  // waypoints of the true track if their rings apply, and for a forecast of an authority its later
-  // points and its end.
+  // Returns the steps of the waypoints of AsTrack in ascending order. They are the step of issue,
+  // and the steps of the later waypoints of the true track if the rings of the track apply. For a
+  // forecast of an authority, the steps of its later points and the result of EndAfter are added.
   std::vector<float> Steps() const {
     std::vector<float> steps{issued_};
     for (std::size_t i = After(issued_, track_); FollowsTrueRings() && i < track_.size(); ++i) {
@@ -189,7 +190,8 @@ class Forecast {
     const float growth = track_.empty() ? Present().radius_growth : 0.0F;
     if (step > issued_ && HasOwnRings()) {
       const Waypoint& last = newest_->points[IndexAfter(step) - 1];
-      // The rings of the last point grow with the disaster. They do not shrink with it.
+      // The rings of the last point grow by radius_growth per step. They do not shrink if it is
+      // negative.
       return Grown(last, std::max(0.0F, growth) * (step - last.step));
     }
     if (!track_.empty()) return TruthAt(track_, issued_);

@@ -22,7 +22,7 @@ constexpr const char* kRocksKey = "layout.rocks.count";
 constexpr const char* kRockCellsKey = "layout.rocks.cells";
 constexpr const char* kPortsKey = "layout.ports.count";
 constexpr const char* kDevicesKey = "layout.devices.count";
-constexpr std::int32_t kLongestRow = 8;  // max number of devices in a row
+constexpr std::int32_t kLongestRow = 8;  // max devices in a row, unless the map has too few rows
 
 // Returns the value of Layout::obstacle for a crash reward.
 std::uint8_t ObstacleLevel(float reward) {
@@ -137,7 +137,7 @@ void LayoutGenerator::PlaceIslands(Layout& layout) const {
   }
 }
 
-// Places the ports, rocks and devices whose cells the scenario specifies. DrawRocks sets the
+// Places the ports, rocks and devices whose cells the scenario specifies. DrawRocks sets the crash
 // rewards of the rocks later.
 void LayoutGenerator::PlaceExplicit(Layout& layout) const {
   for (const Cell cell : scenario_.ports.cells) AddPort(cell, layout);

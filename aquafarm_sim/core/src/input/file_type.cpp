@@ -45,7 +45,8 @@ DetectedFile DetectJsonType(const std::string& text) {
   return {};
 }
 
-// Detects binary formats from their first bytes.
+// Detects netCDF files and pictures from their first bytes, and other binary files from a zero
+// byte.
 DetectedFile DetectBinaryType(const std::string& text) {
   if (Starts(text, "CDF") || Starts(text, "\x89HDF")) return {FileKind::kNetcdf, "a netCDF file"};
   if (Starts(text, "\x89PNG")) return {FileKind::kPicture, "a PNG picture"};

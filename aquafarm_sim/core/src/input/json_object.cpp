@@ -20,7 +20,7 @@ std::int32_t LineAt(const std::string& text, std::size_t offset) {
   return static_cast<std::int32_t>(1 + std::count(text.begin(), end, '\n'));
 }
 
-// Returns whether a value is null, blank or "null".
+// Returns whether a value is null, a blank string or "null".
 bool SaysNothing(const Json& value) {
   if (!value.is_string()) return value.is_null();
   const std::string& text = value.get_ref<const std::string&>();
@@ -95,8 +95,9 @@ class PathFinder : public nlohmann::json_sax<Json> {
     const Level& level = levels_.back();
     return level.array ? internal::At(level.path, level.index) : Join(level.path, level.key);
   }
-  // Returns whether `path` is the wanted path. If it is, or if it is a parent of the wanted path,
-  // records the current position. Later parents are deeper.
+  // Returns whether `path` is the wanted path. If `path` is the wanted path or a parent of it,
+  // records the current position. A parent that is parsed later is deeper, so its position replaces
+  // the recorded one.
   bool IsWanted(const std::string& path) {
     const bool holds = wanted_.compare(0, path.size(), path) == 0;
     const bool ends = path.empty() || path.size() == wanted_.size() ||
@@ -161,7 +162,7 @@ std::string InRange(double min, double max) {
   return "a number in [" + Format(min) + ", " + Format(max) + "]";
 }
 
-// Returns the end of leading blanks and JavaScript comments.
+// Returns the position after leading blanks and JavaScript comments.
 std::size_t EndOfComments(const std::string& text) {
   std::size_t at = text.find_first_not_of(" \t\r\n");
   while (at != std::string::npos && text[at] == '/') {
@@ -247,10 +248,11 @@ bool IsBlank(const Json& value) {
 std::int32_t LineOfJson(const std::string& text, const std::string& path) {
   const char* read = text.data();
   PathFinder finder(path, read);
-  // The parser detects the end of a number only at the character after it.
   const char* end = text.data() + text.size();
   Json::sax_parse(ReadingIterator(text.data(), &read), ReadingIterator(end, &read), &finder);
   const char* found = finder.found();
+  // To find the end of a number, the parser reads the character after it, which may be a line feed.
+  // The - 1 excludes this character.
   return found == nullptr || found == text.data()
              ? 1
              : LineAt(text, static_cast<std::size_t>(found - text.data() - 1));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// JSON as found in bulletins. The text may start with a byte order mark or be inside a Markdown
-/// fence. It may be the value of a JavaScript variable (`let x = …;`), with comments before it. A
-/// number may be written as a string. A value is missing if its key is absent, or if the value is
-/// null, a blank string or "null".
+/// JSON as found in bulletins, notices, weather-service tracks and coasts. The text may start with
+/// a byte order mark or be inside a Markdown fence. It may be the value of a JavaScript variable
+/// (`let x = …;`), with comments before it. A number may be written as a string. A value is
+/// missing if its key is absent, or if the value is null, a blank string or "null".
 
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -30,13 +30,12 @@ std::string CleanJson(const std::string& text);
 ///   more than 64 nested levels, or a number that a double cannot hold
 nlohmann::json ParseJson(const std::string& text, ParseContext& place);
 
-/// Returns whether a value is missing: null, a blank string, "null", or an object whose values are
-/// all null, blank or "null".
+/// Returns whether a value is missing, or is an object whose values are all missing.
 bool IsBlank(const nlohmann::json& value);
 
-/// Returns the line of the value at a path such as "[0].points[3].lat": the line on which an object
-/// or list begins, or on which another value ends. If there is no value at the path, returns the
-/// line of its nearest existing parent.
+/// Returns the line of the value at a path such as "[0].points[3].lat". For an object or a list, it
+/// is the line of the opening bracket; for other values, the line on which the value ends. If there
+/// is no value at the path, returns the line of the nearest existing parent.
 std::int32_t LineOfJson(const std::string& text, const std::string& path);
 
 /// A JSON object with its path. Each look-up accepts several spellings of a key and uses the first
@@ -57,12 +56,12 @@ class JsonObject {
   std::optional<double> Number(Keys keys, double min, double max) const;
   /// Returns a number. @throws InputError if it is missing or not a number in [min, max]
   double NeedNumber(Keys keys, double min, double max) const;
-  /// As Number; an invalid value is ignored with one warning per key and file.
+  /// Does the same as Number, but ignores an invalid value, with one warning per key and file.
   std::optional<double> TryNumber(Keys keys, double min, double max) const;
   /// Returns a string, or a number as text; "" if it is missing.
   /// @throws InputError for a value of another type
   std::string Text(Keys keys) const;
-  /// As Text; a value of another type is ignored with one warning per key and file.
+  /// Does the same as Text, but ignores a value of another type, with one warning per key and file.
   std::string TryText(Keys keys) const;
   /// Returns UTC seconds since 1970.
   /// @param zone_s offset that applies to a text without a zone [s], positive east of Greenwich
@@ -74,7 +73,7 @@ class JsonObject {
   GeoPoint NeedPosition(Keys latitude, Keys longitude) const;
   /// Returns a list, or nullptr if it is missing. @throws InputError if it is not a list
   const nlohmann::json* List(Keys keys) const;
-  /// As List; a value of another type is ignored with one warning per key and file.
+  /// Does the same as List, but ignores a value of another type, with one warning per key and file.
   const nlohmann::json* TryList(Keys keys) const;
   /// Sets the position of the parse context to this object and returns the context, so that the
   /// caller can report an error or a warning.

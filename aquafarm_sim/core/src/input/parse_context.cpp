@@ -24,7 +24,7 @@ std::string NotInRange(std::string_view text, const char* name, T min, T max) {
 }  // namespace
 
 std::string ParseContext::Located(const std::string& value_path) const {
-  // Each search reads the file again, so only a limited number of messages contain the line.
+  // Each search parses the text again, so only a limited number of messages contain the line.
   constexpr std::size_t kMaxSearches = 200;
   constexpr std::size_t kMaxBytes = std::size_t{128} << 20U;
   if (!locate) return file_ + ":" + std::to_string(line) + ": ";

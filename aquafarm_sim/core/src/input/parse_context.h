@@ -71,14 +71,14 @@ class ParseContext {
   struct Repeated {
     std::size_t index{};  // index of the warning
     std::size_t more{};   // number of later calls with its kind
-    std::string text;     // text of the warning without that number
+    std::string text;     // text of the warning without the number `more`
   };
   // Returns whether the kind has a warning. If so, counts the call in the text of that warning.
   bool IsRepeated(const std::string& kind);
   // Adds the first warning of a kind.
   void AddFirst(const std::string& kind, std::string text);
-  // Returns "file:line: ". With `locate`, the line is that of a JSON value; after too many searches
-  // the line is left out.
+  // Returns "file:line: ". If `locate` is set, the line is that of a JSON value. After too many
+  // searches, returns "file: ".
   std::string Located(const std::string& value_path) const;
   std::string At(const std::string& what) const;
   std::string AtValue(const std::string& value_path, const std::string& what) const;
@@ -122,12 +122,13 @@ std::int32_t ReadWhole(std::string_view text, const char* name, std::int32_t min
 /// Does the same as ReadWhole, for a decimal number.
 double ReadNumber(std::string_view text, const char* name, double min, double max,
                   const ParseContext& place);
-/// As ReadWhole; nullopt for a blank text.
+/// Does the same as ReadWhole, but returns nullopt for a blank text.
 std::optional<std::int32_t> ReadWholeOrBlank(std::string_view text, const char* name,
                                              std::int32_t min, std::int32_t max,
                                              const ParseContext& place);
 
-/// As ReadWholeOrBlank; an invalid value is ignored with one warning per name and file.
+/// Does the same as ReadWholeOrBlank, but ignores an invalid value, with one warning per name and
+/// file.
 std::optional<std::int32_t> TryWhole(std::string_view text, const char* name, std::int32_t min,
                                      std::int32_t max, ParseContext& place);
 /// Does the same as TryWhole, for a decimal number.

@@ -9,7 +9,7 @@
 namespace aquafarm {
 namespace {
 
-constexpr std::size_t kFixedFeatures = 9;  // without kind and forecast
+constexpr std::size_t kFixedFeatures = 9;  // features of a slot without kind and forecast
 
 // Writes one slot and returns the end of its features.
 float* WriteSlot(float scale, const View& view, const KnownDisaster& known, float* out) {

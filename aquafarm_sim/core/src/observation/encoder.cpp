@@ -12,8 +12,8 @@
 namespace aquafarm {
 namespace {
 
-// RiskBrush paints the first two planes. The other planes follow them, so that a run of cells past
-// the end of a painted plane stays inside the buffer.
+// RiskBrush paints the first two planes. Because the other planes follow, a run of cells (kRun)
+// that extends past the end of a painted plane stays inside the buffer.
 enum Plane : std::size_t { kRisk, kForecast, kObstacle, kPort, kDevice, kSelf, kCargo, kOthers };
 
 // Returns the digit of a device in a status code: deployed (0), aboard this ship (1), or delivered

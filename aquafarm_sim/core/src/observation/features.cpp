@@ -111,7 +111,7 @@ std::vector<std::string> BaseNames(const Scenario& scenario) {
   return names;
 }
 
-// Writes the disasters of the scenario by id.
+// Writes the features of the scenario's disasters, in id order.
 void WriteDisasters(const FeatureScales& scales, const View& view, float* out) {
   constexpr std::size_t kCount = 7;
   const float scale = scales.length;
@@ -135,7 +135,7 @@ void WriteDisasters(const FeatureScales& scales, const View& view, float* out) {
   }
 }
 
-// Returns the features of disasters: by id, or by slot if the scenario has slots.
+// Returns the group of the disaster features: by id, or by slot if the scenario has slots.
 FeatureGroup DisasterGroup(const Scenario& scenario) {
   if (SlotCount(scenario) > 0) {
     return {"disasters", SlotNames(scenario),
@@ -170,14 +170,13 @@ void WriteEnergy(const FeatureScales& scales, const View& view, float* out) {
 }
 
 // Writes the next move and the number of remaining moves to each port and each fetchable device.
-// For a fetchable device that is not deployed, writes 0.
+// For a fetchable device that is not deployed, writes zeros.
 void WriteRoutes(const FeatureScales& scales, const View& view, float* out) {
   const float scale = scales.length;
   const Layout& layout = *view.layout;
   const auto cell = static_cast<std::size_t>(LinearIndex(view.self, view.scenario->width));
   const RouteEntry* route = layout.routes.data() + cell * layout.route_count();
-  // Upper bound of the number of moves that is written. It is also written for an unreachable
-  // target.
+  // Larger numbers of moves, and those of unreachable targets, are written as this number.
   const std::int32_t farthest = 2 * (view.scenario->width + view.scenario->height);
   const auto write = [&] {
     *out++ = static_cast<float>(route->east);

@@ -116,7 +116,7 @@ void MaxWithRings(const ObservableDisaster& disaster, float age, std::size_t ste
     const FloatRun south = disaster.y - (y[step] - ahead * disaster.dy);
     const FloatRun distance_squared = west * west + south * south;
     FloatRun there = {};
-    // Starts with the outermost ring, because the innermost ring that contains a cell applies.
+    // From the outermost ring inwards, because the innermost ring that contains a cell applies.
     for (std::size_t k = rings; k-- > 0;) {
       const FloatRun inside = FloatRun{} + disaster.risk[k];
       there = distance_squared <= disaster.radius_squared[k] ? inside : there;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Computes the risk of disasters at many cells, for encodings. Compares the same floats as RiskOf,
-/// but processes runs of cells at once with the vector extensions of GCC and Clang. § refers to the
-/// paper, see docs/model.md.
+/// Computes the risk of disasters at many cells, for encodings. Finds the same rings as RiskOf,
+/// because it compares the same floats. Processes runs of cells at once with the vector extensions
+/// of GCC and Clang. § refers to the paper, see docs/model.md.
 
 #include <algorithm>
 #include <array>
@@ -33,10 +33,10 @@ class RiskBrush {
   /// @param disaster must outlive the brush
   RiskBrush(const ObservableDisaster& disaster, std::int32_t width, std::int32_t height);
 
-  /// Paints the disaster after it has moved for `ahead` steps along its motion. A cell keeps the
-  /// worse of its risk and the painted one.
-  /// @param plane [H, W], followed by at least kRun - 1 bytes, which may be read and written back
-  ///   unchanged
+  /// Paints the disaster where it is after `ahead` steps of its motion. Each cell keeps the worse
+  /// of its previous risk and the risk of the disaster.
+  /// @param plane [H, W], followed by at least kRun - 1 bytes of the same buffer. Paint may read
+  ///   these bytes and write them back unchanged.
   void Paint(float ahead, std::uint8_t* plane) const;
 
  private:
@@ -67,7 +67,7 @@ class LookaheadRisks {
   void Write(float* next, float* courses) const;
 
  private:
-  inline static constexpr std::size_t kSteps = 6;  // length of a course
+  inline static constexpr std::size_t kSteps = 6;  // number of steps of a course
 
   // Cell and risk after each step. A run has one lane per course; the other lanes are unused.
   std::array<FloatRun, kSteps> x_;

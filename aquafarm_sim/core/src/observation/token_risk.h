@@ -43,7 +43,7 @@ class TokenRisk {
     for (std::size_t i = 0; i < count_; ++i) {
       const ObservableDisaster& belief = disasters_[i]->belief;
       const float moved = ahead + static_cast<float>(disasters_[i]->age);
-      if (ahead >= static_cast<float>(belief.steps_left)) continue;  // it has ended by then
+      if (ahead >= static_cast<float>(belief.steps_left)) continue;  // the disaster has ended
       worst = std::min(worst, RiskOf(belief, static_cast<float>(cell.x) - moved * belief.dx,
                                      static_cast<float>(cell.y) - moved * belief.dy));
     }

@@ -45,8 +45,8 @@ class Kept {
   std::size_t count_{};
 };
 
-/// Returns the part of Layout::routes that starts at a cell: the routes to all ports and then to
-/// all fetchable devices, [Layout::route_count()].
+/// Returns the routes from a cell in Layout::routes, [Layout::route_count()]: the routes to all
+/// ports and then those to all fetchable devices.
 inline const RouteEntry* RoutesFrom(const View& view, Cell cell) {
   const auto index = static_cast<std::size_t>(LinearIndex(cell, view.scenario->width));
   return view.layout->routes.data() + index * view.layout->route_count();
@@ -84,9 +84,9 @@ class TargetsOf {
   /// Returns the index of the route to the device of a slot in the result of RoutesFrom.
   std::size_t route(std::size_t slot) const { return routes_[slot]; }
 
-  // FromPort and ToNextDevice return 0 if no (other) deployed device has a slot, and kUnreachable
-  // if none of these devices can be reached. ToNextDeviceByPort returns kUnreachable if it finds no
-  // route.
+  // FromPort and ToNextDevice consider only deployed devices that have a slot. They return 0 if
+  // there is no such device to go to, and kUnreachable if no route leads to one. ToNextDeviceByPort
+  // returns kUnreachable if it finds no route.
 
   /// Returns the number of moves from the port of a slot to the nearest deployed device.
   std::int32_t FromPort(std::size_t slot) const {

@@ -13,7 +13,7 @@
 namespace aquafarm {
 namespace {
 
-constexpr float kFarthest = 4.0F;           // bound of lengths and other unbounded features
+constexpr float kFarthest = 4.0F;           // limit of lengths and other clamped features
 constexpr float kCloseSteps = 4.0F;         // moves at which the feature `close` is 1/2
 constexpr float kRingSteps = 8.0F;          // steps at which `rings_in` and `rings_out` are 1/2
 constexpr float kCountScale = 1.0F / 4.0F;  // factor of devices aboard and of the capacity
@@ -94,8 +94,8 @@ bool IsBlocked(const View& view, Cell cell) {
   return !on_map || (view.layout->bits(cell) & kBlockedBits) != 0;
 }
 
-// Writes which cells are blocked, and the risk in each open cell at the earliest step at which the
-// ship could be there.
+// Writes which cells of the window around the ship are blocked, and the risk in each open cell at
+// the earliest step at which the ship could be there.
 float* WriteWindow(const View& view, const TokenRisk& risk, float* out) {
   constexpr std::int32_t kCells = kSide * kSide;
   std::fill_n(out + kCells, kCells, 0.0F);
@@ -129,7 +129,7 @@ void WriteShip(const FeatureScales&, const View& view, float* out) {
   for (std::size_t i = 0; i < risk.count(); ++i) {
     courses.MaxWith(risk.disaster(i).belief, static_cast<float>(risk.disaster(i).age));
   }
-  courses.Write(out, out + kMoveCount);  // negative
+  courses.Write(out, out + kMoveCount);  // 0 or negative
   std::transform(out, out + kMoveCount + kCourseCount, out,
                  [](float value) { return 0.0F - value; });
   WriteWindow(view, risk, out + kMoveCount + kCourseCount);

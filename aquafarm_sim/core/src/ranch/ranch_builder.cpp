@@ -100,8 +100,8 @@ class Builder {
     ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
   }
 
-  // Returns whether networks get routes by water as features. They do if the ranch has too many
-  // states for a table to learn quickly, and is small enough for routes.
+  // Returns whether neural networks get routes by water as features. They do if the ranch has too
+  // many states for quick tabular learning, and is small enough for routes.
   bool IsForNetworks() {
     constexpr std::uint32_t kSoonLearnt = 1'000'000;
     const std::uint32_t states = Encoder(ranch_.scenario).state_count();
@@ -148,7 +148,7 @@ class Builder {
     }
     const GeoPoint corner = GeoFrame(*request_.center, plan_.cell_size_m)
                                 .ToGeo(-(width() - 1) / 2.0, -(height() - 1) / 2.0);
-    // Rounded to the digits in the file, so that the frame here equals that of the file.
+    // Rounded to the digits in the scenario file, so that the frame here equals that of the file.
     plan_.origin =
         GeoPoint{std::stod(Short(corner.latitude, 6)), std::stod(Short(corner.longitude, 6))};
     return GeoFrame(*plan_.origin, plan_.cell_size_m);
@@ -239,11 +239,11 @@ class Builder {
                      " " + FormatTime(fix.time) + ": " + what);
   }
 
-  // Repeats a check of the scenario reader here, where the line in the track's file is known.
+  // Checks the fixes as the scenario reader does, but reports their line in the track's file.
   void CheckReach(const StormTrack& track) {
     const GeoFrame frame = Frame();
     const std::vector<StormFix>& all = track.fixes;
-    for (std::size_t i = 0; i < all.size(); ++i) {  // includes the fixes next to the waypoints
+    for (std::size_t i = 0; i < all.size(); ++i) {  // also one fix beyond each end of the waypoints
       const bool past = i + 1 < all.size() && all[i + 1].time <= plan_.storm.waypoints[0].time;
       const bool later = i > 0 && all[i - 1].time >= plan_.storm.waypoints.back().time;
       if (past || later || frame.Faces(all[i].position)) continue;
@@ -253,8 +253,8 @@ class Builder {
     }
   }
 
-  // Returns the recorded track, continued by its newest forecast or, if it has none, by one of
-  // --forecasts. Best tracks of CMA and JMA are complete: --forecasts does not continue them.
+  // Returns the recorded track, continued by its newest forecast or, if it has none, by the newest
+  // of --forecasts. Best tracks of CMA and JMA are complete: --forecasts does not continue them.
   StormTrack Continued(StormTrack recorded, TrackFormat format) {
     const bool complete = format == TrackFormat::kCma || format == TrackFormat::kJma;
     if (!request_.forecasts.empty()) {
@@ -300,7 +300,7 @@ class Builder {
     return track;
   }
 
-  // Sets step duration, start and duration of the episode, by the storm's track if there is one.
+  // Sets step duration, start and duration of the episode, from the storm's track if there is one.
   void SetTime() {
     plan_.step_s = request_.step_s.value_or(
         std::max(1.0, std::round(plan_.cell_size_m / (request_.speed_kn * kMpsPerKnot))));
@@ -372,7 +372,7 @@ class Builder {
            all.begin() + static_cast<std::ptrdiff_t>(to)};
   }
 
-  // Returns the max number of steps. All disasters must be in the plan before.
+  // Returns the max number of steps. All disasters must already be in the plan.
   std::int32_t StepLimit() const {
     if (ends_unknown_ && duration_ == plan_.storm_steps) return duration_;
     return duration_ > 0 ? duration_ + 100 : 5000;
@@ -401,7 +401,7 @@ class Builder {
     SeaField field = LoadSeaField(sea.file, {sea.variable, time, request_.sea_depth_m}, frame,
                                   width(), height());
     NamedLayer layer{sea.name, ToLayer(field, frame, width(), height())};
-    // Rounded to the digits in the file, so that expressions give the results that the file gives.
+    // Rounded to the digits in the scenario file, so that expressions give the same results there.
     layer.layer = layer.layer.unaryExpr([](float value) {
       return std::isnan(value)
                  ? value
@@ -471,9 +471,9 @@ class Builder {
   internal::RanchPlan plan_;
   Layer value_;              // value of a device, by cell
   StormFile forecasts_;      // content of --forecasts
-  std::int32_t duration_{};  // max duration of all disasters
-  bool ends_unknown_{};  // the episode ends with the storm's known track while the storm is still
-                         // over the ranch or coming nearer
+  std::int32_t duration_{};  // max duration of all disasters [steps]
+  bool ends_unknown_{};  // the disaster ends at the storm's last known position, where the storm is
+                         // still over the ranch or coming nearer
 };
 
 }  // namespace

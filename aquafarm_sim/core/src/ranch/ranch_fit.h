@@ -32,17 +32,18 @@ void NeedCover(const Coast& coast, const RanchArea& ranch, const std::string& pa
 /// @throws InputError if all cells are outside
 std::string NeedCover(const AsciiGrid& grid, const RanchArea& ranch, const std::string& path);
 /// Checks that a field has a value in at least one cell of the ranch.
-/// @param layer the values of `field` on the cells @param path file of the field, for messages
+/// @param layer the values of `field` on the cells
+/// @param path file of the field, for messages
 /// @throws InputError if all values are NaN
 void NeedValues(const SeaField& field, const Layer& layer, const RanchArea& ranch,
                 const std::string& path);
-/// Returns a warning if the time of a field differs from the start by more than two days. Returns
-/// "" if not, or if one of the times is unknown.
+/// Returns a warning if the time of a field differs from the start by more than two days, else "".
+/// Also returns "" if one of the times is unknown.
 std::string CheckTime(const SeaField& field, std::optional<std::int64_t> start,
                       const std::string& path);
 /// Checks that a requested port is in the ranch and not on land.
 /// @param shore shore cell nearest to the port, for messages
-/// @returns "" if it is, else a warning
+/// @returns "" if the port is valid, else a warning
 /// @throws InputError instead of the warning if request.exact_ports is set
 std::string CheckPort(GeoPoint wanted, Cell shore, const RanchRequest& request,
                       const RanchArea& ranch, const Terrain& terrain);

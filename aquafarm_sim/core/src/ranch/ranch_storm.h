@@ -11,12 +11,12 @@
 
 namespace aquafarm::internal {
 
-/// Finds the storm of `track` in another file. If the file has a single storm, it matches if the
-/// names are equal or one of the names is missing. In other cases the id selects the storm, or the
-/// name if no id matches.
+/// Finds the storm of `track` in another file. A single storm in the file matches if its name
+/// equals that of `track` or if one of these names is missing. In other cases the id selects
+/// the storm, or the name if no id matches.
 /// @param option name of the option with the file, for messages
-/// @throws InputError if the file has no such storm, or if its period does not overlap that of
-///   `track`
+/// @throws InputError if the file has no such storm, or if the period of the storm does not overlap
+///   that of `track`
 const StormTrack& SameStorm(const std::string& option, const StormFile& file,
                             const StormTrack& track);
 
@@ -51,13 +51,15 @@ std::vector<StormForecast> ForecastsDuring(const std::vector<StormForecast>& for
                                            std::int64_t start, std::int64_t end,
                                            std::vector<std::string>& warnings);
 
-/// Returns one line that describes the storms of the archive `files` that a ranch uses.
+/// Returns one line that describes the storms that a ranch uses from the archive `files`.
 std::string ArchiveLine(const std::vector<std::string>& files, const StormsSpec& storms);
 
-/// Checks that an episode starts before its storm ends, and not before the track of the storm.
-/// @param end UTC at which the storm ends, at most the end of the known track. It is one to two
-///   hours after the storm has left the ranch. If the storm does not reach the ranch, it is 13 to
-///   14 hours after the storm was nearest. Other disasters may make the episode longer.
+/// Checks that an episode starts before its storm ends, and not before the storm's first known
+/// position.
+/// @param end UTC at which the storm ends in the episode: one to two hours after the storm has left
+///   the ranch. If the storm does not reach the ranch, `end` is 13 to 14 hours after the storm was
+///   nearest. If the known track ends earlier, `end` is its end. Other disasters may make the
+///   episode longer.
 /// @returns a warning if the start is before the first known position, else ""
 /// @throws InputError if the start is not before `end`
 std::string CheckStart(std::int64_t start, std::int64_t end, const StormRings& storm,

@@ -15,7 +15,7 @@
 
 namespace aquafarm::internal {
 
-/// Content of the file that the request does not determine alone.
+/// The parts of the scenario file that do not follow from the request alone.
 struct RanchPlan {
   std::int32_t width{};
   std::int32_t height{};
@@ -33,8 +33,8 @@ struct RanchPlan {
   std::int32_t storm_steps{};
   std::vector<StormForecast> forecasts;  ///< forecasts of the storm, sorted by time of issue
   std::vector<DisasterSpec> presets;
-  /// Tracks of the archive's storms in reach, as text of an archive. Empty until the storms are
-  /// selected; the scenario file then lists the files of the archive instead.
+  /// Tracks of the archive's storms in reach, in the format of tracks/archive.h. Empty until the
+  /// storms are selected. While it is empty, the scenario file lists the files of the archive.
   std::string archive;
   std::int32_t archive_steps{};  ///< duration of an archive storm [steps]; 0: no archive
   std::vector<NamedLayer> layers;

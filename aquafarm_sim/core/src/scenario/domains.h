@@ -3,7 +3,7 @@
 
 /// Types of domains. A domain is the set of valid values of a scenario key. schema.h declares the
 /// domain of each key once. The reader, the writer and the validation of scenarios created in code
-/// use it.
+/// use these declarations.
 
 #include <array>
 #include <cmath>
@@ -35,14 +35,14 @@ struct TextOf {
 };
 /// Text of several lines, which the writer writes as a YAML block ("|").
 struct LinesOf : TextOf {};
-/// A cell of the largest possible map. ValidateScenario checks that it is on the map of the farm.
+/// A cell of the largest possible map. ValidateScenario checks that it is on the scenario's map.
 struct AnyCell {};
 struct AnyFlag {};
 /// A finite number or NaN (.nan in files).
 struct NumberOrNone {};
 /// One of the names of an enum.
 struct OneOfNames {};
-/// UTC seconds since 1970, as YYYY-MM-DDTHH:MM:SSZ.
+/// UTC seconds since 1970, written as YYYY-MM-DDTHH:MM:SSZ.
 struct UtcTime {};
 
 /// Lists of `min_size` to `max_size` entries.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// All keys of a scenario and their domains, declared once. An archive visits them:
+/// All keys of a scenario and their domains, declared once. An archive is a class that visits them:
 ///
 ///   YamlReader    fills the structs from a file and rejects unknown keys
 ///   YamlWriter    writes the structs and omits unused keys
@@ -26,14 +26,14 @@ struct SeaSource {
   std::string file;
   std::string variable;
   double depth_m{};
-  /// UTC [s since 1970]. If unset, the start of the episode is used; without a start, the first
-  /// time of the file.
+  /// UTC [s since 1970]. If unset, time.start of the scenario is used. If that is unset too, the
+  /// first time of the file is used.
   std::optional<std::int64_t> time;
 };
 
 /// Reads a field and interpolates it at the cells of a farm.
-/// @throws FieldError if the scenario has no origin, or if the file has no such field or no value
-///   of it on the farm
+/// @throws FieldError if the scenario has no origin, if the file cannot be read or has no such
+///   field, or if the field has no value on the farm
 void Resolve(const SeaSource& source, const WorldFrame& frame, const std::string& path,
              std::int32_t width, std::int32_t height, SeaLayer& layer);
 /// Evaluates an expression of the sea's layers at every cell, [H · W].
@@ -41,7 +41,7 @@ void Resolve(const SeaSource& source, const WorldFrame& frame, const std::string
 ///   different sizes
 std::vector<float> ByRule(const std::string& rule, const std::vector<SeaLayer>& layers,
                           const std::string& path);
-/// Checks one value per cell. @throws FieldError for a value that is not 0, NaN or in `range`
+/// Checks one value per cell. @throws FieldError unless each value is 0, NaN or in `range`
 void CheckPerCell(const std::string& path, const std::vector<float>& values, std::int32_t width,
                   Interval<float> range);
 
@@ -164,8 +164,8 @@ void VisitView(Archive& a, S& s) {
   });
 }
 
-/// Visits one number per cell. The writer writes the numbers under `key`. A file may give the
-/// numbers, or an expression of the layers under `rule_key`.
+/// Visits one number per cell. A file contains either the numbers, under `key`, or an expression of
+/// the layers, under `rule_key`; it may also contain neither. The writer writes the numbers.
 template <typename Archive, typename Values>
 void VisitPerCell(Archive& a, const char* rule_key, const char* key, const char* condition,
                   const Scenario& scenario, Interval<float> range, Values& values) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The keys of a disaster, its track and forecasts, and of storms from an archive; part of
+/// The keys of a disaster, of its track and forecasts, and of storms from an archive; part of
 /// schema.h.
 
 #include <algorithm>
@@ -23,8 +23,8 @@ struct GeoFix {
   std::optional<float> pressure_hpa;        ///< has no effect
 };
 
-/// Parameters that convert a GeoFix to a Waypoint. Functions accept nullptr instead of a frame
-/// where no file is read, because only files contain positions in degrees.
+/// Parameters that convert a GeoFix to a Waypoint. Only files contain positions in degrees, so
+/// functions accept nullptr instead of a frame if no file is read.
 struct WorldFrame {
   std::optional<GeoFrame> grid;
   std::optional<std::int64_t> start_time;
@@ -50,11 +50,12 @@ void VisitGeoPoint(Archive& a, Point& point) {
   a.Field("longitude", point.longitude, Interval<double>{-180.0, 180.0}, Need::kRequired);
 }
 
-/// Reads recorded storms and stores those of the requested years in reach of the farm in
-/// disaster.storms. Also sets the track of the disaster to that of the first storm for training.
+/// Reads recorded storms. Stores in disaster.storms those of the requested years that have gales
+/// and come as close to the middle of the farm as within_km. Also sets the track of the disaster to
+/// that of the first storm for training.
 /// @param files files of tracks; if empty, storms.tracks contains the text of an archive
 /// @throws FieldError if a file is unreadable, grid.origin is missing, times or years contradict
-///   each other, or no storm of the years for training or for evaluation comes in reach
+///   each other, or there is no such storm of the years for training or of those for evaluation
 void Resolve(const std::vector<std::string>& files, const WorldFrame* frame,
              const std::string& path, DisasterSpec& disaster);
 
@@ -107,7 +108,8 @@ void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame, const Grade
   a.Field("risks", waypoint.risks, ListOf<Interval<float>>{kRisk, 1, kMaxRings});
 }
 
-/// Visits a point with rings as a waypoint, and a point without rings as a place and a time.
+/// Visits a point with rings as a waypoint, and a point without rings as a time, a position and a
+/// wind.
 template <typename Archive, typename P>
 void VisitForecastPoint(Archive& a, P& point, const WorldFrame* frame, const GradeRisks& by_grade) {
   bool ringed = a.Has("radii", !point.radii.empty());

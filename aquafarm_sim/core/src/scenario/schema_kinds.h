@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Keys of a scenario about kinds of devices and disasters; part of schema.h. They are written only
-/// where they differ from the defaults, so the texts and hashes of scenarios without them stay the
-/// same.
+/// Keys of a scenario about kinds of devices and disasters, grade factors, monitoring devices and
+/// entity tokens; part of schema.h. They are written only where they differ from the defaults.
+/// Scenarios that do not use them therefore have the same texts and hashes as before these keys
+/// existed.
 
 #include <algorithm>
 

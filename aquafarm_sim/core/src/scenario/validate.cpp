@@ -14,9 +14,9 @@ using internal::At;
 using internal::FieldError;
 using internal::Format;
 
-// Checks the number, radii and risks of rings. Without a track, each ring must be larger than the
-// ring inside it. In waypoints, a ring must not be smaller than the ring inside it, and 0 means
-// that a ring is absent at that time. Risks must be sorted, the worst first.
+// Checks the number, radii and risks of rings. If `waypoint`, no ring may be smaller than the ring
+// inside it, and radius 0 means that the ring is absent at that time. If not `waypoint`, each ring
+// must be larger than the ring inside it. Risks must be sorted, the worst first.
 void CheckRings(const std::string& path, const std::vector<float>& radii,
                 const std::vector<float>& risks, std::size_t rings, bool waypoint) {
   const std::string radii_path = internal::Join(path, "radii");
@@ -253,7 +253,8 @@ void CheckFits(const char* path, std::int32_t wanted, std::int32_t& free, const 
 constexpr std::uint64_t kMaxRoutes = 16'777'216;  // 128 MiB per layout
 
 void CheckPlaces(const Scenario& scenario) {
-  constexpr std::int32_t kFewestCells = 4;  // six planes must have at least kRun bytes
+  // The six planes after the two that RiskBrush paints must have at least kRun - 1 bytes.
+  constexpr std::int32_t kFewestCells = 4;
   if (scenario.CellCount() < kFewestCells) {
     throw FieldError("grid", "got " + Format(scenario.CellCount()) + " cells, expected at least " +
                                  Format(kFewestCells));

@@ -30,7 +30,7 @@ class LineMap {
   std::vector<OldName> old_names_;
 };
 
-/// Archive that fills structs from a block of keys. Absent keys keep the value of the struct.
+/// Archive that fills structs from a block of keys. The value of an absent key does not change.
 class YamlReader {
  public:
   static constexpr bool kReads = true;
@@ -133,7 +133,7 @@ class YamlReader {
   }
   template <typename T, typename Domain>
   static std::string Expected(const T&, const Domain&) {
-    return "a list";  // of numbers, of names, a cell, a pair
+    return "a list";  // also for a cell and for a pair of numbers
   }
   template <typename T, typename Domain>
   static std::string Expected(const std::optional<T>& value, const Domain& domain) {

@@ -26,7 +26,7 @@ Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& lay
     parser.SetExpr(expression);
     std::vector<const double*> used;  // layers in the expression; NaN in others has no effect
     for (const auto& [name, value] : parser.GetUsedVar()) {
-      if (value != nullptr) used.push_back(value);  // null for an unknown name, refused below
+      if (value != nullptr) used.push_back(value);  // null for an unknown name, which Eval rejects
     }
     for (Eigen::Index cell = 0; cell < result.size(); ++cell) {
       for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -34,7 +34,7 @@ Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& lay
       }
       const bool known = std::none_of(used.begin(), used.end(),
                                       [](const double* value) { return std::isnan(*value); });
-      // Evaluated at NaN inputs too, so that an invalid expression is always rejected.
+      // Eval is also called for NaN inputs, so that it always rejects an invalid expression.
       const double value = parser.Eval();
       result.data()[cell] =
           known ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();

@@ -82,7 +82,7 @@ class HeaderReader {
     ended_ = ended_ || file_.eof();
     return good() ? word : 0;
   }
-  // Names and values are padded to multiples of four bytes.
+  // Skips a name or values, which are padded to a multiple of four bytes.
   void Skip(std::uint64_t bytes) {
     const std::uint64_t filled = (AtMost(bytes, kMaxBytes * 8) + 3) / 4 * 4;
     if (good()) file_.seekg(static_cast<std::streamoff>(filled), std::ios::cur);

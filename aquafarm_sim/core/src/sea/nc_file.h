@@ -8,11 +8,11 @@
 
 namespace aquafarm::internal {
 
-/// An open netCDF file. Messages of errors contain the path.
+/// An open netCDF file. Error messages contain the path.
 class NcFile {
  public:
-  /// @throws InputError if the path is not a regular file or not netCDF. Also if the file has a
-  ///   classic format and is truncated or damaged.
+  /// @throws InputError if the path is not a regular file, if the file cannot be read as netCDF, or
+  ///   if it has a classic format and is truncated or damaged
   explicit NcFile(const std::string& path);
   ~NcFile();
   NcFile(const NcFile&) = delete;

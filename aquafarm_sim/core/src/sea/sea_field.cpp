@@ -181,8 +181,8 @@ std::size_t Nearest(const std::vector<double>& at, double wanted) {
   return static_cast<std::size_t>(nearest - at.begin());
 }
 
-// Converts forms that UDUNITS accepts and ISO 8601 does not: "0:0:0", "00:00:00.0", "00:00:00 UTC"
-// and "00:00:00 +00:00".
+// Converts a date and time that UDUNITS accepts to a form that ParseDateTime accepts. The time may
+// be absent, or have a form such as "0:0:0", "00:00:00.0", "00:00:00 UTC" or "00:00:00 +00:00".
 std::string PlainTime(std::string time) {
   for (const char* utc : {"UTC", "utc", "Z", "+00:00", "+0:00"}) {
     const std::string_view ending(utc);
@@ -370,8 +370,8 @@ Block ChooseBlock(const NcFile& file, const SeaFieldChoice& choice, const Extent
   return block;
 }
 
-// Copies values in the order of the file to the field, which is ordered from south to north and
-// from west to east.
+// Copies `values`, which have the order of the file, to the field, whose order is from south to
+// north and from west to east.
 void Arrange(const std::vector<Dimension>& dimensions, const Block& block,
              const std::vector<float>& values, SeaField& field) {
   const auto cut = [&](std::size_t i) {

@@ -12,8 +12,8 @@ namespace aquafarm {
 namespace {
 
 // Position of a coordinate between two coordinates of the field. Locate returns nullopt for a
-// coordinate that is more than half a mean step outside the field, or more than 0.5 if the field
-// has a single coordinate.
+// coordinate that is outside the field by more than half a mean step, or by more than 0.5 degrees
+// if the field has a single coordinate.
 struct Between {
   std::array<Eigen::Index, 2> index{};
   double part{};

@@ -24,7 +24,8 @@ DrawnStorm DrawStorm(const StormsSpec& storms, std::uint64_t seed, std::uint64_t
   DrawnStorm drawn;
   drawn.storm = &among[rng.Below(static_cast<std::uint32_t>(among.size()))];
   const StormPath& path = drawn.storm->path;
-  // Always drawn, so that setting one deviation does not change the other draws.
+  // Every error is drawn, even if its deviation is 0. A change of one deviation therefore does not
+  // change the other draws.
   drawn.errors.along_km = by.along_km * rng.Normal();
   drawn.errors.across_km = by.across_km * rng.Normal();
   const double start_h = by.start_h * (2.0 * static_cast<double>(rng.Unit()) - 1.0);

@@ -72,8 +72,8 @@ std::optional<double> WaveMax(const std::string& text) {
   return value && *value >= 0.0 && *value <= 40.0 ? value : std::nullopt;
 }
 
-// Removes a number of one or two digits and the following word from the front of a text, and
-// returns the number; nullopt if the text does not begin with them.
+// Removes a number of one or two digits, followed by `word`, from the front of a text and returns
+// the number; nullopt if the text does not begin so.
 std::optional<int> TakeNumber(std::string& text, const std::string& word) {
   const std::size_t at = text.find(word);
   if (at == 0 || at == std::string::npos || at > 2) return std::nullopt;
@@ -85,8 +85,9 @@ std::optional<int> TakeNumber(std::string& text, const std::string& word) {
   return value;
 }
 
-// Converts a day of the month and an hour to a time. Of the month of the publication, the previous
-// one and the next one, it selects the month in which the day is nearest to the publication.
+// Converts a day of the month and an hour to a time. There are three candidates for the month: that
+// of the publication, the previous month and the next month. Calendar selects the month in which
+// the day is nearest to the publication.
 class Calendar {
  public:
   /// @param published "2026050411", Beijing time

@@ -25,7 +25,7 @@ std::array<double, kQuadrantCount> ReadQuadrants(
 /// Adds the ring of a wind from the quadrants of a bulletin. Bulletins write 0 for "no such wind"
 /// and for "not known". If the storm's wind is unknown or at least `wind_kt`, four zeros mean that
 /// the radii are not known, and no ring is added. If the storm's wind is weaker, four zeros mean
-/// that no such wind blows.
+/// that no such wind blows, and a ring with four zeros is added.
 void AddSaidRing(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& radius_km,
                  StormFix& fix);
 

@@ -106,18 +106,18 @@ bool IsReported(const StormFix& fix, const StormWaypoint& at, std::int32_t wind_
   return ring != nullptr && !ring->estimated;
 }
 
-// Sets each estimated ring of a point to its estimate times size^kept, where `size` is the ring's
-// ratio to its estimate at the last report. If the storm did not reach the wind of a ring at the
-// report, the factor is at.size instead, which is first set to the factor of the outermost ring.
-// Reported rings do not change. An estimated ring is never smaller than a reported ring of a
-// stronger wind, and never larger than the ring outside it.
+// Sets each estimated ring of a point to its estimate times a factor. The factor is ratio^kept,
+// where `ratio` is the ring's SizeOf at the last report. If SizeOf is 0, for example because the
+// storm did not reach the wind of the ring at the report, the factor is at.size. Resize first sets
+// at.size to the factor of the outermost ring. Reported rings do not change. An estimated ring is
+// never smaller than a reported ring of a stronger wind, and never larger than the ring outside it.
 void Resize(const StormWaypoint& report, double kept, const StormFix& fix, StormRings& storm,
             StormWaypoint& at) {
   const std::size_t rings = storm.wind_kt.size();
   const bool has_own = IsReported(fix, at, storm.wind_kt.back());
   const double outermost = SizeOf(storm, has_own ? at : report, rings - 1);
   at.size = outermost > 0.0 ? std::pow(outermost, has_own ? 1.0 : kept) : 1.0;
-  // For each ring, the largest reported radii of it and the rings inside it.
+  // For each ring, the largest reported radii of this ring and of the rings inside it.
   std::vector<Quadrants> reported(rings, Quadrants{});
   for (std::size_t ring = 0; ring < rings; ++ring) {
     if (ring > 0) reported[ring] = reported[ring - 1];
@@ -165,8 +165,8 @@ StormWaypoint Larger(const StormRings& storm, const StormWaypoint& from, const S
   return held;
 }
 
-// Adds points to the long intervals that FineTrack did not divide, unless the rings at one end are
-// unknown. Returns the number of these intervals.
+// Adds points to the intervals of more than kFineTrack_s that FineTrack did not divide, unless the
+// rings at one end are unknown. Returns the number of divided intervals.
 std::int32_t HoldLarger(std::int64_t from, StormRings& storm) {
   std::vector<StormWaypoint> all;
   std::int32_t held = 0;

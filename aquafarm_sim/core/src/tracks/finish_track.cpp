@@ -47,7 +47,7 @@ void KeepAscending(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext
   const std::string order =
       ", expected a time after that of the point before, " + FormatTime(broken->time);
   const auto at_line = [&place](std::int32_t line) {
-    if (line > 0) place.line = line;  // points in JSON have no line; that of the storm remains
+    if (line > 0) place.line = line;  // points in JSON have no line; the storm's line remains
   };
   if (run.size() * 2 <= fixes.size()) {
     at_line((broken + 1)->line);

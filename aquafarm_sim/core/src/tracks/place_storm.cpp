@@ -23,7 +23,7 @@ PlacedWind WindOf(const StormPoint& point, const StormErrors& error) {
   return {std::max(0.0, point.wind_mps * error.wind_factor + error.wind_add_mps), true};
 }
 
-// The placed radius of a ring is the radius of the point times `factor`, plus `added`.
+// The placed radius of a ring is its radius at the point times `factor`, plus `added`.
 struct PlacedRing {
   double factor{1.0};
   double added{};  // radius of a ring that the point does not have [cells]
@@ -50,7 +50,7 @@ class RingScale {
     return EstimateRadius(path_.wind_kt[k], wind_.mps, point_.latitude, point_.averaging_min)
         .median_km;
   }
-  // Returns the ratio of recorded to estimated radius for the next weaker wind that has both.
+  // Returns the ratio of recorded to estimated radius for the next weaker wind that has both radii.
   // Without such a wind, returns StormPoint::size.
   double AnomalyOutside(std::size_t k) const {
     for (std::size_t outer = k + 1; outer < path_.rings; ++outer) {
@@ -72,7 +72,7 @@ void SetRadii(const StormPath& path, const StormPoint& point, const RingScale& s
   waypoint.quadrants.resize(path.by_quadrant ? path.rings : 0);
   QuadrantRadii outside;
   outside.fill(1.0e6F);
-  for (std::size_t k = path.rings; k-- > 0;) {  // no ring extends beyond one of a weaker wind
+  for (std::size_t k = path.rings; k-- > 0;) {  // no ring extends beyond a ring of a weaker wind
     const PlacedRing ring = scale.Ring(k);
     QuadrantRadii placed{};
     for (std::size_t q = 0; q < placed.size(); ++q) {

@@ -26,8 +26,9 @@ StormPath PathOf(const StormTrack& track, const StormSite& site) {
                 site.step_duration_s, 0);
 }
 
-// Returns whether a track may come within reach. This fast test avoids the projection of most
-// tracks. It assumes that successive fixes are less than kMargin_km apart.
+// Returns false if a track certainly does not come within `within_km` of `middle`. This fast test
+// avoids the projection of most tracks. It assumes that successive fixes are less than kMargin_km
+// apart.
 bool MayComeNear(const StormTrack& track, const GeoPoint& middle, double within_km) {
   constexpr double kMargin_km = 2000.0;
   constexpr double kKmPerDegree = 111.2;

@@ -22,8 +22,8 @@ double Largest(const Quadrants& quadrants) {
   return *std::max_element(quadrants.begin(), quadrants.end());
 }
 
-// Returns the radii of a ring by quadrant. Without kQuadrants, they are reduced to those of a
-// circle.
+// Returns the radii of a ring by quadrant. Without kQuadrants, they are replaced by the radius of a
+// circle (RingReduction).
 Quadrants Reduced(const WindRing& ring, RingReduction reduction) {
   Quadrants quadrants = ring.radius_km;
   if (reduction == RingReduction::kQuadrants) return quadrants;
@@ -59,7 +59,7 @@ void DeriveGale(StormFix& fix) {
   AddRing(gale, fix.rings);
 }
 
-// Distance of a place from a storm, and the quadrant of the storm that contains it.
+// Distance of a place from a storm, and the quadrant of the storm that contains the place.
 struct Offset {
   double distance_km{};
   std::size_t quadrant{};

@@ -11,9 +11,10 @@
 namespace aquafarm::internal {
 namespace {
 
-// The directions in bulletins. A name of three characters stands for the bearing between the main
-// direction that it names twice and the diagonal: 北西北 and 北北西 both mean NNW. The recorded
-// motion of storms agrees with this reading.
+// The directions in bulletins. A Chinese name of three characters contains one direction twice. It
+// stands for the bearing midway between this direction and the diagonal of its two directions:
+// 北西北 and 北北西 both mean NNW, between N and NW. The recorded motion of storms agrees with this
+// reading.
 constexpr std::pair<std::string_view, double> kDirections[]{
     {"N", 0.0},          {"NNE", 22.5},       {"NE", 45.0},        {"ENE", 67.5},
     {"E", 90.0},         {"ESE", 112.5},      {"SE", 135.0},       {"SSE", 157.5},

@@ -19,10 +19,11 @@ inline constexpr std::size_t kMaxFixes = 10000;
 /// Lower limit of a plausible pressure; the lowest on record is 870 hPa.
 inline constexpr double kMinPressure_hpa = 800.0;
 
-/// Parses tenths of a degree in [-900, 900]. @throws FixError
+/// Parses a latitude in tenths of a degree, in [-900, 900]. @returns degrees @throws FixError
 double ReadLatitudeTenths(std::string_view text, const ParseContext& place);
 
-/// Parses tenths of a degree in [-1800, 3600], normalized to (-180, 180]. @throws FixError
+/// Parses a longitude in tenths of a degree, in [-1800, 3600].
+/// @returns degrees in (-180, 180] @throws FixError
 double ReadLongitudeTenths(std::string_view text, const ParseContext& place);
 
 /// Returns the pressure of a storm; nullopt if it is 0 or less, which means unknown. Also returns
@@ -35,10 +36,10 @@ std::optional<double> CheckedPressure(std::optional<double> pressure_hpa,
 /// @throws InputError if there are more than kMaxFixes fixes
 void AppendFix(StormFix fix, std::vector<StormFix>& fixes, ParseContext& place);
 
-/// Completes a track and its forecasts. Leaves out points that break the order of time or are more
-/// than 30 days from the others, warns about jumps, and computes motions that the source does not
-/// give. Leaves out forecasts without a point after their time of issue, or in which at least half
-/// of the points break the order of time.
+/// Completes a track and its forecasts. Leaves out points that break the order of time. Leaves out
+/// points that are more than 30 days from the others, if they are fewer than half. Warns about
+/// jumps, and computes motions that the source does not give. Leaves out forecasts without a point
+/// after their time of issue, or in which at least half of the points break the order of time.
 /// @param left_out points that the reader has left out
 /// @throws InputError if there are no points, if the reader has left out more points than it has
 ///   kept, if at least half of the points break the order of time, or if the points span more than

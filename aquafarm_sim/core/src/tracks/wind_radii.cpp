@@ -14,7 +14,7 @@ namespace {
 // Coefficients of one wind. docs/data.md states how each was determined.
 struct Relation {
   std::int32_t wind_kt{};
-  double cma{};  // a, one value per authority
+  double cma{};  // coefficient a, one value per authority
   double jma{};
   double jtwc{};
   double by_wind{};                   // b

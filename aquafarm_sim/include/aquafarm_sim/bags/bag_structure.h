@@ -13,10 +13,11 @@ struct Damage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Checks that the index of a bag agrees with its content. Does not check a bag without an index,
-/// an unreadable file and a file of at most 13 bytes, because rosbag reports these when it opens
-/// the bag.
-/// @throws Damage or rosbag::BagException if the bag is damaged or not a bag of version 2.0
+/// Checks that the index of a bag agrees with its content. Accepts a bag without an index, an
+/// unreadable file and a file of at most 13 bytes, because rosbag reports these faults when it
+/// opens the bag.
+/// @throws Damage or rosbag::BagException if the bag is damaged, not a bag of version 2.0 or not a
+///         regular file
 /// @throws aquafarm::InputError if the bag is encrypted or the file does not exist
 void CheckStructure(const std::string& path);
 

@@ -66,7 +66,7 @@ class ChunkedBag {
 
   Connection& Connect(const std::string& topic, const std::string& type, const std::string& md5sum,
                       const std::string& definition);
-  /// Adds a message without its content. @returns the `length` bytes for the content
+  /// Adds a message without its content. @returns pointer to the `length` bytes of the content
   std::uint8_t* AddMessage(Connection& connection, const ros::Time& time, std::uint32_t length);
   void EndChunk();
   void WriteBagHeader(std::uint64_t index_position);

@@ -7,8 +7,8 @@
 
 namespace aquafarm_sim {
 
-/// Closes a bag after a write error. If closing fails too, the bag is never destroyed and its file
-/// stays open, because its destructor would throw and end the process.
+/// Closes a bag after a write error. If closing fails too, the bag is never destroyed, because its
+/// destructor would throw and end the process. The file then stays open.
 inline void AbandonBag(std::unique_ptr<rosbag::Bag> bag) {
   try {
     bag->close();

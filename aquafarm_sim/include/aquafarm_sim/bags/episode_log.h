@@ -31,12 +31,12 @@ struct EpisodeLog {
   std::int32_t farm{};
   std::uint64_t seed{};
   std::uint64_t episode{};
-  bool paced{};                       ///< pace at the start of the episode
+  bool paced{};                       ///< whether the farm is paced at the start of the episode
   double rate_hz{};                   ///< rate at the start of the episode; 0: that of BagFormat
   std::int32_t first_step{};          ///< number of steps that were taken before the log starts
   std::vector<std::uint8_t> actions;  ///< [steps, agents]
   /// External changes by ascending step. If first_step > 0, the first entry is the farm's state at
-  /// this step.
+  /// first_step.
   std::vector<Change> changes;
   aquafarm::EpisodeRecord record;  ///< valid after the end of the episode
 };

@@ -21,8 +21,8 @@
 namespace aquafarm_sim {
 
 /// Selects the episodes to keep. kBest keeps one bag: that of the episode with the highest return
-/// so far. kWorst keeps that of the lowest return. kFailures keeps episodes in which not every
-/// device was delivered.
+/// so far. kWorst keeps that of the episode with the lowest return. kFailures keeps episodes in
+/// which at least one device was not delivered.
 struct Keep {
   enum class Which : std::uint8_t { kNone, kAll, kEvery, kBest, kWorst, kFailures };
   Which which{};
@@ -60,8 +60,8 @@ class EpisodeRecorder final : public FarmRecorder {
               const std::uint8_t* actions) override;
   void OnIntervention(const aquafarm::Farm& farm, std::int32_t number) override;
 
-  std::uint64_t kept() const;  ///< number of bags written so far, also of replaced ones
-  std::string fault() const;   ///< reason why recording stopped; empty if it has not
+  std::uint64_t kept() const;  ///< number of bags written so far, including replaced ones
+  std::string fault() const;   ///< reason why recording stopped; empty if it did not stop
 
  private:
   bool Wants(const EpisodeLog& log);
@@ -74,8 +74,8 @@ class EpisodeRecorder final : public FarmRecorder {
   EpisodeBagWriter writer_;  // used only by the writing thread
   const RecorderLimits limits_;
   std::vector<EpisodeLog> logs_;  // by farm; used only in callbacks, under the FarmServer's mutex
-  std::optional<float> extreme_;  // kBest, kWorst: best or worst return so far; guarded as logs_
-  std::string extreme_path_;      // bag of that episode; used only by the writing thread
+  std::optional<float> extreme_;  // kBest, kWorst: best or worst return so far; used like logs_
+  std::string extreme_path_;      // kBest, kWorst: newest bag; used only by the writing thread
 
   mutable aquafarm::Mutex mutex_;
   std::condition_variable changed_;

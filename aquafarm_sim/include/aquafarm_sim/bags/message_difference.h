@@ -15,8 +15,8 @@ namespace aquafarm_sim {
 /// simulated -6". If the texts are equal, returns that the bits differ.
 std::string FirstDifferentLine(const std::string& got, const std::string& simulated);
 
-/// Returns the first difference between a message and a simulated one, as FirstDifferentLine.
-/// Returns an empty text if both are bit-identical.
+/// Returns the first difference between a message and a simulated one, in the format of
+/// FirstDifferentLine. Returns an empty text if the messages are bit-identical.
 template <typename Message>
 std::string FirstDifference(const Message& got, const Message& simulated) {
   const auto bytes = [](const Message& message) {

@@ -26,7 +26,7 @@
 namespace aquafarm_sim {
 
 /// Returns the error message for a bag without a FarmSpec. The caller appends it to the bag's path.
-/// The message states whether the topic spec is missing or has another type.
+/// The message states whether the topic `spec` is missing or has another type.
 std::string NoSpec(const rosbag::Bag& bag);
 
 /// Returns "recorded by version X" or, if `version` is empty, "recorded by an unnamed version".
@@ -91,12 +91,14 @@ auto Bounded(std::uintmax_t size, const Work& work) -> decltype(work()) {
   }
 }
 
-/// Opens a bag after checking its lengths and offsets. @throws aquafarm::InputError as OpenBag
+/// Opens a bag after checking its lengths and offsets.
+/// @throws aquafarm::InputError if the bag cannot be read
 void OpenChecked(rosbag::Bag& bag, const std::string& path);
 
 /// Translates a serialized message from the definition of an earlier version to that of this
 /// version, or in the opposite direction if `is_back`.
-/// @param type the definition of this version @param definition that of the earlier version
+/// @param type the definition of this version
+/// @param definition the definition of the earlier version
 /// @throws Damage if `definition` cannot be parsed or a field has another type, or if the bytes do
 ///         not fit their definition
 std::vector<std::uint8_t> Translated(const MessageType& type, const std::string& definition,

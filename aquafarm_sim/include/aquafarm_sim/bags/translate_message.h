@@ -2,8 +2,8 @@
 #pragma once
 
 /// Translates messages of earlier versions in bags to the definitions of this version. A new
-/// version may add fields to a message, but not remove or change one. Fields that an old message
-/// lacks become zero: numbers 0, strings and arrays empty.
+/// version may add fields to a message, but must not remove or change fields. Fields that an old
+/// message lacks become zero: numbers 0, strings and arrays empty.
 ///
 /// If you add fields to a message that bags contain, add the md5 sum of its previous definition to
 /// kOlderMessages. If other messages contain this message, add their previous md5 sums too. The

@@ -51,8 +51,8 @@ void ToMsg(const aquafarm::ObservableDisaster& disaster, std::int32_t id,
 void ToMsg(const aquafarm::Farm& farm, const MessageContext& context,
            aquafarm_msgs::FarmState& message);
 /// Converts the observation of `view.ship`. In full view the message contains the whole state, but
-/// the motion of disasters is the forecast motion. The joint and total fields contain the values of
-/// this ship. Its reward and return are those after sharing.
+/// the motion of disasters is that of `view`. The joint and total fields contain the values of this
+/// ship. Its reward and return are those after sharing.
 /// @param view as filled by Observe for the current state of `farm`
 void ToMsg(const aquafarm::Farm& farm, const aquafarm::View& view, const MessageContext& context,
            aquafarm_msgs::FarmState& message);
@@ -110,8 +110,8 @@ std::vector<aquafarm::IssuedForecast> FromMsg(
 ///         has two rings of the same wind
 aquafarm::StormTrack FromMsg(const aquafarm_msgs::Storm& message);
 
-/// Converts the fixes of a track, and the positions of its newest forecast that are later than its
-/// last fix. A track without a name gets its id as name.
+/// Converts the fixes of a track, and the positions of its newest forecast that are later than the
+/// last fix. The name of the storm is that of the track, or its id if the track has no name.
 /// @param track with at least one fix
 aquafarm_msgs::Storm ToMsg(const aquafarm::StormTrack& track);
 

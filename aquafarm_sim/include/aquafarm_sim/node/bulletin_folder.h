@@ -15,13 +15,13 @@ class BulletinFolder {
  public:
   explicit BulletinFolder(std::string path) : path_(std::move(path)) {}
 
-  /// Returns the paths of the files that are not marked or have changed since they were marked, by
-  /// ascending time of change. Skips subfolders, hidden files and files that end in ".part", which
-  /// may be incomplete. Also skips files whose time or size cannot be read.
+  /// Returns the paths of the files that are not marked, or have changed since the state that was
+  /// marked, by ascending time of change. Skips subfolders, hidden files and files that end in
+  /// ".part", which may be incomplete. Also skips files whose time or size cannot be read.
   /// @throws InputError if the folder does not exist or cannot be read completely
   std::vector<std::string> New();
-  /// Marks a file that the last New() returned. Later calls of New() return this file only if its
-  /// time or size differs from that of the last New().
+  /// Marks a file that the last New() returned, in the state (time of change and size) that New()
+  /// found. Later calls of New() return this file only if its state differs from the marked one.
   void Mark(const std::string& path);
 
  private:

@@ -114,7 +114,8 @@ class FarmPublisher : public FarmListener {
   nav_msgs::OccupancyGrid chart_message_ AQUAFARM_GUARDED_BY(message_mutex_);
   std::vector<aquafarm::Disaster> disasters_ AQUAFARM_GUARDED_BY(message_mutex_);
   std::vector<geometry_msgs::TransformStamped> frame_messages_ AQUAFARM_GUARDED_BY(message_mutex_);
-  // Bearing of each ship's last published move [degrees]; 0 before the first in an episode.
+  // Bearing of each ship's last published move [degrees]; 0 before the ship's first move in an
+  // episode.
   std::vector<std::int32_t> bearings_ AQUAFARM_GUARDED_BY(message_mutex_);
 
   aquafarm::Mutex observation_mutex_;  // also guards the messages of the observations

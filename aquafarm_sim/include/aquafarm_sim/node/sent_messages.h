@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Waits until published messages have left roscpp's queue. Publishing adds a message to it. The
-/// poll thread of roscpp then passes the message to the subscribers' connections. A message to one
-/// subscriber (SingleSubscriberPublisher) bypasses the queue. Without a wait it would arrive before
-/// messages that were published earlier and are still in the queue.
+/// Waits until published messages have left roscpp's queue. Publishing adds a message to the queue.
+/// The poll thread of roscpp then passes the message to the subscribers' connections. A message to
+/// one subscriber (SingleSubscriberPublisher) bypasses the queue. Without a wait, such a message
+/// would arrive before messages that were published earlier and are still in the queue.
 
 #include <boost/signals2/connection.hpp>
 #include <chrono>

@@ -19,8 +19,8 @@ struct SimParams {
   /// ~farms, ~threads, ~seed (-1: from the wall clock), ~pace, ~rate_hz, ~barrier_timeout_s,
   /// ~late_ships_hold, ~claim_timeout_s
   ServerOptions ranch;
-  /// Max rate of states without `record` [states per second of wall time]. 0: neither states nor
-  /// the topics that are sent with them (farm_publisher.h) are published.
+  /// Max rate at which states are published if `record` is false [states per second of wall time].
+  /// 0: neither states nor the topics that are sent with them (farm_publisher.h) are published.
   double publish_hz{10.0};
   bool record{};                     ///< publish the state after every change of farm 0
   std::string keep{"none"};          ///< episodes to write as bags, in the syntax of ParseKeep
@@ -32,7 +32,7 @@ struct SimParams {
   std::string frame_prefix;  ///< prefix of the frames ship_<id> and disaster_<id>
 };
 
-/// Reads the parameters and checks their types and ranges, and that pace is known. SimNode checks
+/// Reads the parameters. Checks their types, their ranges and the value of pace. SimNode checks
 /// scenario, keep and keep_dir.
 /// @throws InputError "~rate_hz: got -1, expected [0.001, 1000]"; for an unknown parameter the
 ///         message lists the known ones

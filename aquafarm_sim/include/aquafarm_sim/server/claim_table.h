@@ -9,7 +9,8 @@
 namespace aquafarm_sim {
 
 /// Records which node has claimed which ship. A claim expires if its holder is not marked as
-/// present for `timeout_s`. IsHeldByAnother removes it; until then, holder() returns its node.
+/// present for `timeout_s`. IsHeldByAnother removes an expired claim; until then, holder() still
+/// returns the node.
 /// Every ship id must be in [0, ships - 1]. Not thread-safe.
 class ClaimTable {
  public:

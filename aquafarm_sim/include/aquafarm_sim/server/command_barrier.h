@@ -20,7 +20,7 @@ namespace aquafarm_sim {
 
 /// Collects the commands of the ships for the next step of a farm. It keeps only the newest command
 /// of each ship. In lockstep the caller of each command waits until no ship is missing (IsMissing).
-/// The owner must hold the same mutex during every call. Wait releases it while it waits.
+/// The owner must hold the same mutex during every call. Wait releases the mutex while it waits.
 class CommandBarrier {
  public:
   using Clock = std::chrono::steady_clock;
@@ -39,8 +39,8 @@ class CommandBarrier {
   /// Returns the answer to the ship's last executed or accepted command if `command` is a retry of
   /// it; null if it is not.
   const aquafarm_msgs::CommandResult* FindAnswer(const ShipCommand& command) const;
-  /// Stores a command for the next step. It replaces an earlier command of the ship. The call of
-  /// the earlier command ends with kSuperseded.
+  /// Stores a command for the next step. It replaces a pending command of the ship, whose call ends
+  /// with kSuperseded.
   /// @param call receives the answer. It must stay valid until Wait returns, and after kTimedOut
   ///        until it is answered or Withdraw is called. null: no call waits
   void Add(const ShipCommand& command, Call* call);

@@ -46,7 +46,8 @@ namespace aquafarm_sim {
 using aquafarm::kMaxFarms;
 inline constexpr double kMinRate_hz = 0.001;
 inline constexpr double kMaxRate_hz = 1000.0;
-/// Max number of cells and routes of all farms together if every episode has a new layout.
+/// Max number of cells and routes of all farms together that Reset accepts if every episode has a
+/// new layout.
 inline constexpr std::int64_t kMaxDrawnCells = 64'000'000;
 /// Max size of the features and planes in one response [bytes].
 inline constexpr std::size_t kMaxAnswerBytes = std::size_t{256} << 20U;
@@ -85,13 +86,14 @@ struct ServerCounters {
   std::string dropped_reason;             ///< reason of the last failure; empty if there is none
 };
 
-/// The current state of the farms. It is valid during the callback, while no farm steps.
+/// The current state of the farms. It is valid only during the callback that receives it; no farm
+/// steps in that time.
 struct ServerView {
   const aquafarm::FarmBatch& batch;
   const std::string& yaml;  ///< canonical YAML of the scenario
   MessageContext context;
   std::uint64_t episode_count{};  ///< number of episodes that farm 0 has started or loaded
-  std::uint64_t version{};        ///< changes with farm 0, its pace and its pause
+  std::uint64_t version{};        ///< increases when farm 0, its pace or its pause changes
   /// True if a joint step made the last change. Ship drivers then do not need every observation.
   bool joint{};
 };
@@ -173,7 +175,7 @@ class FarmServer {
   void SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
                    aquafarm_msgs::SetDisaster::Response& response);
 
-  /// Calls Tick when each paced step is due. Returns after Shutdown.
+  /// Calls Tick whenever a paced step is due. Returns after Shutdown.
   void RunPaced();
   /// Takes one paced step of farm 0, or starts its next episode if the current one has ended. Does
   /// nothing while the farms are paused, or after Shutdown. An error pauses the farms.

@@ -11,15 +11,16 @@
 namespace aquafarm_sim {
 
 /// The clock of the farms: the stamp of each step, the pace (lockstep or paced), the rate and the
-/// pauses. The owner must hold the same mutex during every call. WaitForTick releases it while it
-/// waits.
+/// pauses. The owner must hold the same mutex during every call. WaitForTick releases the mutex
+/// while it waits.
 class PaceClock {
  public:
   explicit PaceClock(const MessageContext& start) : context_(start) {}
 
   const MessageContext& context() const { return context_; }
 
-  /// Advances the stamp by one step. A pause that is scheduled for this step begins.
+  /// Advances the stamp by one step. A pause that is scheduled for this step begins. The start of
+  /// an episode counts as a step.
   void Advance();
   /// Begins or schedules a pause. With `paused` = false, ends the pause and cancels a scheduled
   /// pause.

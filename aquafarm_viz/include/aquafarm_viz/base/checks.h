@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Validates messages before they are drawn, because any program in the network may have sent them.
+/// Validates messages before they are drawn, because any program on the network may have sent them.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>

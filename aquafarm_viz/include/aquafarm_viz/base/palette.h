@@ -20,7 +20,7 @@ struct Rgb {
 /// Converts a colour to OpenCV's BGR order.
 inline cv::Scalar Bgr(Rgb c) { return {double(c.b), double(c.g), double(c.r)}; }
 
-/// Interpolates two colours: `share` 0 gives `from`, 1 gives `to`; other values are clamped.
+/// Interpolates two colours: `share` 0 gives `from`, 1 gives `to`. Clamps `share` to [0, 1].
 Rgb Mix(Rgb from, Rgb to, double share);
 
 inline constexpr Rgb kSeaDeep{0x1b, 0x4f, 0x78};
@@ -37,7 +37,8 @@ inline constexpr Rgb kUnknown{0xb4, 0xbd, 0xc4};
 /// Colour of the choice of a compared policy: cyan, which neither risks nor values have.
 inline constexpr Rgb kChoiceColor{0x4d, 0xe3, 0xff};
 
-/// Colour of the arrows of legal moves and, in rviz, of the labels of devices. No risk has it.
+/// Colour of the arrows of legal moves and, in rviz, of the labels of devices. No risk has this
+/// colour.
 inline constexpr Rgb kDirectionColor{0xdd, 0xf4, 0xff};
 
 /// Returns the colour of a device kind (DeviceState.kind); grey for an unknown kind. No risk has
@@ -87,7 +88,7 @@ inline constexpr Rgb kDropOffColor{0xff, 0x8c, 0x42};
 /// Returns the bearing of a move [degrees], clockwise from north; -1 if the action is not a move.
 int MoveBearingDeg(std::uint8_t action);
 
-/// Returns the compass point, one of 16, that is nearest to a bearing [degrees]: "NE" or "NNE".
+/// Returns the one of 16 compass points that is nearest to a bearing [degrees], such as "NNE".
 std::string CompassPoint(int bearing_deg);
 
 /// Returns the letters of a port, by id: A, B, …, Z, AA, AB, …

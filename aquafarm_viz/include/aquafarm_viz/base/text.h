@@ -17,7 +17,7 @@ namespace aquafarm_viz {
 /// font. "?" replaces all other characters, but an ellipsis is drawn as three dots.
 class Font {
  public:
-  /// @param size_px  nominal height, from ascender to descender [pixels]; at least 4 is used
+  /// @param size_px  em size [pixels]; a value below 4 is raised to 4
   /// @param file     a TrueType file, see FindFontFile; if it is empty or cannot be read, OpenCV's
   ///                 stroke font is used
   Font(int size_px, const std::string& file);
@@ -62,7 +62,7 @@ std::string Number(double value, int decimals);
 /// Formats a count with commas between thousands.
 std::string Count(std::uint64_t value);
 
-/// Formats a seed: "7", or "evaluation 1000" for the seed of an evaluation. The latter has the
+/// Formats a seed: "7", or "evaluation 1000" for an evaluation seed. An evaluation seed has the
 /// highest bit set (kEvaluationSeedBit in aquafarm/base/rng.h).
 std::string SeedText(std::uint64_t seed);
 

@@ -10,15 +10,15 @@
 
 namespace aquafarm_viz {
 
-/// Pose of an outline in an image. The outline has y up and its bow at north.
+/// Pose of an outline in an image. In the outline, y points up, and the bow points to +y (north).
 struct Pose2 {
   cv::Point2d at;        ///< position of the outline's origin in the image [pixels]
   double size_px{1.0};   ///< pixels per unit of the outline
   double bearing_deg{};  ///< rotation, clockwise from north
 };
 
-/// Number of fractional bits of fixed-point coordinates, which OpenCV's drawing functions call
-/// `shift`. Such coordinates have a resolution of 1/16 pixel.
+/// Number of fractional bits of fixed-point coordinates. OpenCV's drawing functions call this
+/// number `shift`. Such coordinates have a resolution of 1/16 pixel.
 inline constexpr int kSubPixelBits = 4;
 /// Converts an image point [pixels] to fixed-point coordinates. Coordinates beyond +-1e6 pixels are
 /// clamped.

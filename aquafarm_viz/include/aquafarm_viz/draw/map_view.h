@@ -2,7 +2,8 @@
 #pragma once
 
 /// Maps cells to pixels. The origin of an image is its top left pixel. The origin of the farm is
-/// the centre of its south-west cell. The y axes have opposite directions.
+/// the centre of its south-west cell. Rows of the image are numbered from north to south, but the y
+/// axis of the farm points north. In the diagram, H is the height of the farm in cells.
 ///
 ///       picture                     farm
 ///   (0,0)--> column               ^ y (north)
@@ -15,7 +16,8 @@
 
 namespace aquafarm_viz {
 
-/// Maps cells of a farm of `width` x `height` cells to pixels of a map of the same shape.
+/// Maps cells of a farm of `width` x `height` cells to pixels of a map with the same aspect
+/// ratio.
 class MapView {
  public:
   MapView() = default;
@@ -23,7 +25,8 @@ class MapView {
   MapView(int width, int height, double cell_px)
       : width_(width), height_(height), cell_px_(cell_px) {}
 
-  /// Converts a point in cells to pixels. Integer coordinates are centres of cells, and of pixels.
+  /// Converts a point in cells to pixels. Integer coordinates in cells are centres of cells, and
+  /// integer coordinates in pixels are centres of pixels.
   cv::Point2d ToPixel(double x, double y) const {
     return {(x + 0.5) * cell_px_ - 0.5, (height_ - 0.5 - y) * cell_px_ - 0.5};
   }

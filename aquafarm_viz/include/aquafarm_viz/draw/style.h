@@ -44,11 +44,11 @@ struct Style {
 /// Returns the style for screens, which is the default.
 const Style& DarkStyle();
 /// Returns the style for print: a light background and dark lines. Higher risks are darker, so that
-/// they can be distinguished in a grey print.
+/// they can be distinguished in a greyscale print.
 const Style& LightStyle();
 
 /// Returns a style by its name, "dark" or "light".
-/// @throws std::invalid_argument "style: got 'blue', expected dark or light" for another name
+/// @throws std::invalid_argument "style: got 'blue', expected dark or light" for any other name
 const Style& StyleByName(const std::string& name);
 
 }  // namespace aquafarm_viz

@@ -16,14 +16,15 @@ struct StorageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A video of pictures of one size. It is written to a temporary file in the same folder, and Close
-/// renames this file. The destructor removes a temporary file that was not renamed.
+/// A video whose pictures all have the same size. It is written to a temporary file in the folder
+/// of the video, and Close renames this file. The destructor removes a temporary file that was not
+/// renamed.
 class Video {
  public:
   /// @param path its extension selects the format: .mp4, .webm or .gif
   /// @param rate_hz pictures per second, above 0; a gif has at most 50
-  /// @throws std::runtime_error for another extension, or if an mp4 or webm file cannot be opened:
-  ///         no codec is available, or the folder is not writable
+  /// @throws std::runtime_error for any other extension, or if an mp4 or webm file cannot be
+  ///         opened, because no codec is available or the folder is not writable
   /// @throws StorageError if a gif file cannot be created
   static std::unique_ptr<Video> Open(const std::string& path, cv::Size size, double rate_hz);
 
@@ -32,7 +33,7 @@ class Video {
   /// @param picture 8-bit BGR, of the size given to Open
   /// @throws StorageError if a gif file cannot be written
   virtual void Add(const cv::Mat& picture) = 0;
-  /// Completes the file. @throws StorageError if it could not be written
+  /// Completes the video. @throws StorageError if it could not be written
   virtual void Close() = 0;
 
   /// Returns true if a path has the extension .mp4, .webm or .gif, in upper or lower case.

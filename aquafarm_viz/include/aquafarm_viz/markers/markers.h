@@ -5,7 +5,7 @@
 /// (x, y) * cell_size_m. Markers are flat and low, because rviz's top-down view clips at 500 m.
 ///
 /// Namespaces and ids are stable: an object keeps its marker for the whole episode, and the marker
-/// of a removed object is deleted by its id. Lifetimes are 0.
+/// of a removed object is deleted by its id. Lifetimes are 0, so markers do not expire.
 ///
 ///     | namespace                       | id                         |
 ///     | sea, island, shore, rocks       | 0                          |
@@ -24,10 +24,9 @@
 ///     | port_direction (1)              | port                       |
 ///     | device_label (2)                | device                     |
 ///
-/// (1) Only with the layer `directions`. (2) Only with the layer `labels`. (3) With the layer
-/// `risk`, only if the centre lies on the farm; DangerMarkers then have pointers to the other
-/// centres. (4) Only with the layer `trail`. Other layers have no
-/// effect.
+/// (1) Only with the layer `directions`. (2) Only with the layer `labels`. (3) Without the layer
+/// `risk`, all centres; with this layer, only centres on the farm, because DangerMarkers have
+/// pointers to the other centres. (4) Only with the layer `trail`. Other layers have no effect.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -53,8 +52,8 @@ visualization_msgs::MarkerArray StateMarkers(const aquafarm_msgs::FarmSpec& spec
                                              const Trail* trail = nullptr,
                                              const Layers& layers = {});
 
-/// Returns the markers of both arrays. A marker of `second` replaces that of `first` with the same
-/// namespace and id: rviz warns about an array that adds and deletes the same marker.
+/// Returns the markers of both arrays. A marker of `second` replaces the marker of `first` with the
+/// same namespace and id, because rviz warns about an array that adds and deletes the same marker.
 visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
                                        const visualization_msgs::MarkerArray& second);
 

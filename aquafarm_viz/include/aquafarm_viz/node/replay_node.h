@@ -22,7 +22,7 @@ namespace aquafarm_viz {
 struct ReplayParams {
   std::string bag;
   double speed{1.0};      ///< speed relative to the recording, [0.001, 1000]
-  double start_s{};       ///< start position in the bag [s]; above 0: replaces the next two
+  double start_s{};       ///< start position in the bag [s]; 0: uses start_episode, start_step
   int start_episode{-1};  ///< episode to start with; -1: the first one of the bag
   int start_step{};       ///< step of that episode to start with
   double delay_s{1.0};    ///< wall time before the start [s], so that other nodes can start
@@ -35,8 +35,8 @@ struct ReplayParams {
 /// @throws InputError if `bag` is missing, a value is not allowed, or a parameter is unknown
 ReplayParams ReadReplayParams(const ros::NodeHandle& node);
 
-/// Publishes the messages of a bag, except drawings (markers, paths and images), and /clock. Offers
-/// the services.
+/// Publishes /clock and the messages of a bag, except drawings (markers, paths and images). Offers
+/// the services `pause`, `set_pace` and `jump`.
 class ReplayNode {
  public:
   /// @param node namespace of the services and of topics without a leading slash

@@ -33,9 +33,9 @@ struct VizParams {
 VizParams ReadVizParams(const ros::NodeHandle& node);
 
 /// Publishes `markers`, `moves`, `image`, `image/compressed`, and `ship_<id>/route` of the ships 0
-/// to 63, at most rate_hz times per second of wall time. A topic is published only if it has a
-/// subscriber, and if its content has changed or a subscriber is new. A new subscriber of `markers`
-/// gets the current markers immediately.
+/// to 63, at most rate_hz times per second of wall time. A topic without a subscriber gets no
+/// messages. A topic with a subscriber gets a message after its content has changed, or after a new
+/// subscriber has connected. A new subscriber of `markers` gets the current markers immediately.
 class VizNode {
  public:
   /// @param node  namespace of the topics
@@ -67,11 +67,11 @@ class VizNode {
   bool pictured_{};                         // true: the images are up to date
   bool routed_{};                           // true: the routes are up to date
   bool moved_{true};                        // true: the moves are up to date
-  sensor_msgs::PointCloud2ConstPtr cloud_;  // message of `values/points` to be read; null if none
+  sensor_msgs::PointCloud2ConstPtr cloud_;  // unread message of `values/points`; null: none
   std::optional<Values> values_;
   std::deque<std::pair<ros::Time, std::uint64_t>> stamps_;  // stamps and steps of the last states
   aquafarm_msgs::PolicyChoiceConstPtr choice_;
-  Shown marked_episode_;  // the constant markers of its spec were published last
+  Shown marked_episode_;  // pair whose markers were published last
 
   ros::Publisher markers_;
   ros::Publisher moves_;
@@ -81,7 +81,7 @@ class VizNode {
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_topic_;
-  // Subscribed only while values are shown, because they are computed only for subscribers.
+  // Subscribed only while values are drawn, because they are computed only for a subscriber.
   ros::Subscriber values_topic_;
   ros::Subscriber choice_topic_;
   ros::WallTimer timer_;

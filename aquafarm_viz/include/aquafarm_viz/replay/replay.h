@@ -46,7 +46,8 @@ class ReplayTape {
   };
 
   static constexpr std::size_t kMaxStates = 10'000;  ///< max earlier states that a jump publishes
-  /// Queue size for states in ReplayNode and VizNode, because a jump publishes all states at once.
+  /// Queue size for states in ReplayNode and VizNode. It exceeds kMaxStates, because a jump
+  /// publishes its states all at once.
   static constexpr std::uint32_t kQueueOfStates = kMaxStates + 100;
 
   /// @throws std::runtime_error with a message of one line if the bag cannot be shown: it is not a
@@ -68,8 +69,8 @@ class ReplayTape {
 
   /// Returns the positions of the messages that must be published to show a step. The first is the
   /// spec of the episode, if it is recorded. Then follow, in ascending order, the newest message of
-  /// each other topic and up to kMaxStates earlier states of the run, for trails and routes. The
-  /// state of the step is the last one.
+  /// each other topic up to the step, and up to kMaxStates earlier states of the run, for trails
+  /// and routes. The last position is that of the state of the step.
   std::vector<std::size_t> UpTo(const Step& step) const;
 
   /// Returns warnings about the bag, one line each: missing steps, and a bag of another version.

@@ -6,8 +6,8 @@
 namespace aquafarm_viz {
 
 /// Optional layers of a picture, in addition to the chart, ships and devices. `trail`, `risk`,
-/// `directions` and `labels` are also layers of the markers. Figures are those of the paper
-/// (docs/model.md).
+/// `directions` and `labels` are also layers of the rviz markers. "Fig." refers to the figures of
+/// the paper (docs/model.md).
 struct Layers {
   bool trail{true};   ///< recent trail of each ship
   bool risk{true};    ///< rings of disasters, shaded by severity
@@ -16,7 +16,8 @@ struct Layers {
   bool values{};      ///< V_π of each cell, if a policy publishes it
   bool moves{};       ///< greedy actions of the policy, see ShownActions
   bool directions{};  ///< arrows of the legal moves at each port (Fig. 5)
-  bool labels{true};  ///< F and the id of deployed devices (Fig. 5); pictures: also of fetched ones
+  /// Labels such as "F2" of deployed devices (Fig. 5); in pictures, also of fetched devices.
+  bool labels{true};
   std::string sea{};  ///< sea layer of the scenario, drawn below all others; empty: none
 };
 

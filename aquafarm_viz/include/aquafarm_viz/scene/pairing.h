@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Matches states with the specs of their episodes. They arrive in any order, because their
-/// connections are separate.
+/// Matches states with the specs of their episodes. States and specs arrive in any order, because
+/// their topics have separate connections.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The texts of a rescue plan in the panel. They need neither Qt nor a node.
+/// The texts of a rescue plan in the panel. This code requires neither Qt nor a ROS node.
 
 #include <aquafarm_msgs/RescuePlan.h>
 
@@ -17,26 +17,28 @@ using PlanRow = std::vector<std::string>;
 /// of plan_node for this time [s]. The heartbeat has a period of 1 s.
 inline constexpr double kPlanSilence_s = 5.0;
 
-/// Returns the result of the plan. If they apply, these texts follow: the time after which no ship
-/// should leave, or until which ships may leave; the warnings of severity "stop"; why the plan is
-/// outdated; for how long plan_node has been silent (kPlanSilence_s).
+/// Returns the result of the plan, followed by those of these texts that apply: the time after
+/// which no ship should leave, or until which ships may leave; the warnings of severity "stop"; why
+/// the plan is outdated; for how long plan_node has been silent (kPlanSilence_s).
 /// @param silent_s time since the last plan or heartbeat of plan_node [s]
 std::string PlanHeadline(const aquafarm_msgs::RescuePlan& plan, double silent_s);
 
-/// Returns the column titles of the table of PlanShips. Each row has the same number of entries.
+/// Returns the column titles of the table of PlanShips. Rows have the same number of entries.
 const PlanRow& PlanShipColumns();
 /// Returns the column titles of the table of PlanDevices.
 const PlanRow& PlanDeviceColumns();
 
-/// Returns a row for each ship, with its next order, the time of the order and its probability:
-/// {"ship 1", "fetch D3", "14:05", "87 %"}. If a ship has no route or no order left, the second
-/// text says so, and time and probability are empty.
+/// Returns a row for each ship: its name, its next order, and the time and the probability of this
+/// order, {"ship 1", "fetch F3", "14:05", "87 %"}. For a ship without a route the second text is
+/// WithoutRouteText, and for a ship without further orders "all done". Time and probability are
+/// then empty.
 /// @param now world time [UTC]; earlier orders are skipped
 std::vector<PlanRow> PlanShips(const aquafarm_msgs::RescuePlan& plan, ros::Time now);
 
-/// Returns a row for each device: the probability that it comes home, "stays", "left behind" or
-/// "unknown"; then the latest departures with which a ship that fetches it first brings it to a
-/// port with at least 95, 80 and 50 %.
+/// Returns a row for each device. After its name follows the probability that a ship brings it to a
+/// port, or "stays", "left behind" or "unknown". Then follow three latest departures of a ship that
+/// fetches this device before any other: for a probability of at least 95, 80 and 50 % that the
+/// device reaches a port.
 std::vector<PlanRow> PlanDevices(const aquafarm_msgs::RescuePlan& plan);
 
 }  // namespace aquafarm_viz

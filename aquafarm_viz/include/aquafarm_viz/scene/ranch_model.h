@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The content of the panel "Ranch" as plain text and numbers. It needs neither Qt nor a node.
+/// The content of the panel "Ranch" as plain text and numbers. This code requires neither Qt nor a
+/// ROS node.
 
 #include <aquafarm_msgs/DisasterInfo.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -36,12 +37,12 @@ class RanchModel {
 
   /// The texts of one row of a table.
   using Row = std::vector<std::string>;
-  /// Capacity of the curve. When it is reached, every second point is removed, so the points of a
-  /// long training cover all of it.
+  /// Capacity of the curve. When it is reached, every second point is removed, so that the points
+  /// always cover the whole training.
   static constexpr std::size_t kMaxPoints = 1000;
 
-  /// Each Take adds a message. Those for specs and states return an empty text, or the reason if
-  /// the message is refused.
+  /// The Take functions add a message. For a spec or state, they return an empty text, or the
+  /// reason if the message is refused.
   std::string Take(const aquafarm_msgs::FarmSpecConstPtr& spec) { return pairing_.AddSpec(spec); }
   std::string Take(const aquafarm_msgs::FarmStateConstPtr& state);
   void Take(const aquafarm_msgs::TrainingStatusConstPtr& training);
@@ -63,7 +64,7 @@ class RanchModel {
   /// mean return 81.2   success 62 %   1.23 k steps/s   left 0:42"; empty without a training.
   std::string TrainingLine() const;
 
-  /// Returns the column titles of the table of Ships. Each row has the same number of entries.
+  /// Returns the column titles of the table of Ships. Rows have the same number of entries.
   static const Row& ShipColumns();
   /// Returns the column titles of the table of Devices.
   static const Row& DeviceColumns();
@@ -82,9 +83,8 @@ class RanchModel {
   const aquafarm_msgs::RescuePlanConstPtr& plan() const { return plan_; }
   /// Returns the time since the last plan or heartbeat of plan_node [s].
   double PlanSilence(ros::SteadyTime now) const { return (now - plan_node_seen_).toSec(); }
-  /// Returns the time from which orders of the plan are due, for PlanShips. It is the time of the
-  /// ranch if the plan follows the ranch and has started, else the start of the plan. plan() must
-  /// not be null.
+  /// Returns the parameter `now` of PlanShips: the world time of the ranch if the plan follows the
+  /// ranch and has started, else the start of the plan. plan() must not be null.
   ros::Time PlanNow() const;
 
   const std::vector<CurvePoint>& curve() const { return curve_; }
@@ -92,8 +92,9 @@ class RanchModel {
   /// Returns true if the ranch is paused; false before the first state.
   bool paused() const;
 
-  /// Returns a disaster for the service `set_disaster`. Its centre is the cell of the first ship,
-  /// or the middle of the farm if that ship is not visible, or (0, 0) before the first state.
+  /// Returns a disaster for the service `set_disaster`. Its centre is the cell of the first ship.
+  /// If there is no ship or the first ship is not visible, the centre is the middle of the farm.
+  /// Before the first state it is (0, 0).
   /// @param kind kind of DisasterState
   /// @param grade 1 blue … 4 red; also determines the risks of its rings
   /// @param radius radius of the largest of its three rings [cells]

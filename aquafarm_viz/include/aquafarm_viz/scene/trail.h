@@ -18,8 +18,8 @@ namespace aquafarm_viz {
 struct ShipTrail {
   int bearing_deg{};             ///< bearing of the last move, [0, 359]; 0 before the first move
   std::deque<cv::Point> places;  ///< visited cells, oldest first, the current one last
-  /// Per cell: whether the ship reached it with a device aboard; always true for a self-propelled
-  /// device.
+  /// Per cell in `places`: whether the ship had a device aboard when it reached the cell; always
+  /// true for a self-propelled device.
   std::deque<bool> loaded;
 
   /// Returns the index of the first cell after the last gap; 0 if there is no gap (IsGap).

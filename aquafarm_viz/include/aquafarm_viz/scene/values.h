@@ -31,7 +31,7 @@ struct Values {
   ros::Time stamp;                    ///< stamp of the message
   std::optional<std::uint64_t> step;  ///< step of the state with this stamp; nullopt if unknown
 
-  /// Sets `step` if this state has the same stamp, as in bags of bag_policy.
+  /// Sets `step` if the state has the stamp of the message, as in the bags that bag_policy writes.
   void Pair(const aquafarm_msgs::FarmState& state) {
     if (stamp == state.header.stamp) step = state.step;
   }
@@ -43,19 +43,19 @@ struct Values {
 };
 
 /// Reads a message of `values/points` for the farm of `spec`. Points outside the farm are ignored.
-/// @throws std::invalid_argument if a field is missing or has another type, or if the data have a
-///        wrong size, such as "values/points: got no field value, expected x, y, value and action"
+/// @throws std::invalid_argument if a field is missing ("values/points: got no field value,
+///        expected x, y, value and action") or has another type, or if the data have a wrong size
 Values ReadValues(const sensor_msgs::PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec);
 
 /// Returns the cells whose greedy action is drawn: one of `every` cells along each axis, so that
-/// the map stays readable. Cells between them are added if their action is a pickup or a drop-off
-/// and there are at most 12 of them.
+/// the map stays readable. If at most 12 cells between them have the action pickup or drop-off,
+/// these cells are added.
 std::vector<cv::Point> ShownActions(const Values& values, int every);
 
 /// Returns values and greedy actions as markers. The namespace `values` has one marker, id 0: the
 /// coloured cells. In the namespace `moves`, id 0 contains the arrows of the moves, id 1 the
 /// pickups and id 2 the drop-offs. Moves are drawn in at most 13 cells along the longer side of the
-/// farm, see ShownActions.
+/// farm, see ShownActions. A marker without points has the action DELETE.
 visualization_msgs::MarkerArray MoveMarkers(const Values& values,
                                             const aquafarm_msgs::FarmSpec& spec);
 

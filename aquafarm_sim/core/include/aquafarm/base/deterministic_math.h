@@ -7,7 +7,7 @@ namespace aquafarm {
 /// result is bit-identical on every machine; libm does not guarantee this.
 constexpr double Exp(double x) {
   constexpr int kHalvings = 8;
-  constexpr int kTerms = 9;  // terms of the Taylor series of e^(x/256)
+  constexpr int kTerms = 9;  // degree of the Taylor polynomial of e^(x/256)
   const double small = x / (1 << kHalvings);
   double sum = 1.0;
   for (int n = kTerms; n > 0; --n) sum = 1.0 + small / n * sum;

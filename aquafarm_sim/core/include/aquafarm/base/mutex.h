@@ -4,8 +4,8 @@
 /// A mutex whose use clang checks at compile time (-Wthread-safety). tools/check_locks runs this
 /// check. A thread may access a member declared AQUAFARM_GUARDED_BY(mutex_) only while it holds
 /// mutex_. It may call a function declared AQUAFARM_REQUIRES(mutex_) only while it holds mutex_. It
-/// may call a function declared AQUAFARM_EXCLUDES(mutex_) only while it does not hold mutex_. Other
-/// compilers ignore the attributes.
+/// may call a function declared AQUAFARM_EXCLUDES(mutex_) only while it does not hold mutex_. For
+/// other compilers the macros are empty.
 /// Source: https://clang.llvm.org/docs/ThreadSafetyAnalysis.html
 
 #include <chrono>

@@ -25,9 +25,9 @@ enum class RngStream : std::uint8_t {
   kRanch,          ///< ranch drawn from a family
 };
 
-/// Bit that is set in every evaluation seed and clear in every training seed. Evaluation seeds draw
-/// storms from the evaluation years of an archive; training seeds draw them from the training
-/// years.
+/// Bit that is set in every evaluation seed and clear in every training seed. Storms of an archive
+/// are drawn from its evaluation years with an evaluation seed, and from its training years with a
+/// training seed.
 inline constexpr std::uint64_t kEvaluationSeedBit = 1ULL << 63U;
 constexpr bool IsEvaluationSeed(std::uint64_t seed) { return (seed & kEvaluationSeedBit) != 0; }
 

@@ -38,8 +38,8 @@ inline std::string WithoutSeparators(std::string name) {
 
 /// Returns " (did you mean 'NAME'?)" with the name that has the smallest EditDistance from `text`;
 /// the first of several such names. A name that differs from `text` only in separators counts as
-/// distance 0: for INFA the suggestion is IN-FA, not LINFA. Returns "" if this distance is above 2
-/// or above half of the length of `text`. Also returns "" if `text` has more than 100 bytes.
+/// distance 0: for INFA the suggestion is IN-FA, not LINFA. Returns "" if the smallest distance is
+/// above 2 or above half of the length of `text`, or if `text` has more than 100 bytes.
 inline std::string DidYouMean(const std::string& text, const std::vector<std::string>& names) {
   constexpr std::size_t kLongest = 100;
   std::size_t limit = std::min<std::size_t>(3, text.size() / 2 + 1);

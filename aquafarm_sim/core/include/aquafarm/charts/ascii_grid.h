@@ -21,8 +21,9 @@ struct AsciiGrid {
   double south{};      ///< y of the centre of the south-west cell
   double cell_size{};  ///< distance between neighbouring centres [degrees or metres]
   /// Returns whether coordinates are in degrees; if not, they are in metres. They are in degrees if
-  /// `cell_size` is below 1, |west| is at most 720 and |south| is at most 180. These limits are
-  /// twice the valid ones, so that the parser reports a mistyped corner in degrees as an error.
+  /// `cell_size` is below 1, |west| is at most 720 and |south| is at most 180. The limits 720 and
+  /// 180 are twice the largest valid values, so that the parser reports a mistyped corner in
+  /// degrees as an error.
   bool IsGeographic() const;
   /// For a grid in degrees: returns whether a position is inside the grid, even where the grid has
   /// no data. Longitudes are compared modulo 360.

@@ -24,7 +24,7 @@ struct Coast {
 
 /// Parses a GeoJSON text. A ring that crosses or overlaps itself is kept, with a warning. This
 /// check stops, with a warning, after 50 million comparisons of segments in a file.
-/// @throws InputError "coast.json:7: features[0].geometry.coordinates[0]: the ring is open, …",
+/// @throws InputError "coast.json:7: features[0].geometry.coordinates[0]: got an open ring, …";
 ///   also if there is no polygon
 Coast ParseCoast(const std::string& text, const std::string& origin_name);
 /// Does the same as ParseCoast, for a file. @throws InputError also if the file cannot be read

@@ -30,12 +30,12 @@ struct MapFile {
 };
 
 /// Reads a map. A relative image path is resolved against the folder of the YAML file.
-/// @throws InputError with the YAML file, the line and the key, or with the image file
+/// @throws InputError whose message contains the YAML file, the line and the key, or the image file
 MapFile LoadMap(const std::string& yaml_path);
 
 /// Writes `yaml_path` and, next to it, the image with the extension .pgm. Each file has a temporary
-/// name until it is complete. Grey values are those of map_saver: 254 for an occupancy of 0 to 19,
-/// 0 for 65 and above, and 205 for 20 to 64 and for unknown.
+/// name until it is complete. The image has the grey values of map_saver: 254 for an occupancy of 0
+/// to 19, 0 for 65 and above, and 205 for 20 to 64 and for unknown.
 /// @throws InputError if a file cannot be written
 void SaveMap(const MapFile& map, const std::string& yaml_path);
 

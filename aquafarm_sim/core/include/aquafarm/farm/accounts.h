@@ -48,7 +48,7 @@ struct Ledger {
 /// Money of one episode.
 struct Accounts {
   std::array<Ledger, kDeviceKindCount> by_kind{};  ///< indexed by DeviceKind
-  Cents ship_cost{};    ///< hours of rescue ships not moored × ship_hour
+  Cents ship_cost{};    ///< hours in which rescue ships are not moored × MoneySpec::ship_hour
   Cents energy_cost{};  ///< energy of all agents × MoneySpec::kwh
 
   /// Returns the sum of the ledgers of all kinds.

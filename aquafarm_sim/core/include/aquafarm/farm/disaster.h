@@ -52,7 +52,8 @@ struct ObservableDisaster {
   DisasterKind kind{};
   Border border{};
   std::int32_t grade{};
-  std::int32_t rings{};                           ///< number; the arrays start with the innermost
+  /// Number of rings. The arrays start with the innermost ring.
+  std::int32_t rings{};
   std::array<float, kMaxRings> radius{};          ///< [cells]; 0: the ring is absent
   std::array<float, kMaxRings> radius_squared{};  ///< -1 for an absent ring
   std::array<float, kMaxRings> risk{};            ///< risk inside each ring, negative
@@ -64,11 +65,12 @@ struct ObservableDisaster {
   std::int32_t heading_deg{};      ///< compass bearing of the motion
   std::uint32_t turn_threshold{};  ///< the disaster turns if a 31-bit draw is below it
   float radius_growth{};           ///< [cells/step]; not used with a track
-  float margin{};  ///< width of the border around the map: largest initial radius [cells]
+  float margin{};  ///< distance from the map to the border [cells]; the largest initial radius
   std::int32_t steps_left{};  ///< 0: the disaster has ended and causes no risk
   /// Index of the last waypoint passed; 0 before the first waypoint; kNone without a track.
   std::int32_t waypoint{kNone};
-  bool by_quadrant{};  ///< true: `quadrant` applies, and `radius` is the largest of its four values
+  /// True: `quadrant` applies, and `radius` has the largest of the four values of each ring.
+  bool by_quadrant{};
   std::array<std::array<float, kMaxRings>, 4>
       quadrant{};  ///< radius by quadrant (NE, SE, SW, NW) and ring
 
@@ -93,15 +95,15 @@ inline void CopyRings(const ObservableDisaster& disaster, Bulletin& bulletin) {
 /// replaces it by another one.
 using Track = std::shared_ptr<const std::vector<Waypoint>>;
 
-/// Creates a disaster. If the spec does not set the centre or the heading, they are drawn from
-/// (seed, episode, id). With a track, the disaster is in the state of the track at step 0.
+/// Creates a disaster. A centre or heading that the spec does not set is drawn from (seed, episode,
+/// id). With a track, the disaster is in the state of the track at step 0.
 /// @param width, height size of the farm [cells]
 /// @param track waypoints that replace those of the spec; null: those of the spec apply
 Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t seed,
                        std::uint64_t episode, std::int32_t width, std::int32_t height,
                        const std::vector<Waypoint>* track = nullptr);
 
-/// Advances a disaster by one step, to step `step` of the episode (1 for the first call). With a
+/// Advances a disaster by one step, to step `step` of the episode (1 for the first step). With a
 /// track, the disaster follows it. Without a track, the disaster turns, moves and grows. A disaster
 /// that has ended does not change.
 /// @param turn_key key of the random turns
@@ -113,8 +115,8 @@ void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_
 /// waypoint they are those of the first one, and after the last waypoint those of the last one.
 /// Sets grade and motion only if `step` is 0 or a new leg of the track has begun. Before the first
 /// waypoint the motion is that of the first leg, and after the last waypoint it is 0.
-/// @param disaster `waypoint` must not be kNone. The search for the current leg starts there, so
-///   `step` must not decrease from call to call.
+/// @param disaster `waypoint` must not be kNone. The search for the current leg starts at this
+///   waypoint, so `step` must not decrease from call to call.
 void FollowTrack(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
                  std::int32_t step);
 
@@ -168,9 +170,9 @@ inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
   return worst;
 }
 
-/// Returns the risk of disasters that damages a device at a cell, without the risk of the sea. The
-/// risk of each disaster is multiplied by the factor of its kind, and the worst product applies. It
-/// may be worse than kWorstRisk.
+/// Returns the risk with which disasters damage a device at a cell. The risk of the sea is not
+/// included. The risk of each disaster is multiplied by the factor of its kind, and the result is
+/// the worst product. It may be worse than kWorstRisk.
 /// @param factors factors of the device's kind, indexed by DisasterKind (DamageSpec::FactorsOf)
 inline float DamagingRiskAt(const std::vector<Disaster>& disasters, Cell cell,
                             const std::array<float, kDisasterKindCount>& factors) {

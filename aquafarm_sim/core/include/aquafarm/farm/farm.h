@@ -65,7 +65,7 @@ struct Device {
 
 /// Statistics of an episode, updated every step.
 struct EpisodeRecord : EpisodeStatistics {
-  std::int32_t ship_steps{};  ///< ship-steps of rescue ships not moored; 0 without money
+  std::int32_t ship_steps{};  ///< ship-steps of rescue ships that are not moored; 0 without money
 };
 
 /// Returns the summary of an episode. @param farm index of the farm that played it
@@ -144,8 +144,8 @@ class Farm {
 
   /// Returns the worst current risk of disasters and sea at a cell of the map; 0 or negative.
   float RiskAt(Cell cell) const;
-  /// Returns the current risk that damages a kind of device at a cell of the map. In contrast to
-  /// RiskAt, the risk of each disaster is first multiplied by its factor of DamageSpec::kinds.
+  /// Returns the current risk that damages devices of a kind at a cell of the map. In contrast to
+  /// RiskAt, the risk of each disaster is first multiplied by a factor from DamageSpec::kinds.
   float DamagingRiskAt(Cell cell, DeviceKind kind) const;
 
   /// Returns the current cell of a device: the cell of its carrier, or its own cell without a
@@ -193,10 +193,10 @@ class Farm {
   ///   drawn only if exactly one of the two farms needs routes (ViewSpec::NeedsRoutes).
   void CopyStateFrom(const Farm& from);
 
-  /// Applies a bulletin: replaces disaster `id`, or adds a disaster if `id` is the number of
-  /// disasters. If the spec has neither start nor track, the disaster keeps the centre of the one
-  /// that it replaces. A new disaster needs a start or a track. The disaster follows the track of
-  /// the spec. The steps of the track count from the start of the episode.
+  /// Replaces disaster `id`, or adds a disaster if `id` is the number of disasters. If the spec has
+  /// neither start nor track, the disaster keeps the centre of the one that it replaces. An added
+  /// disaster needs a start or a track. The disaster follows the track of the spec. The steps of
+  /// the track count from the start of the episode.
   /// Agents receive the forecasts of the spec, which replace those set earlier in this episode. In
   /// partial view, a spec with forecasts also issues a bulletin of the new state at once.
   /// @throws InputError if the id or the spec is invalid or the spec has storms; the farm is then
@@ -250,7 +250,7 @@ class Farm {
   std::shared_ptr<const Scenario> scenario_;
   std::shared_ptr<const Layout> layout_;
   std::vector<Ship> ships_;
-  std::vector<std::int32_t> ship_index_;  // linear cell of each ship; kNone: not active
+  std::vector<std::int32_t> ship_index_;  // LinearIndex of each ship's cell; kNone: not active
   std::vector<Device> devices_;
   std::vector<Disaster> disasters_;
   std::vector<Track> tracks_;

@@ -12,14 +12,15 @@
 ///
 /// The newest forecast of an authority applies until the step of its last point; see
 /// NewestForecast. Its path leads from the last known position to its later points. After the last
-/// point the disaster keeps the motion between the last two points, or its last known motion if
-/// there is only one point. It stops at the end of the true track. Without a track, it stops when
-/// the disaster ends.
+/// point the path continues with the motion between the last two points, or with the last known
+/// motion of the disaster if there is only one point. The path ends at the end of the true track
+/// or, without a track, when the disaster ends.
 ///
-/// The rings of this forecast (ForecastTrack) are those of its points. If the points have no rings,
-/// the rings of the true track apply. Without a true track, the current rings apply and grow by
-/// radius_growth per step. If the points of a disaster without a track have rings, these rings grow
-/// only after the last point, and only if radius_growth is positive.
+/// The rings of a forecast of an authority (ForecastTrack) are those of its points. If the points
+/// have no rings, the rings of the true track apply. If there is also no true track, the current
+/// rings apply and grow by radius_growth per step. If the points have rings but there is no true
+/// track, the rings of the points grow only after the last point, and only if radius_growth is
+/// positive.
 ///
 /// While no forecast of an authority applies, agents observe the second source if the scenario has
 /// view.forecast_error_km and the disaster has a track. If not, they observe the last known motion.
@@ -52,15 +53,15 @@ std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episo
                                          std::int32_t disaster);
 
 /// Returns the forecast of an authority that applies at step `issued`; nullptr if there is none.
-/// The candidates are the newest forecast in the scenario and the newest one in Farm::forecasts,
-/// each issued at or before `issued`. A candidate without a point after `issued` is excluded.
-/// Returns the newer candidate. The pointer is valid until the farm changes.
+/// Only forecasts issued at or before `issued` count. The candidates are the newest of these in the
+/// scenario and the newest of these in Farm::forecasts. A candidate without a point after `issued`
+/// is excluded. Returns the newer candidate. The pointer is valid until the farm changes.
 const IssuedForecast* NewestForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
 /// Checks a forecast. @throws InputError if Farm::IssueForecast does not accept it
 void CheckForecast(const Farm& farm, std::int32_t disaster, const IssuedForecast& forecast);
 
-/// Prepares a storm for Farm::SetDisaster; does nothing if it has no forecast. If its newest
+/// Prepares a storm for Farm::SetDisaster. Does nothing if the storm has no forecast. If its newest
 /// forecast is issued after the farm's current step, changes the forecast: it is then issued now,
 /// and its points are the later waypoints of the track. With view.forecast_error_km, also subtracts
 /// the error (MeanForecastError times ForecastErrorVector) from the waypoints after the step of

@@ -11,7 +11,7 @@
 
 namespace aquafarm {
 
-/// Number of moves for unreachable cells; larger than that of any route.
+/// Stands for the number of moves if there is no route; larger than the number of any route.
 inline constexpr std::int32_t kUnreachable = 1 << 28;
 
 /// Computes the number of moves by water from every cell of a chart to the nearest of `count`
@@ -19,7 +19,8 @@ inline constexpr std::int32_t kUnreachable = 1 << 28;
 /// @param cells [H, W] CellBits
 /// @param targets [count] cells of the chart
 /// @param steps [H, W] result; resized
-/// @param queue scratch memory. Nothing is allocated if `steps` and `queue` are large enough.
+/// @param queue scratch memory. Nothing is allocated if `steps` has this size and `queue` has the
+///   capacity.
 void StepsByWater(const Grid<std::uint8_t>& cells, const Cell* targets, std::size_t count,
                   Grid<std::int32_t>& steps, std::vector<Cell>& queue);
 
@@ -28,8 +29,9 @@ void StepsByWater(const Grid<std::uint8_t>& cells, const Cell* targets, std::siz
 /// straight-line distance to the target.
 struct RouteEntry {
   std::int32_t steps{kUnreachable};  ///< moves left; 0 at the target
-  std::int8_t east{};   ///< next move to the east; 0 at the target, or if there is no route
-  std::int8_t north{};  ///< next move to the north; 0 at the target, or if there is no route
+  /// Eastward component of the next move: -1, 0 or 1. 0 at the target, or if there is no route.
+  std::int8_t east{};
+  std::int8_t north{};  ///< northward component, as `east`
 };
 
 /// Computes the routes from every cell to `target`. The route of the cell with linear index i is

@@ -20,7 +20,7 @@ class GeoFrame {
   /// @param origin centre of cell (0, 0) @param cell_size_m above 0
   GeoFrame(GeoPoint origin, double cell_size_m) : origin_(origin), cell_size_m_(cell_size_m) {}
 
-  /// Projects a point on the ellipsoid vertically onto the plane and returns its (x, y) [cells].
+  /// Projects a point on the ellipsoid orthogonally onto the plane and returns its (x, y) [cells].
   std::array<double, 2> ToGrid(GeoPoint point) const;
   /// Returns whether a point is within about 60 degrees of arc of the origin. A point more than 90
   /// degrees away is on the far side of the Earth, and ToGrid could project it into the ranch.

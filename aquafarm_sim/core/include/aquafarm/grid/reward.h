@@ -3,8 +3,8 @@
 
 /// The reward terms and their weights. The farm, scenario files, messages, pictures and Python use
 /// the two lists below. Append new terms at the end, because saved states store the first seven
-/// terms by position. They store later terms by name. [decided] marks our choice where the paper
-/// gives no value, see docs/model.md.
+/// terms by position. Saved states store later terms by name. [decided] marks our choice where the
+/// paper gives no value, see docs/model.md.
 
 #include <array>
 #include <string_view>
@@ -60,8 +60,8 @@ struct RewardTerms {
 static_assert(sizeof(RewardTerms) == kRewardTermCount * sizeof(float));
 
 /// Rewards that a scenario sets under `rewards` (paper §2.5). Other members of Scenario set the
-/// rest: RockSpec::reward for crashes into rocks, EnergySpec::weight for energy, and the risks of
-/// disasters and sea.
+/// rest: RockSpec::reward for crashes into rocks, the values of devices for deliveries,
+/// EnergySpec::weight for energy, and the risks of disasters and sea.
 struct RewardWeights {
   float island_crash{-20.0F};
   float pickup{20.0F};

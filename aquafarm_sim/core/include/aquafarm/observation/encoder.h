@@ -4,12 +4,12 @@
 /// Numeric encodings of a view: a tabular index, a feature vector, or H × W planes.
 ///
 /// Tabular index: status_rank · W·H + cell. `cell` is the linear index of the ship's cell.
-/// `status_rank` numbers the combinations of the status of all fetchable devices. Each device is
-/// deployed, aboard this ship, or gone (delivered or aboard another ship). A ship of capacity C
-/// carries at most C devices, so combinations with more devices aboard have no number. For C = 1
-/// and D devices there are 2^D + D·2^(D−1) combinations. As in the paper, the index does not
-/// contain the disaster. The paper states |S| = 128,000 and |O| = 32,000, but its products
-/// 25·25·2³·4 and 25·25·2³ are 20,000 and 5,000.
+/// `status_rank` numbers the combinations of the status of all fetchable devices (those that are
+/// not self-propelled). Each device is deployed, aboard this ship, or gone (delivered or aboard
+/// another ship). A ship of capacity C carries at most C devices, so combinations with more devices
+/// aboard have no number. For C = 1 and D devices there are 2^D + D·2^(D−1) combinations. As in the
+/// paper, the index does not contain the disaster. The paper states |S| = 128,000 and
+/// |O| = 32,000, but its products 25·25·2³·4 and 25·25·2³ are 20,000 and 5,000.
 ///
 /// feature_names() and plane_names() list the features and planes in order.
 
@@ -70,7 +70,9 @@ class Encoder {
   const Scenario& scenario_;
   std::vector<FeatureGroup> groups_;
   FeatureScales scales_;
-  std::vector<std::int32_t> status_rank_;  // by base-3 code; kNone if the capacity is exceeded
+  // Rank by status code, which has one base-3 digit per fetchable device; kNone if more devices are
+  // aboard than the capacity allows.
+  std::vector<std::int32_t> status_rank_;
   std::vector<std::int32_t> status_code_;  // by rank
   std::uint32_t state_count_{};
   std::int32_t feature_count_{};

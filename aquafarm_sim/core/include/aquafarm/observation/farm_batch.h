@@ -3,8 +3,8 @@
 
 /// Many farms of one scenario, stepped together. Observations are written directly to the caller's
 /// memory. If the episode of a farm has ended, the next Step ignores the actions for that farm and
-/// starts its next episode (next-step auto-reset, as in Gymnasium 1.x). No final observation is
-/// lost, and one call per step is enough.
+/// starts its next episode (next-step auto-reset, as in Gymnasium 1.x). With one call per step, the
+/// caller therefore also receives the final observation of each episode.
 
 #include <cstdint>
 #include <memory>
@@ -54,10 +54,10 @@ class FarmBatch {
   /// @throws InputError if the scenario is a family, or if the layout cannot be drawn
   FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farms, std::int32_t threads = 1);
 
-  /// Starts the sequence `seed` in all farms, with farm i at episode first_episode + i, and writes
-  /// the first observations.
-  /// @param stride added to a farm's episode number for its next episode; 0 selects farms(). Pass a
-  ///   larger stride if other batches play the episodes in between.
+  /// Starts one episode of `seed` in each farm: episode first_episode + i in farm i. Writes the
+  /// first observations.
+  /// @param stride difference between the numbers of successive episodes of a farm; 0 selects
+  ///   farms(). Pass a larger stride if other batches play the episodes in between.
   /// @throws InputError if an episode's layout cannot be drawn; call Reset with another episode
   void Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output,
              std::uint64_t stride = 0);
@@ -93,8 +93,8 @@ class FarmBatch {
   /// Starts farm i's next episode and writes its first observation.
   /// @throws InputError if the layout cannot be drawn
   void StartNext(std::int32_t i, const BatchOutput& output);
-  /// Starts episode `episode` of the sequence `seed` in farm i only, sets the stride of this farm,
-  /// and writes its first observation.
+  /// Starts episode `episode` of `seed` in farm i only, sets the stride of this farm, and writes
+  /// its first observation.
   /// @throws InputError if the layout cannot be drawn
   void Start(std::int32_t i, std::uint64_t seed, std::uint64_t episode, std::uint64_t stride,
              const BatchOutput& output);

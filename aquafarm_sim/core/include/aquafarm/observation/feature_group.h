@@ -15,7 +15,7 @@ inline constexpr float kValueScale = 1.0F / 100.0F;  ///< 1 / max device value o
 /// Quantities that scale features to about [-1, 1].
 struct FeatureScales {
   float length{};  ///< 1 / longer side of the map [1/cells]
-  float time{};    ///< HorizonOf the scenario [steps]
+  float time{};    ///< HorizonOf(scenario) [steps]
   /// 1 / energy of `time` straight moves without load in calm water [1/kWh]. The moves are those of
   /// a rescue ship, or of a self-propelled device if there is no rescue ship. 0 if the scenario has
   /// no EnergySpec, or if such moves consume no energy.

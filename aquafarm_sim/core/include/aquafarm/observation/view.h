@@ -84,13 +84,14 @@ struct View {
 /// layout.
 void Observe(const Farm& farm, std::int32_t ship, View& view);
 
-/// Returns view.forecast_leads_h[lead] in steps, rounded to the nearest and at least 1.
+/// Returns view.forecast_leads_h[lead] in steps, rounded to a whole number, at least 1.
 std::int32_t LeadSteps(const Scenario& scenario, std::size_t lead);
 
 /// Sets known.forecast to the positions that result from the motion dx, dy of known.belief.
 void ExtrapolateMotion(const Scenario& scenario, KnownDisaster& known);
 
-/// Returns the worst risk of the rings with a radius above 0, 0 or negative; 0 without such a ring.
+/// Returns the worst risk, 0 or negative, of the rings whose radius is positive; 0 if there is no
+/// such ring.
 float WorstRisk(const ObservableDisaster& disaster);
 
 /// Fills View::by_danger, the most dangerous disaster first. The danger of a disaster for a ship is

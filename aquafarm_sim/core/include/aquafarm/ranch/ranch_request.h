@@ -23,7 +23,7 @@ struct ArchiveRequest {
   Range<std::int32_t> years{0, 0};  ///< years of the storms for training
   /// Years of the storms for evaluation; if unset, all years after years.max.
   std::optional<Range<std::int32_t>> evaluation_years;
-  double within_km{300.0};  ///< max distance of a storm's closest approach to the ranch's middle
+  double within_km{300.0};  ///< max distance of a storm from the ranch's middle when nearest
 };
 
 /// Inputs of BuildRanch. BuildRanch chooses values for unset fields. BuiltRanch::decided lists
@@ -31,7 +31,7 @@ struct ArchiveRequest {
 struct RanchRequest {
   std::string name{"my_ranch"};
   std::string chart;  ///< GeoJSON, map_server YAML or ASCII grid; empty for open sea
-  /// Middle of the ranch. Required with a storm, an archive, port_places, sea fields, or a chart in
+  /// Middle of the ranch. Required with a track, an archive, port_places, sea fields, or a chart in
   /// degrees.
   std::optional<GeoPoint> center;
   std::int32_t width{25};   ///< [cells]; a chart in metres replaces width, height and cell_size_m
@@ -55,7 +55,7 @@ struct RanchRequest {
 
   std::int32_t ports{4};
   std::vector<GeoPoint>
-      port_places;     ///< each is moved to the nearest shore water; replaces `ports`
+      port_places;     ///< each is moved to the nearest water next to land; replaces `ports`
   bool exact_ports{};  ///< whether places of `port_places` on land or off the map are errors
   std::int32_t devices{4};
   DevicePlacement placement{DevicePlacement::kRandom};

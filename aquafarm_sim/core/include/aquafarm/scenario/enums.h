@@ -45,8 +45,8 @@ inline constexpr int kLayoutModeCount = 2;
 /// How the cells of devices are chosen; see `placement` in docs/scenario.md.
 enum class DevicePlacement : std::uint8_t { kUniform, kLinear, kRandom, kExplicit };
 inline constexpr int kDevicePlacementCount = 4;
-/// What a disaster without a track does at a border outside the map; see `border` in
-/// docs/scenario.md.
+/// What a disaster without a track does when its centre reaches the border, which is outside the
+/// map; see `border` in docs/scenario.md.
 enum class Border : std::uint8_t { kReflect, kWrap, kLeave };
 inline constexpr int kBorderCount = 3;
 /// Whether ships observe the whole map, or mainly their surroundings; see ViewSpec.

@@ -25,12 +25,12 @@ inline constexpr std::int32_t kMaxRanchSteps = 3000;
 ///   disasters    of all kinds, with one to three rings; they wander, and some grow or shrink.
 ///                storm_share of the ranches have the scenario's own disasters instead.
 ///   step_limit   a rough estimate of the time in which one ship fetches all devices, times a
-///                random factor in [1, 2]. Generated disasters last equally long. Ranches with the
-///                scenario's own disasters keep the step_limit of the scenario.
+///                random factor in [1, 2]. Each generated disaster lasts step_limit steps. Ranches
+///                with the scenario's own disasters keep the step_limit of the scenario.
 ///
 /// @param family scenario with Scenario::family
-/// @param attempt from 0. If the layout of the ranch cannot be drawn, the caller draws another
-///   ranch with the next attempt.
+/// @param attempt 0 for the first ranch. If the layout of this ranch cannot be drawn, the caller
+///   draws another ranch with attempt 1, and so on.
 /// @throws InputError if the parts of the ranch do not fit on its map
 Scenario DrawRanch(const Scenario& family, std::uint64_t seed, std::uint64_t episode,
                    std::uint32_t attempt);

@@ -110,7 +110,8 @@ struct StormsSpec {
   double within_km{300.0};  ///< max distance of the closest approach to the middle of the farm
   double approach_h{24.0};  ///< hours from step 0 to the closest approach
   StormPerturbation perturbation;
-  /// The storms of both ranges of years that come in reach, as an archive (tracks/archive.h).
+  /// The storms of both ranges of years that have gales and come as close as within_km, as an
+  /// archive (tracks/archive.h).
   std::string tracks;
   /// The storms of `tracks` on the farm; set by the reader of scenarios.
   std::shared_ptr<const StormLibrary> library;
@@ -154,8 +155,9 @@ struct DisasterSpec {
   std::string name{};
 };
 
-/// Returns the risks of the rings for grades 1 to 4: grade_risks if set, else `risks` times each of
-/// grade_factors, clamped to [kWorstRisk, kMildestRisk]. Empty if both are unset.
+/// Returns the risks of the rings for grades 1 to 4: grade_risks if set, else `risks` times the
+/// factor of the grade (grade_factors), clamped to [kWorstRisk, kMildestRisk]. Empty if grade_risks
+/// and grade_factors are both empty.
 GradeRisks RisksByGrade(const DisasterSpec& disaster);
 
 /// The rewards of §2.5.
@@ -208,7 +210,7 @@ struct EnergySpec {
 };
 
 /// Values and prices in a currency, used by the equations of farm/accounts.h and by rescue plans.
-/// They do not affect rewards and observations.
+/// They affect neither rewards nor observations.
 struct MoneySpec {
   /// Name of the unit. A rescue plan uses the prices only if its devices have values in this
   /// currency.
@@ -232,19 +234,19 @@ struct ViewSpec {
   float bulletin_noise{0.0F};        ///< max error of the reported centre on each axis [cells]
   bool shared_sight{};               ///< agents are networked and use each other's sensors
   bool routes{};  ///< features include the shortest routes by water to ports and devices
-  /// Features include the forecast risk after each move, and the mean forecast risk if the ship
-  /// keeps moving in each direction or stays.
+  /// Features include the forecast risk after each move. They also include the mean forecast risk
+  /// of each straight course (the ship keeps moving in one direction) and of staying.
   bool lookahead_risk{};
-  bool tokens{};  ///< features are entity tokens instead (observation/tokens.h)
+  bool tokens{};  ///< entity tokens replace all other features (observation/tokens.h)
   bool kinds{};   ///< features include the kinds of devices, and kinds and grades of disasters
   /// Range of the sensors of deployed monitoring devices in partial view [cells]. All ships use
-  /// these sensors. Self-propelled monitoring devices, and those with health 0, do not have them.
-  /// 0: no monitoring device has them.
+  /// these sensors. Self-propelled monitoring devices, and those with health 0, have no sensors.
+  /// 0: no monitoring device has sensors.
   float monitoring_radius{};
   /// Mean error of a disaster's forecast position after 24, 48 and 72 hours [km]. If not empty,
   /// agents observe a forecast track with this mean error; the disaster itself follows its track.
-  /// Issued forecasts take precedence. With no issued forecast and an empty list, agents observe
-  /// the last known motion. See forecast.h.
+  /// Issued forecasts take precedence. If the list is empty and no forecast is issued, agents
+  /// observe the last known motion. See forecast.h.
   std::vector<float> forecast_error_km{};
   /// If above 0, the features describe disasters by slot: one slot per disaster of the scenario,
   /// plus this number for disasters that arrive during an episode (observation/disaster_slots.h).
@@ -276,7 +278,7 @@ struct SeaSpec {
 struct FamilySpec {
   Range<std::int32_t> width{12, 60};   ///< [cells]
   Range<std::int32_t> height{12, 60};  ///< [cells]
-  Range<std::int32_t> islands{0, 8};   ///< blocks with sides of up to a fifth of the map's sides
+  Range<std::int32_t> islands{0, 8};   ///< number of blocks; max size: a fifth of the map's sides
   float coast_share{0.3F};             ///< share of ranches with a coast along one side
   Range<float> rocks{0.0F, 0.06F};     ///< share of the cells that are rocks
   Range<std::int32_t> devices{1, 10};

@@ -9,15 +9,15 @@ namespace aquafarm {
 
 /// Reads a scenario file. Prints a notice to stderr for each key that is given by its old name.
 /// @throws InputError for an unreadable or invalid file, for example
-///         "ranch.yaml:12: disasters[0].grade: got 7, expected [1, 4]". Unknown keys are errors
-///         whose message lists the valid keys.
+///         "ranch.yaml:12: disasters[0].grade: got 7, expected [1, 4]". For an unknown key,
+///         the message lists the valid keys.
 Scenario LoadScenario(const std::string& path);
 
 /// Reads a scenario from text as LoadScenario does, but prints no notices. `origin_name` replaces
 /// the file name in messages. Paths in the text are relative to the folder of `origin_name`.
 Scenario ParseScenario(const std::string& text, const std::string& origin_name);
 
-/// Writes every used parameter of a scenario, in a fixed order and in grid units.
+/// Returns the YAML text of every used parameter of a scenario, in a fixed order and in grid units.
 /// ParseScenario(ToYaml(s)) returns s, with defaults for the parameters that s does not use. Equal
 /// scenarios give equal texts. Run folders store this text.
 /// @param old_names whether renamed keys get their old names

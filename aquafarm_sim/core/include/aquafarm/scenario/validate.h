@@ -5,14 +5,15 @@
 
 namespace aquafarm {
 
-/// Validates one disaster, such as one that set_disaster receives. For example, numbers are finite
-/// and in range, radii ascend, and each radius has a risk.
+/// Validates one disaster, such as one that set_disaster receives. For example, numbers must be
+/// finite and in range, radii must ascend, and each radius must have a risk.
 /// @throws InputError "radii[1]: got 2, expected more than radii[0] = 4"
 void ValidateDisaster(const DisasterSpec& disaster);
 
-/// Validates all values of a scenario and the constraints between them. For example, cells are on
-/// the map, each cell has at most one object, and counts fit the map. Only island blocks may
-/// overlap. A Scenario created in code must pass this check before a Farm is constructed from it.
+/// Validates all values of a scenario and the constraints between them. For example, cells must be
+/// on the map, each cell may have only one object, and counts must fit the map. Only island blocks
+/// may overlap. A Scenario created in code must pass this check before a Farm is constructed from
+/// it.
 /// @throws InputError whose message begins with the path of the invalid key
 void ValidateScenario(const Scenario& scenario);
 

@@ -51,8 +51,8 @@ struct SeaField {
 /// A field on the cells of a ranch, [H, W]; NaN where the field has no value nearby.
 using Layer = Grid<float>;
 
-/// Reads the part of a field around a ranch of width × height cells. If the field does not cover
-/// the ranch, reads its values that are nearest to the ranch.
+/// Reads the part of a field around a ranch of width × height cells. If the ranch is outside the
+/// field, reads the values of the field that are nearest to the ranch.
 /// @throws InputError for an unusable file or variable, for example "sea.nc: so: no such variable;
 ///         available: …". A build without netCDF (CMake: AQUAFARM_WITH_NETCDF=OFF) always throws.
 SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, const GeoFrame& frame,

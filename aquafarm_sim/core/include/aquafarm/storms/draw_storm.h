@@ -18,7 +18,7 @@ struct DrawnStorm {
 };
 
 /// Returns the storms from which a seed draws. An evaluation seed (rng.h) draws from the evaluation
-/// years, and another seed from the years for training.
+/// years, and any other seed from the years for training.
 const std::vector<ArchivedStorm>& StormsOf(const StormsSpec& storms, std::uint64_t seed);
 
 /// Draws one of the storms of StormsOf, all with equal probability, and its displacement. The

@@ -2,8 +2,8 @@
 #pragma once
 
 /// Reads warnings of a weather service (JSON with "warning") and anchorage forecasts of Zhoushan
-/// (JSON with "anchors"). Each becomes a notice: a hazard at a place for a period. docs/data.md
-/// lists the fields that are not read.
+/// (JSON with "anchors"). Each warning and each period of a forecast becomes a notice: a hazard at
+/// a place for a period. docs/data.md lists the fields that are not read.
 
 #include <cstdint>
 #include <optional>
@@ -28,14 +28,14 @@ struct Notice {
 
 struct NoticeFile {
   std::vector<Notice> notices;        ///< in the order of the file
-  std::vector<std::string> warnings;  ///< "file:line: …"
+  std::vector<std::string> warnings;  ///< problems in the file, "file:line: …"
 };
 
 /// Reads a file of warnings or of anchorage forecasts. Cancelled warnings are left out.
 /// @throws InputError "file:line: warning[0].endTime: got '…', expected a time"
 NoticeFile LoadNotices(const std::string& path);
 
-/// Does the same as LoadNotices, for a text; `origin_name` replaces the file name in messages.
+/// Reads notices from a text as LoadNotices does. `origin_name` replaces the file name in messages.
 NoticeFile ParseNotices(const std::string& text, const std::string& origin_name);
 
 /// Returns a description, such as "大风 of 上海中心气象台, grade 1, from … to …".

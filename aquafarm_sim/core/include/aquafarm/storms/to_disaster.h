@@ -49,7 +49,7 @@ DisasterSpec ToDisaster(const StormRings& storm, const GradeRisks& risks, const 
 /// @param step_now present step of the episode; the disaster lasts from this step to its last
 ///   waypoint
 /// @throws InputError if the scenario has no grid.origin or time.start, or if the storm is not
-///   known after step_now; also as ToPath and StepsToCover do
+///   known after step_now; also in the same cases as ToPath and StepsToCover
 DisasterSpec ToDisaster(const StormTrack& bulletin, const Scenario& scenario, std::int32_t id,
                         std::int32_t step_now);
 

@@ -3,14 +3,15 @@
 
 /// The rings of a storm between the points of its track, for farms, pictures and rescue plans.
 ///
-/// A storm's radii are not linear in time. ln r is linear in sqrt(wind / w - 1) (wind_radii.h), so
-/// the 34 kt radius is about 160 km as soon as the wind reaches 34 kt. The forecast points of a
-/// bulletin are 12 to 24 hours apart. Linear interpolation of the radii between these points gives
+/// A storm's radii are not linear in time. For the radius r of a ring of wind w, ln r is linear in
+/// sqrt(V / w - 1), where V is the wind of the storm (wind_radii.h). By the estimate for the CMA,
+/// the 34 kt radius is about 160 km as soon as V reaches 34 kt. The forecast points of a bulletin
+/// are 12 to 24 hours apart. Linear interpolation of the radii between these points gives
 /// radii that are too small.
 ///
-///   wind   35 kt ●━━━━━━━━━━━━━━━━━━━━● 30 kt    position and wind are linear, at most 3 h apart;
-///   radius 170 km ●━━━●━━━●━━━●                   radii that are not reported follow from the wind
-///                              ╲___●___● 0        and from the size of the last report
+///   wind   35 kt ●━━━━━━━━━━━━━━━━━━━━● 30 kt    points at most 3 h apart; position and wind are
+///   radius 170 km ●━━━●━━━●━━━●                   linear; radii that are not reported follow from
+///                              ╲___●___● 0        the wind and from the size of the last report
 
 #include <cstdint>
 #include <optional>
@@ -51,9 +52,9 @@ struct FineRings {
   std::int32_t held{};  ///< number of intervals in which the larger radii of both ends apply
 };
 /// Returns the rings of a track after FineTrack and CarrySize. Also adds points, at most
-/// kFineTrack_s apart, to longer intervals that FineTrack left undivided. Each of these points has
-/// the larger radii of both ends, to be on the safe side. No points are added next to a point whose
-/// wind and radii are unknown.
+/// kFineTrack_s apart, to intervals that are longer than kFineTrack_s and that FineTrack did not
+/// divide. Each of these points has the larger radii of both ends, to be on the safe side. No
+/// points are added next to a point whose wind and radii are unknown.
 /// @param from no points are added between two points at or before this time, UTC [s since 1970]
 /// @param winds_kt see ToRings
 /// @param memory_h see kSizeMemory_h

@@ -34,16 +34,16 @@ class StormPlacer {
   ///    - A ring whose wind the storm no longer reaches gets radius 0.
   ///    - A ring whose wind the storm newly reaches gets the radius of EstimateRadius times a
   ///      ratio: the recorded radius divided by the estimated radius of the next weaker ring that
-  ///      has both. If there is no such ring, the ratio is StormPoint::size.
+  ///      has both radii. If there is no such ring, the ratio is StormPoint::size.
   ///    - A ring with StormPoint::keeps_radii and a radius above 0 does not change.
-  /// The rings of a fix without a known wind do not change either. size_factor then multiplies all
-  /// radii, and each ring is cut where it extends beyond one of a weaker wind. Each fix stays later
-  /// than the previous one.
+  /// The rings of a fix whose wind and grade are both unknown do not change either. size_factor
+  /// then multiplies all radii, and each ring is cut where it extends beyond a ring of a weaker
+  /// wind. Each fix stays later than the previous one.
   /// @param errors no entry: no errors; one entry: for all fixes; else one entry per fix of the
   ///   path
-  /// @param risks of the rings for grades 1 to 4, worst first. If a row has fewer risks than the
-  ///   storm has rings, the innermost rings share its first risk. If it has more, its last risks
-  ///   apply.
+  /// @param risks risks of the rings: one row per grade from 1 to 4, with the worst risk first.
+  ///   If a row has fewer risks than the storm has rings, the innermost rings share its first risk.
+  ///   If a row has more risks than the storm has rings, its last risks apply.
   /// @param waypoints result; one waypoint per fix, with steps relative to step 0 of the path
   void Place(const StormPath& path, const std::vector<StormErrors>& errors, const GradeRisks& risks,
              std::vector<Waypoint>& waypoints);

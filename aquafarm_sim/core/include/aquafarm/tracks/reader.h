@@ -20,8 +20,8 @@ struct StormFile {
 };
 
 /// Reads a file of tracks and detects its format.
-/// @throws InputError if the format is unknown or the content is invalid, for example
-///   "CH2021BST.txt:12: latitude in tenths of a degree: got '950', expected a whole number in …"
+/// @throws InputError if the file cannot be read, its format is unknown or its content is invalid,
+///   for example "CH2021BST.txt:12: number of points: got 'x', expected a whole number in …"
 StormFile LoadStormFile(const std::string& path);
 
 /// Does the same as LoadStormFile, for a text; `origin_name` replaces the file name in messages.

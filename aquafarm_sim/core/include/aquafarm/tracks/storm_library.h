@@ -41,10 +41,10 @@ struct StormLibrary {
 };
 
 /// Selects the tracks whose closest approach to the middle of a site is within site.within_km, and
-/// rounds them as in an archive. Keeps the fixes from `before_h` hours before the closest approach
-/// until `after_h` hours after it, and one more fix on each side. Leaves out a track if fewer than
-/// two fixes are kept, or if its rings have radius 0 at all kept fixes. Applied to its own result,
-/// the function returns it unchanged.
+/// rounds them as in an archive. Keeps the fewest fixes of each track that cover the period from
+/// `before_h` hours before the closest approach until `after_h` hours after it, as far as the track
+/// covers this period. Leaves out a track if fewer than two fixes are kept, or if its rings have
+/// radius 0 at all kept fixes. Applied to its own result, the function returns it unchanged.
 std::vector<StormTrack> SelectStorms(const std::vector<StormTrack>& tracks, const StormSite& site);
 
 /// Converts a track of SelectStorms to a storm on the farm of the site.

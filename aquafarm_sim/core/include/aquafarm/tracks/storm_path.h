@@ -32,9 +32,9 @@ struct StormPoint {
   std::array<double, kMaxStormRings> radius{};     ///< [cells], the strongest wind first
   std::array<double, kMaxStormRings> median_km{};  ///< EstimateRadius for `wind_mps`
   std::array<std::array<double, kQuadrantCount>, kMaxStormRings> quadrants{};  ///< [cells]
-  /// By ring: true if errors of the wind (StormErrors) do not change its radii. True for reported
-  /// radii of recorded points, and at points that ToFineRings adds with the larger radii of both
-  /// ends. False for reported radii of forecast points.
+  /// By ring: true if errors of the wind (StormErrors) do not change the radii of the ring. True
+  /// for reported radii of recorded points, and at points that ToFineRings adds with the larger
+  /// radii of both ends. False for reported radii of forecast points.
   std::array<bool, kMaxStormRings> keeps_radii{};
   /// Ratio of the storm's radii to EstimateRadius. StormPlacer uses it for rings whose winds the
   /// storm reaches only because of an error of the wind.

@@ -42,8 +42,8 @@ struct StormWaypoint {
   std::optional<double> wind_mps;
   bool forecast{};     ///< predicted, not observed; see StormRings::At
   bool silent{};       ///< radii and wind are unknown, so radii_km are 0; see StormRings::At
-  bool is_reported{};  ///< the radius of the weakest wind is above 0 and recorded, or derived from
-                       ///< the radius of 30 kt
+  bool is_reported{};  ///< the radius of the weakest wind is above 0 and comes from a ring of the
+                       ///< fix (for 34 kt also from a ring of 30 kt), not from EstimateRing
   /// By ring, see StormPoint. Empty: false for all rings. CarrySize sets it; ToRings does not.
   std::vector<bool> keeps_radii;
   double size{1.0};  ///< see StormPoint; CarrySize sets it, ToRings does not
@@ -67,7 +67,8 @@ struct StormRings {
 /// Reduces a track to rings. A ring of a stronger wind is cut where it extends beyond the ring of a
 /// weaker wind. Missing radii are estimated from the wind. If the wind is unknown and the grade is
 /// at least TS, the lower limit of the grade replaces the wind. If the weakest wind is 34 kt, a
-/// fix with a ring of 30 kt but none of 34 kt gets a ring of 34 kt that is derived from the former.
+/// fix with a ring of 30 kt but none of 34 kt gets a ring of 34 kt that is derived from the ring of
+/// 30 kt.
 /// @param winds_kt winds of the rings, the strongest first. If empty: 64, 50 and 34, or 50 and 30
 ///   if the track has rings of 30 kt but none of 34 kt.
 /// @returns one waypoint for each fix of the track

@@ -108,7 +108,7 @@ struct StormTrack {
   std::string id;          ///< unique in its file, such as "2106"; kUnknownStormId if not given
   std::string name;        ///< as written; empty if not given
   std::string local_name;  ///< in the agency's language; empty if not given
-  std::string agency;      ///< agency whose positions these are
+  std::string agency;      ///< source of the positions, such as "CMA", "ATCF" or "bulletin"
   std::vector<StormFix> fixes;  ///< sorted by time, each time once
   std::vector<StormForecast> forecasts;
   std::vector<Landfall> landfalls;  ///< sorted by time
@@ -120,7 +120,7 @@ struct StormTrack {
 /// TS, 2 for STS, 3 for TY, 4 for STY and SuperTY. This table is our choice.
 std::int32_t DisasterGrade(StormGrade grade);
 
-/// Computes the headings and speeds that the source does not give, from the geodesic (WGS 84) to
+/// Computes headings and speeds where the source does not give them. Uses the geodesic (WGS 84) to
 /// the next fix. For the last fix, uses the geodesic between the last two fixes. A single fix gets
 /// neither heading nor speed. A storm that does not move gets no heading.
 /// @param fixes sorted by time

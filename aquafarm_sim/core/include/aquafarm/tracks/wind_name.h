@@ -8,7 +8,7 @@
 
 namespace aquafarm {
 
-/// Returns the name of a wind: "hurricane force" from 64 kn, "storm" from 48, "gale" from 34, "near
+/// Returns the name of a wind: "hurricane force" from 64 kt, "storm" from 48, "gale" from 34, "near
 /// gale" from 28, else "wind".
 const char* WindName(std::int32_t wind_kt);
 

@@ -6,12 +6,13 @@
 ///   ln r = a + b sqrt(V / w - 1) + c (|latitude| - 25)       r in km, V and w in the same unit
 ///
 /// Winds of at least w blow in an area that equals the area of a circle with radius r. V is the max
-/// mean wind of the storm. b and c depend on w. a depends on w and on the authority, which the
-/// averaging period of the wind identifies.
+/// mean wind of the storm. b and c depend on w. The coefficient a depends on w and on the
+/// authority, which the averaging period of the wind identifies.
 ///
-/// b and c are fitted to 5,891 rings of 169 storms of the JMA, 30 and 50 kt, 2015 to 2021. a of the
-/// CMA corrects an earlier estimate by its median errors over 24,494 rings of bulletins.
-/// docs/data.md states errors and sources. tools/fit_wind_radii.py repeats the fit.
+/// b and c are fitted to 5,891 rings of 169 storms of the JMA, 30 and 50 kt, 2015 to 2021. For the
+/// CMA, the coefficient a corrects an earlier estimate by the median errors of that estimate over
+/// 24,494 rings of bulletins. docs/data.md states errors and sources. tools/fit_wind_radii.py
+/// repeats the fit.
 
 #include <cstdint>
 
@@ -44,7 +45,7 @@ double SizeSigma(std::int32_t wind_kt, double storm_wind_mps, double latitude,
 /// Adds the ring of a wind, marked as estimated, to a fix that has no ring of this wind. The ring
 /// is a circle with the median radius of EstimateRadius, which may be 0.
 /// @param wind_kt 30, 34, 50 or 64
-/// @returns whether a ring was added; false if the fix has such a ring or its wind is unknown
+/// @returns whether a ring was added; false if the fix already has the ring or has no known wind
 bool EstimateRing(StormFix& fix, std::int32_t wind_kt);
 
 }  // namespace aquafarm

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads ATCF b-decks: comma-separated rows padded with blanks. Each time has one to three rows, one
-// for each wind whose radii are given. Trailing fields of a row may be missing. Source:
+// Reads ATCF b-decks: comma-separated rows padded with blanks. A fix has one to three rows, one for
+// each wind whose radii are given. Trailing fields of a row may be missing. Source:
 // science.nrlmry.navy.mil, abrdeck.html
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ double ReadAngle(std::string_view text, char positive, char negative, std::int32
 
 // Returns the radii by quadrant for a radius code; nullopt if the code is unknown. AAA is a circle.
 // Codes such as NEQ name the first quadrant, and the other quadrants follow clockwise. Codes such
-// as NES name a semicircle; the second radius is that of the other half. The radii are first
+// as NES name a semicircle; the second radius applies to the other half. The radii are first
 // assigned to eighths of the circle. A quadrant then gets the root mean square of its two eighths,
 // which preserves the area.
 std::optional<std::array<double, kQuadrantCount>> Quadrants(std::string_view code,
@@ -148,7 +148,7 @@ StormFix ReadFix(const Fields& fields, ParseContext& place) {
   return fix;
 }
 
-// Returns whether a row belongs to the fix of the previous row. The rows of a time differ only in
+// Returns whether a row belongs to the fix of the previous row. The rows of one fix differ only in
 // their radii.
 bool IsSame(const StormFix& fix, const StormFix& known) {
   return fix.time == known.time && fix.position.latitude == known.position.latitude &&
@@ -166,7 +166,7 @@ using NarrowRow = std::pair<std::int32_t, std::size_t>;
 
 // Detects truncated rows. If other rows of the deck are longer, a row that ends before the last
 // radius causes an error, and a row that ends before the radius of the max wind causes a warning.
-// @param widest max number of fields of a row
+// @param widest number of fields of the longest row of the deck
 void CheckNarrowRows(const std::vector<NarrowRow>& narrow, std::size_t widest,
                      ParseContext& place) {
   for (const auto& [number, size] : narrow) {

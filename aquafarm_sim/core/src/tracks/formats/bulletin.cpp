@@ -140,8 +140,8 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
   return fix;
 }
 
-// Returns whether a forecast point is not earlier than the observed point that contains the
-// forecast; else warns. Some forecasts were issued before that observed point.
+// Returns true if a forecast point is at or after the time of the observed point that contains the
+// forecast. Else warns and returns false. Some forecasts were issued before that observed point.
 // @throws FixError if the forecast point is more than 15 days later
 bool IsAhead(std::int64_t time, std::int64_t observed, const std::string& path,
              ParseContext& place) {

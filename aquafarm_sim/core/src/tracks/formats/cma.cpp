@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reads CMA best tracks, CHyyyyBST.txt: one header per storm, then its points. Lines are split at
-// blanks instead of fixed columns, because a header of 2018 is shifted. Source:
+// blanks instead of at fixed columns, because one header in the file of 2018 is shifted. Source:
 // tcdata.typhoon.org.cn/zjljsjj.html
 #include <algorithm>
 #include <array>
@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::int32_t kAveraging_min = 2;
 
-// Parses a header "66666 BBBB CCC DDDD EEEE F G name date". CCC is the number of points, DDDD a
-// serial number that is unique in each file, and EEEE the number of the storm, or two numbers such
-// as "7127,7128". BBBB, F and G are not read.
+// Parses a header "66666 BBBB CCC DDDD EEEE F G name date". CCC is the number of points. DDDD
+// is a serial number that is unique in its file. EEEE is the number of the storm, or two numbers
+// such as "7127,7128". BBBB, F and G are not read.
 BestTrackHeader ReadHeader(std::string_view line, ParseContext& place) {
   const std::vector<std::string_view> words = SplitWords(line);
   constexpr std::size_t kBeforeName = 7;

@@ -15,9 +15,9 @@ namespace {
 
 using Fields = std::vector<std::string_view>;
 
-// Returns the averaging period [min] of the winds of WMO_AGENCY, which are in WMO_WIND; 0 if no
-// agency is given. IBTrACS does not convert winds. Source: IBTrACS technical details, table of
-// agencies.
+// Returns the averaging period [min] of WMO_WIND, the wind of the agency in WMO_AGENCY; 0 if no
+// agency is given. IBTrACS does not convert winds to a common period. Source: IBTrACS technical
+// details, table of agencies.
 std::int32_t AveragingOf(std::string_view agency) {
   if (agency == "newdelhi") return 3;
   if (agency.substr(0, 7) == "hurdat_" || agency == "atcf" || agency == "cphc") return 1;
@@ -60,8 +60,8 @@ double Degrees(std::string_view text, const char* name, double min, double max,
                   Format(min) + ", " + Format(max) + "]");
 }
 
-// Reads the rings. The four quadrants of a ring come from the first agency that has a radius of
-// this wind.
+// Reads the rings. The four quadrants of a ring come from the first agency that gives a radius for
+// the wind of the ring.
 void ReadRings(const Columns& columns, const Fields& fields, StormFix& fix, ParseContext& place) {
   constexpr std::array<const char*, kQuadrantCount> kQuadrants{"NE", "SE", "SW", "NW"};
   for (const std::int32_t wind_kt : {34, 50, 64}) {
@@ -81,8 +81,9 @@ void ReadRings(const Columns& columns, const Fields& fields, StormFix& fix, Pars
   }
 }
 
-// Reads wind, grade, pressure and radius of the max wind. WMO_WIND is the wind of the responsible
-// agency. If it is blank, as in provisional tracks, the wind of the USA is used.
+// Reads wind, grade, pressure and radius of the max wind. WMO_WIND and WMO_PRES are the values of
+// the responsible agency. USA_WIND and USA_PRES replace them if they are blank, as in provisional
+// tracks, or invalid.
 void ReadStrength(const Columns& columns, const Fields& fields, StormFix& fix,
                   ParseContext& place) {
   auto wind_kt = Number(columns.Get(fields, "WMO_WIND"), "WMO_WIND", 250.0, place);

@@ -75,7 +75,7 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
   return fix;
 }
 
-// Returns the key of the list of points: "forecast" if there is no track or an empty one.
+// Returns the key of the list of points: "track", or "forecast" if `track` is missing or empty.
 const char* KeyOfPoints(const JsonObject& answer) {
   const Json* track = answer.List({"track"});
   return track == nullptr || track->empty() ? "forecast" : "track";
@@ -95,8 +95,8 @@ void WarnOfUnread(const Json& document, ParseContext& place) {
 // Returns whether a point only marks a landfall (type DL).
 bool IsLandfall(const JsonObject& point) { return point.TryText({"type"}) == "DL"; }
 
-// Reads the forecast of a response that also has `track` or `now`. Its time of issue is that of the
-// last fix.
+// Reads the forecast of a response that also has `track` or `now`. The forecast counts as issued at
+// the time of the last fix.
 void ReadForecast(const JsonObject& answer, StormTrack& track, ParseContext& place) {
   const Json* points = answer.TryList({"forecast"});
   if (points == nullptr || points->empty() || track.fixes.empty()) return;

@@ -3,11 +3,12 @@
 
 namespace aquafarm::agents {
 
-/// Exit codes of the C++ programs and nodes of this package. aquafarm_plan also has those of
-/// PlanResult (rescue/plan_report.h). bag_policy exits with 1 if a bag and a policy differ.
+/// Exit codes of the C++ programs and nodes of this package. aquafarm_plan also has the exit codes
+/// of PlanResult (rescue/plan_report.h). bag_policy exits with 1 if a recording differs from its
+/// simulation.
 ///
-/// (1) A training on one rank is saved, except after a deadlock in roscpp: its last checkpoint is
-/// kept.
+/// (1) A training on one rank is saved. With several ranks or after a deadlock in roscpp, only the
+/// last checkpoint is kept.
 enum class ExitCode : int {
   kOk = 0,
   kInternal = 1,      ///< a bug in the suite

@@ -18,7 +18,7 @@ class OptionReader {
  public:
   /// @param text key=value pairs, separated by blanks or commas; old names of options are replaced
   ///   by the new ones
-  /// @throws InputError on any other syntax and on duplicate keys
+  /// @throws InputError if `text` has another syntax or contains a key twice
   explicit OptionReader(const std::string& text);
 
   /// Returns the value of `key`, or `fallback` if the text does not contain the key.

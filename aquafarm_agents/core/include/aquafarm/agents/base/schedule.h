@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A parameter that varies with the training progress in [0, 1]:
+/// A parameter that varies with the training progress, which rises from 0 to 1:
 ///
 ///   constant     start ----------------------
 ///   linear       start \                          over the first `fraction` of the run
@@ -27,7 +27,7 @@ struct Schedule {
   ScheduleKind kind{ScheduleKind::kConstant};
   double start{};
   double end{};          ///< ignored by kConstant
-  double fraction{1.0};  ///< progress at which the value is `end`, (0, 1]; ignored by kConstant
+  double fraction{1.0};  ///< progress from which the value is `end`, (0, 1]; ignored by kConstant
 
   /// Returns the value at `progress`, the share of the run that is done, in [0, 1].
   double At(double progress) const;
@@ -35,8 +35,8 @@ struct Schedule {
   bool IsEverPositive() const { return At(0.0) > 0.0 || At(1.0) > 0.0; }
 };
 
-/// Parses a constant, "0.1" or "constant:0.1", or kind:start:end:fraction, for example
-/// "linear:1:0.05:0.5".
+/// Parses a schedule. "0.1" and "constant:0.1" are constants. The other kinds have the form
+/// kind:start:end:fraction, for example "linear:1:0.05:0.5".
 /// @param what prefix of error messages, such as "learning_rate"
 /// @throws InputError if `text` has another form, start or end is not in [min, max], fraction is
 ///         not in (0, 1], or start or end of an exponential or harmonic schedule is not above 0

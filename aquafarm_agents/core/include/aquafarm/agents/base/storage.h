@@ -8,8 +8,8 @@
 
 namespace aquafarm::agents {
 
-/// Thrown if a file or folder cannot be written, for example because the disk is full, or if
-/// another process uses the folder. what() is one readable line.
+/// Thrown if a file or folder cannot be written, for example because the disk is full, or if a run
+/// folder is in use by another process. what() is one readable line.
 class StorageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -31,7 +31,7 @@ void RemoveTemporaryFiles(const std::string& folder);
 /// Returns the contents of a file. @throws InputError if it does not exist or cannot be read
 std::string ReadFile(const std::string& path);
 
-/// Returns an error message from `path`, `what` and the text of errno, for example
+/// Returns an error message that consists of `path`, `what` and the text of errno, for example
 /// "runs/x/policy.ckpt: cannot be written: No space left on device".
 std::string ErrnoText(const std::string& path, const std::string& what);
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Exploration by curiosity (Fig. 7): the Intrinsic Curiosity Module of Pathak et al. 2017. It adds
-/// an intrinsic reward to the rewards of any learner. The intrinsic reward is high for steps whose
-/// outcome is poorly predicted. φ is trained so that it encodes only what actions influence:
+/// Exploration by curiosity (Fig. 7 of the paper): the Intrinsic Curiosity Module of Pathak et al.
+/// 2017. It adds an intrinsic reward to the rewards of any learner. The intrinsic reward is high
+/// for steps whose outcome is poorly predicted. The network φ encodes the features of a state. It
+/// is trained so that it encodes only what actions influence:
 ///
 ///   s  ── φ ──┬──────────────┬── inverse model ──> the action that led from s to s'; trains φ
 ///   s' ── φ ──┼──────────────┘
@@ -24,8 +25,8 @@
 
 namespace aquafarm::agents {
 
-/// Returns a learner that passes the results to `learner` with the intrinsic reward added. It
-/// requires features in addition to the observation types of `learner`.
+/// Returns a learner that passes the results to `learner` with the intrinsic reward added. The
+/// returned learner requires features in addition to the observation types of `learner`.
 /// @param exploration options with is_curious() true; `curiosity` is the schedule of w
 std::unique_ptr<Learner> WithCuriosity(std::unique_ptr<Learner> learner,
                                        const EnvironmentSpec& spec, std::uint64_t seed,

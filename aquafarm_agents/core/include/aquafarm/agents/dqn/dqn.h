@@ -7,12 +7,14 @@
 ///   y = r + γ max over a' of Q_target(s', a')        y = r after termination
 ///   loss = (y − Q(s, a))², or the Huber loss
 ///
-/// By default, the online network chooses a' (double_dqn) among the legal actions (mask_illegal).
+/// By default, the online network chooses a' (option double_dqn) among the legal actions (option
+/// mask_illegal).
 ///
-/// LSTM-DQN (Algorithm 2) is DQN with a recurrent network, trained from sequences of steps of one
-/// episode. The network first reads the burn_in steps before a sequence. It starts with the
-/// recurrent state that was stored at the first of these steps. Near the first stored step of an
-/// episode, the sequence begins at that step instead, without burn-in.
+/// LSTM-DQN (Algorithm 2) is DQN with a recurrent network. It is trained on sequences of steps of
+/// one episode. The network first reads the steps before a sequence; their number is the option
+/// burn_in. It starts with the recurrent state that was stored at the first of these steps. If the
+/// episode has too few stored steps before a sequence, the sequence begins at the first stored step
+/// of the episode instead, without burn-in.
 ///
 /// One forward pass computes the actions of all farms. DeepOptions lists the options.
 

@@ -9,10 +9,10 @@
 /// actions of this farm and starts its next episode. In the results of that Step, the farm has
 /// is_first = 1, its rewards are 0, and its slots hold no transition.
 ///
-/// An agent may be done before its farm: a delivered self-propelled device is no longer active (as
-/// in PettingZoo's parallel API). Its last transition, the delivery, is terminal. From then until
-/// the next episode, the slot holds no transition. Its reward is 0, or the team's reward if the
-/// scenario has a team reward.
+/// An agent may be done before the episode ends: a delivered self-propelled device is no longer
+/// active (as in PettingZoo's parallel API). Its last transition, the delivery, is terminal. From
+/// then until the next episode, the slot of this agent holds no transition. Its reward is 0, or the
+/// team's reward if the scenario has a team reward.
 
 #include <cstdint>
 #include <stdexcept>
@@ -64,7 +64,8 @@ inline std::size_t SlotCount(const EnvironmentSpec& spec) {
 }
 
 /// Results of one Reset, Step or Load. The environment owns them; they are valid until its next
-/// Reset, Step or Load. Arrays are row-major.
+/// Reset, Step or Load. Arrays are row-major. F is feature_count, P is plane_count, and H and W are
+/// the height and the width of the map.
 struct StepResults {
   /// Returns whether the agent in `slot` of `farm` is in a terminal state, whose value is 0. False
   /// for an active agent whose episode was truncated at the step limit.

@@ -36,7 +36,8 @@ class FamilyEnvironment final : public Environment {
   std::string Save() override;
   const StepResults& Load(const std::string& bytes) override;
 
-  /// Returns farm i of [0, N), for tools that inspect it. Precondition: Reset or Load was called.
+  /// Returns farm `i`, for tools that inspect it. Precondition: Reset or Load was called.
+  /// @param i [0, N)
   const Farm& farm(std::int32_t i) const { return *farms_[static_cast<std::size_t>(i)]; }
 
  private:

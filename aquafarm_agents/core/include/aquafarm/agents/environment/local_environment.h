@@ -11,7 +11,8 @@
 
 namespace aquafarm::agents {
 
-/// The part of all farms that one environment has. Several processes may each have a part.
+/// The consecutive farms that one environment has. Each of several processes may have a part of all
+/// farms.
 struct FarmShare {
   std::int32_t first{};  ///< index of the environment's first farm among all farms
   std::int32_t total{};  ///< number of all farms; 0 if the environment has all of them

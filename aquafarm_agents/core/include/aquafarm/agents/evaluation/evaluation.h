@@ -30,7 +30,7 @@ struct Evaluation {
   std::vector<EpisodeSummary> episodes;  ///< finished episodes of the seed, in order
   double mean_return{};                  ///< per episode
   double return_per_step{};  ///< sum of returns / sum of steps (paper §4.2, see docs/model.md)
-  double success_rate{};     ///< fraction of episodes that delivered every device
+  double success_rate{};     ///< fraction of episodes in which every device was delivered
   double mean_steps{};       ///< per episode
   /// Health of the delivered devices, averaged over the episodes with a delivery; 0 if no device
   /// was delivered.
@@ -52,7 +52,8 @@ struct Evaluation {
   DeviceOutcomes devices;
 };
 
-/// Returns the accounts of a farm whose episode has just ended; nullopt without `money`.
+/// Returns the accounts of a farm whose episode has just ended; nullopt if its scenario has no
+/// `money`.
 using AccountsOf = std::function<std::optional<Accounts>(std::int32_t farm)>;
 
 /// Plays episodes 0 … episodes − 1 of EvaluationSeed(seed). For a deterministic policy, the result

@@ -2,7 +2,7 @@
 #pragma once
 
 /// Greedy action and value estimate of a policy for each cell in which ship 0 can be placed. Fig.
-/// 11 shows the actions as arrows. A map of V_π shows the values.
+/// 11 of the paper shows such actions as arrows. A map of V_π shows the values.
 
 #include <atomic>
 #include <cstdint>
@@ -33,7 +33,8 @@ std::string WhyNoBestMoves(const Scenario& scenario);
 /// row from the south-west. Other ships keep their cells. Empty if WhyNoBestMoves returns a reason
 /// or if ship 0 is not active.
 /// @param policy is reset before it acts, so that a recurrent policy starts from an empty state
-/// @param stop ends the function early if set; it then returns the cells so far. May be null
+/// @param stop may be set by a signal handler; the function then returns only the cells computed so
+///   far. Null if it cannot be stopped
 /// @throws InputError if the scenario does not support the observation types
 std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t observation_types,
                                         Policy& policy, const std::atomic<bool>* stop = nullptr);

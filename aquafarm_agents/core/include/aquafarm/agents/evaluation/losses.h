@@ -15,7 +15,7 @@
 /// from the 2.5th to the 97.5th percentile (Davison and Hinkley, "Bootstrap Methods and their
 /// Application", 1997, sections 3.8 and 5.3). If all starts are distinct, these are the ordinary
 /// standard error and bootstrap. The intervals of CVaR are somewhat too short if few episodes are
-/// in the tail. Equal episodes with equal seeds give equal intervals.
+/// in the tail. Equal episodes with an equal seed of the bootstrap give equal intervals.
 
 #include <array>
 #include <cstddef>

@@ -9,11 +9,11 @@
 
 namespace aquafarm::agents {
 
-/// Returns names of CSV columns of an EpisodeSummary, separated by commas. They are the columns
-/// that files of every version contain.
+/// Returns the names of the CSV columns of an EpisodeSummary that every file contains, separated by
+/// commas.
 std::string EpisodeColumns();
-/// Returns the names of the columns that were added after version 0.1.0, each after a comma. They
-/// follow the older columns of a file.
+/// Returns the names of the CSV columns of an EpisodeSummary that older files may lack, each after
+/// a comma. They follow the other columns of a file.
 std::string AddedColumns();
 
 /// Appends the values of EpisodeColumns. Numbers parse back to the same bits.
@@ -22,16 +22,16 @@ void AppendEpisode(const EpisodeSummary& result, std::string& text);
 void AppendAdded(const EpisodeSummary& result, std::string& text, std::size_t count = SIZE_MAX);
 
 /// Writes metrics.csv: a line of column names, then one line per episode, `number,total_steps,
-/// <EpisodeColumns>,exploration,learning_rate,loss<AddedColumns>`. A file of an earlier version is
-/// continued with the columns that it has. The file contains no wall time, so that an interrupted
-/// and resumed run writes the same bytes as an uninterrupted one.
+/// <EpisodeColumns>,exploration,learning_rate,loss<AddedColumns>`. New lines of an older file have
+/// only the columns of that file. The file contains no wall time, so that an interrupted and
+/// resumed run writes the same bytes as an uninterrupted one.
 class MetricsFile {
  public:
   /// Creates the file, or truncates an existing one. @throws StorageError
   explicit MetricsFile(std::string path);
   /// Truncates an existing file to `size` bytes and continues there.
-  /// @throws InputError if the file is shorter or has other columns; StorageError if it cannot be
-  ///   opened or truncated
+  /// @throws InputError if the file is shorter than `size` or has other columns
+  /// @throws StorageError if the file cannot be opened or truncated
   MetricsFile(std::string path, std::uint64_t size);
   /// Closes the file. Buffered lines are lost; call Flush before.
   ~MetricsFile();
@@ -54,7 +54,7 @@ class MetricsFile {
  private:
   std::string path_;
   int file_{-1};
-  std::size_t added_columns_{SIZE_MAX};  // number of AddedColumns in the file, or more
+  std::size_t added_columns_{SIZE_MAX};  // number of AddedColumns in the file; SIZE_MAX: all
   std::uint64_t flushed_{};
   std::string buffer_;
 };

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// V_π measured by rollouts (Fig. 10, Eq. 10). Each rollout is an episode that starts with ship 0
-/// in a given cell. The value of this cell is the mean return of its rollouts, summed over all
-/// agents and discounted on request. These values need no value network, so planners have them,
-/// too.
+/// V_π measured by rollouts (Fig. 10 and Eq. 10 of the paper). Each rollout is an episode that
+/// starts with ship 0 in a given cell. The value of this cell is the mean return of its rollouts.
+/// The return is summed over all agents and discounted if the discount is below 1. These values
+/// need no value network, so planners have them, too.
 
 #include <atomic>
 #include <memory>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The route of ship 0 in one episode of a policy, and the policy's greedy action in each cell.
-/// The package aquafarm_benchmark draws them like Fig. 11 of the paper.
+/// The route of ship 0 in one episode that a policy plays, and the policy's greedy action in each
+/// cell. The package aquafarm_benchmark draws them like Fig. 11 of the paper.
 
 #include <atomic>
 #include <functional>
@@ -24,8 +24,8 @@ using MakePolicyFor = std::function<std::unique_ptr<Policy>(const EnvironmentSpe
 struct RouteStep {
   Cell cell{};               ///< of ship 0
   std::int32_t aboard{};     ///< devices aboard ship 0
-  std::int32_t delivered{};  ///< devices delivered so far, by all ships
-  float episode_return{};    ///< sum of the rewards of all ships so far
+  std::int32_t delivered{};  ///< devices delivered so far, by all agents
+  float episode_return{};    ///< sum of the individual rewards of all agents so far
   std::vector<Disaster> disasters;
   std::uint8_t action{};  ///< action of ship 0 in this step; unused in the last entry
 };
@@ -41,8 +41,8 @@ struct Route {
   std::vector<GreedyAction> after_pickup;  ///< those after ship 0's first pickup; empty without one
 };
 
-/// Plays the episode with number `episode` of EvaluationSeed(seed), in which the policy controls
-/// all agents, and records the route of ship 0.
+/// Plays the episode with number `episode` of EvaluationSeed(seed) and records the route of ship 0.
+/// The policy controls all agents.
 /// @param stop may be set by a signal handler; the route then ends early. Null if the function
 ///        cannot be stopped
 /// @throws InputError if the scenario does not support the observation types, or if the policy does

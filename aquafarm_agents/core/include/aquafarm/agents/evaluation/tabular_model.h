@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The decision process of a farm's tabular states as matrices (Eqs. 4, 9 and 11).
+/// The decision process of a farm's tabular states as matrices (Eqs. 4, 9 and 11 of the paper).
 ///
 ///   row    a state: the ship's cell and the status of each device. The last row is the end of the
 ///          episode
 ///   T      [rows, rows], T_ij = Σ_a π(a | i) P(j | i, a), the transition matrix under a policy
-///   π      [rows − 1, actions]
+///   π      [rows − 1, actions], probability of each action
 ///
 /// Moves, pickup and drop-off are deterministic, so P(j | i, a) is 0 or 1. Disasters and damage
-/// change rewards, but not these states. The model has no step limit, and episodes do not end with
-/// the disasters. Only the delivery of the last device therefore leads to the last row, which leads
-/// to itself.
+/// change rewards, but not these states. In the model, an episode ends neither at a step limit nor
+/// with the disasters. From a state, only the delivery of the last device therefore leads to the
+/// last row. From the last row, every action leads to the last row.
 
 #include <array>
 #include <cstdint>
@@ -35,7 +35,8 @@ struct MatrixEntry {
   double value{};
 };
 
-/// The states that a ship can reach from the start of an episode, and where each action leads.
+/// The states that a ship can reach from the start of an episode, and the row to which each action
+/// leads.
 class TabularModel {
  public:
   /// @throws InputError unless the scenario has one ship, no other agent, a fixed layout and few
@@ -82,8 +83,8 @@ PolicyMatrix MakePolicyMatrix(const TabularModel& model, const std::vector<float
                               ExplorationKind kind, double level, bool mask_illegal);
 
 /// Writes PREFIX_policy.mtx and PREFIX_transitions.mtx (Matrix Market, 1-based) and
-/// PREFIX_states.csv (row, tabular index, V*). V* is empty if OptimalValues does not support the
-/// scenario.
+/// PREFIX_states.csv (row, tabular index, V*). The column of V* is empty if OptimalValues does not
+/// support the scenario.
 /// @param checkpoint checkpoint of a tabular learner
 /// @param policy such as "epsilon_greedy:0.1" or "boltzmann:1"
 /// @param discount discount of V*

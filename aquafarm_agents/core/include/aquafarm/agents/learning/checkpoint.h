@@ -4,8 +4,10 @@
 /// File format of a learner with its complete state, or of a policy alone. All numbers are
 /// little-endian:
 ///
-///   magic "aquaCKPT" | u32 format | u32 0 | u64 bytes of index | u64 bytes of sections |
+///   magic "aquaCKPT" | u32 format | u32 0 | u64 size of index | u64 size of sections |
 ///   u64 checksum of all that follows | index (CBOR: metadata and section table) | raw sections
+///
+/// Sizes are in bytes.
 ///
 /// WriteFileAtomically writes the files, so a file is never incomplete.
 
@@ -63,8 +65,8 @@ struct Checkpoint : CheckpointInfo {
   void SetArray(const std::string& name, const std::vector<T>& values) {
     sections[name] = BytesOf(values);
   }
-  /// Does the same as SetArray. If `lends` is true, however, the section refers to `values`, which
-  /// must then neither change nor be destroyed before the checkpoint is written.
+  /// Sets a section to a copy of `values` or, if `lends` is true, to a reference to them. They must
+  /// then neither change nor be destroyed before the checkpoint is written.
   template <typename T>
   void LendArray(const std::string& name, const std::vector<T>& values) {
     if (!lends) return SetArray(name, values);
@@ -88,11 +90,10 @@ struct Checkpoint : CheckpointInfo {
   /// @throws InputError if the section is missing or damaged
   std::map<std::string, Number> GetNumbers(const std::string& name) const;
 
-  /// Adds the sections of a part, such as the learner of one agent, with `prefix` before their
-  /// names.
+  /// Adds the sections of a part, such as the learner of one agent. Their names get `prefix`.
   void AddPart(const std::string& prefix, Checkpoint&& part);
   /// Returns a checkpoint with the metadata of this one and with the sections that AddPart added
-  /// with `prefix`. The returned sections have their names without the prefix.
+  /// with `prefix`. The returned sections have their original names, without the prefix.
   Checkpoint Part(const std::string& prefix) const;
 
  private:

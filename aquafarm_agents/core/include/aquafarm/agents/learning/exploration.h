@@ -11,7 +11,7 @@
 ///   curiosity          one of the above, with an intrinsic reward for prediction errors; see
 ///                      curiosity.h
 ///
-/// ε, T, c and the weight of the intrinsic reward follow a Schedule.
+/// ε, T, c and the weight of the intrinsic reward each follow a Schedule.
 
 #include <array>
 #include <cstdint>
@@ -38,7 +38,7 @@ std::string_view ToString(ExplorationKind value);
 struct ExplorationOptions {
   ExplorationKind kind{ExplorationKind::kEpsilonGreedy};
   Schedule level{ScheduleKind::kLinear, 1.0, 0.05, 0.5};  ///< ε, temperature or entropy coefficient
-  /// Mean intrinsic reward of a step [reward]; 0 disables curiosity.
+  /// Weight of the intrinsic reward, approximately its mean per step [reward]; 0: no curiosity.
   Schedule curiosity{ScheduleKind::kConstant, 0.0};
   /// Returns whether the intrinsic reward is above 0 at some time of the run.
   bool is_curious() const {
@@ -116,7 +116,8 @@ class Explorer {
   Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t slots,
            double value_scale = 1.0);
 
-  /// Sets ε or the temperature from the schedule. @param progress of the run, [0, 1]
+  /// Sets ε or the temperature from the schedule.
+  /// @param progress fraction of the run that is done, [0, 1]
   void SetProgress(double progress);
   /// Returns the current ε or temperature.
   double level() const { return level_; }

@@ -2,8 +2,9 @@
 #pragma once
 
 /// Replay buffer: a ring of time steps. A time step contains one observation for each slot, that
-/// is, for each agent of each farm. A transition consists of two consecutive time steps. Each
-/// observation is stored once, even if one transition ends and another one begins with it.
+/// is, for each agent of each farm. A transition over one step consists of two consecutive time
+/// steps. Each observation is stored once, even if one transition ends and another one begins with
+/// it.
 ///
 ///   time step     t            t+1          t+2
 ///   observation   o_t          o_t+1        o_t+2
@@ -11,10 +12,11 @@
 ///   reward        r_t          r_t+1        …         r_t was received on the way to o_t
 ///
 /// The last time step of an episode has an end reason. Its action is unused, and the next time step
-/// is the first of another episode. The slot of an agent that is done before its farm has the end
-/// reason kAllRetrieved until the episode ends. If a time step has is_first = 1 and the one before
-/// it has no end reason, the farms were lost in mid-episode. The outcome of the last action is then
-/// unknown.
+/// is the first of another episode. If an agent is done before its farm, its slot has the end
+/// reason kAllRetrieved until the episode ends. If a time step has is_first = 1 and the time step
+/// before it has no end reason, the farms were *lost*: they started new episodes in mid-episode,
+/// because the sim node restarted or another client changed them. The outcome of the last action is
+/// then unknown.
 
 #include <cstdint>
 #include <string>
@@ -46,7 +48,8 @@ class SumTree {
 
 /// Sizes of a replay buffer.
 struct ReplayOptions {
-  /// Max number of stored observations of single agents. At least two time steps can be stored.
+  /// Max number of stored observations, each of one agent. The buffer always holds two time steps,
+  /// even if they have more observations.
   std::size_t capacity{100000};
   std::size_t slots{1};            ///< farms × agents
   std::int32_t agents{1};          ///< agents per farm

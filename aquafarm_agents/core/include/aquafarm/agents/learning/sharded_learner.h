@@ -7,8 +7,8 @@
 
 namespace aquafarm::agents {
 
-/// A learner whose farms may be divided into shards. The shards may be divided among the ranks of a
-/// process group.
+/// A learner whose farms may be divided into groups (shards). The shards may be divided among the
+/// ranks of a process group.
 class ShardedLearner : public Learner {
  public:
   /// Returns the number of calls of Step between two points at which the trainer may count steps,

@@ -29,16 +29,16 @@ struct QTable {
   std::vector<float> values;  ///< [agents, states, kActionCount], row-major
 
   QTable() = default;
-  /// @throws InputError if the farm has no tabular states or the table would exceed kMaxBytes
+  /// @throws InputError if the farm has no tabular states or the tables would exceed kMaxBytes
   QTable(const EnvironmentSpec& spec, float initial_value);
   /// Returns the index in `values` of the first action of a state.
   std::size_t Row(std::int32_t agent, std::uint32_t state) const {
     return (static_cast<std::size_t>(agent) * states + state) * kActionCount;
   }
-  /// Returns the size of the table for all agents of a farm [bytes]; 0 if the farm has no tabular
+  /// Returns the size of the tables of all agents of a farm [bytes]; 0 if the farm has no tabular
   /// states.
   static std::uint64_t BytesOf(const EnvironmentSpec& spec);
-  /// Max size of the table for all agents [bytes].
+  /// Max size of the tables of all agents of a farm [bytes].
   inline static constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30U;
 };
 
@@ -68,7 +68,7 @@ struct TabularOptions {
 /// Base class of learners with a table. A derived class implements Step.
 class TableLearner : public Learner {
  public:
-  /// @throws InputError if the farm has no tabular states, if its table would exceed kMaxBytes, or
+  /// @throws InputError if the farm has no tabular states, if its tables would exceed kMaxBytes, or
   ///   if an option is invalid
   TableLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
 
@@ -83,7 +83,8 @@ class TableLearner : public Learner {
   const QTable& table() const { return table_; }
 
  protected:
-  /// Sets ε or the temperature, and the learning rate. @param progress of the run, [0, 1]
+  /// Sets ε or the temperature, and the learning rate.
+  /// @param progress fraction of the run that is done, [0, 1]
   void SetProgress(double progress);
   /// Returns the actions that an agent may choose: the legal ones with mask_illegal, else all.
   ActionMask ActionMaskOf(ActionMask legal) const {

@@ -9,8 +9,8 @@ namespace aquafarm::agents {
 class WarmStart {
  public:
   virtual ~WarmStart() = default;
-  /// Replaces the initial weights by those of a policy or a training checkpoint. Its algorithm must
-  /// be that of the learner.
+  /// Replaces the initial weights by those of a checkpoint, which contains a policy or the state of
+  /// a training. The checkpoint must be of the same algorithm as the learner.
   /// @throws InputError if the features or the network of the checkpoint differ from those of the
   ///   learner; the weights are then unchanged
   virtual void LoadWeights(const Checkpoint& checkpoint) = 0;

@@ -9,14 +9,14 @@
 ///
 ///   critic   minimizes the Huber loss of Q_i(o, a) against y_i = r_i + γ Q_i'(o', a'). The next
 ///            actions of the other agents are the most likely ones of their target actors. The next
-///            action of agent i is the best response to them; with best_response=false, it is the
-///            most likely one of its target actor
+///            action of agent i is the best response to these actions; with best_response=false,
+///            it is the most likely one of its target actor
 ///   actor i  maximizes Q_i(o, a) − logit_penalty · mean logits², where a_i is relaxed and the
 ///            actions of the other agents are the replayed ones
 ///
 /// The critic returns the values of all actions of its agent at once, as in COMA (Foerster et al.
-/// 2018). It is therefore linear in a_i, and its gradient at a relaxed action is exact. One network
-/// is the critic of all agents. Gumbel-softmax (Jang et al. 2017, Maddison et al. 2017) is
+/// 2018). Q_i is therefore linear in a_i, and its gradient at a relaxed action is exact. One
+/// network is the critic of all agents. Gumbel-softmax (Jang et al. 2017, Maddison et al. 2017) is
 /// straight-through: one-hot in the forward pass, softmax at `temperature` in the backward pass.
 /// MADDPG is an actor-critic method, although the paper lists it among the value-based ones.
 

@@ -23,12 +23,13 @@ inline constexpr int kLossKindCount = 2;
 std::string_view ToString(LossKind value);
 
 /// Hyperparameters of DQN, VDN and LSTM-DQN. The preset sets the defaults. *tuned* has values tuned
-/// on the shipped scenarios. *paper* has the values printed in Eq. 15 and Algorithm 2, disables the
-/// extensions, and keeps the tuned values of all other options. The members are initialized with
-/// the tuned defaults of DQN.
+/// on the shipped scenarios. *paper* has the values of the paper: Eq. 15, Algorithm 2, and γ of
+/// §2.3. It disables the extensions and keeps the tuned values of all other options. For τ of
+/// LSTM-DQN, of which the paper contains only the range, *paper* has the value of Haarnoja et al.
+/// 2018. The members are initialized with the tuned defaults of DQN.
 struct DeepOptions {
   NetworkKind network{NetworkKind::kMlp};
-  std::int32_t hidden_size{256};  ///< units of each hidden layer; for LSTM-DQN, units of the LSTM
+  std::int32_t hidden_size{256};  ///< units of a hidden layer, and of the LSTM of LSTM-DQN
   Schedule learning_rate{ScheduleKind::kLinear, 5e-4, 1e-5, 1.0};  ///< learning rate of Adam
   double gamma{0.97};
   ExplorationOptions exploration{
@@ -61,9 +62,9 @@ struct DeepOptions {
   /// disables it.
   double repetition_penalty{0.0};
   bool mask_illegal{true};   ///< exclude illegal actions when acting and bootstrapping
-  bool mask_blocked{false};  ///< also exclude moves onto a rock, an island or off the map
+  bool mask_blocked{false};  ///< also exclude moves onto a rock or an island, or off the map
 
-  // Recurrent networks only (R2D2: Kapturowski et al. 2019).
+  // Options of recurrent networks only (R2D2: Kapturowski et al. 2019).
   std::int32_t sequence_length{4};  ///< training steps per sequence; 1 with paper_tuple
   std::int32_t burn_in{2};  ///< warm-up steps before a sequence, not trained on; 0 with paper_tuple
   bool skip_connection{true};  ///< skip connection around the LSTM; the paper has none
@@ -71,8 +72,8 @@ struct DeepOptions {
   /// observations with the recurrent state stored for it, as in Algorithm 2.
   bool paper_tuple{};
 
-  /// Train the sum of all agents' values instead of each value (VDN). Set by the algorithm, not by
-  /// an option.
+  /// True for VDN, which trains the sum of all agents' values instead of each value. Set by the
+  /// algorithm, not by an option.
   bool joint{};
 
   std::string device{"auto"};  ///< auto, cpu or cuda

@@ -35,8 +35,8 @@ struct OptimumShare {
 /// @param make_farm makes the farm at the start of an episode
 /// @param max_states max number of states of a plan (Planner::state_count); an episode with more
 ///   states counts as too large
-/// @param seed of the bootstrap
-/// @param stop ends the comparison early if set; may be null
+/// @param seed seed of the random numbers of the bootstrap
+/// @param stop the comparison ends early if the flag is true; may be null
 /// @throws InputError if the mean return of the best plans is not positive, if a farm has several
 ///   agents, or if the planner does not support the rewards
 OptimumShare CompareWithOptimum(

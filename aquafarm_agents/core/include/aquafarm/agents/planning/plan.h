@@ -23,10 +23,10 @@ enum class Foresight : std::uint8_t {
 };
 
 /// Cells and steps that are reserved for ships. The plan of another ship avoids them. In each step,
-/// a ship reserves its cell of this step against all ships. Since ships move in id order, it also
-/// reserves its cell of the next step against ships with a higher id, and its cell of the previous
-/// step against ships with a lower id. A planner does not query cells of ports, since any number of
-/// ships may share a port.
+/// a ship reserves its cell of this step against all other ships. Because ships move in id order,
+/// the ship also reserves its cell of the next step against ships with a higher id, and its cell of
+/// the previous step against ships with a lower id. A planner does not query cells of ports,
+/// because any number of ships may share a port.
 class Reservations {
  public:
   void Clear() { taken_.clear(); }
@@ -52,17 +52,17 @@ class Reservations {
 struct Task {
   std::int32_t ship{0};  ///< id of the ship
   /// Ids of the devices that the ship fetches or carries; for a self-propelled device, its own id.
-  /// At most `max_devices` of the constructor of Planner.
+  /// Their number is at most `max_devices` of the constructor of Planner.
   std::vector<std::int32_t> devices;
   /// Last step of the plan. Must be set if `devices` is empty; such a plan only avoids risks. 0:
   /// the plan ends with the last delivery or with the episode.
   std::int32_t until{0};
-  const Reservations* others{};  ///< cells that the plan avoids; nullptr: it avoids none
+  const Reservations* others{};  ///< cells that the plan avoids; nullptr: no cells
 };
 
 /// Changes disasters so that MoveDisaster, called with the returned tracks, moves them as the plan
 /// assumes.
-/// @param disasters a copy of the farm's present disasters; kOracle does not change it
+/// @param disasters a copy of the farm's present disasters; kOracle leaves it unchanged
 /// @returns the assumed track of each disaster
 std::vector<Track> Foresee(const Farm& farm, Foresight foresight, std::vector<Disaster>& disasters);
 

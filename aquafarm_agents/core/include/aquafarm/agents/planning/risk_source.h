@@ -49,7 +49,7 @@ class RiskSource {
 
   /// Returns the risks of a step, after the disasters have moved. The reference is valid until the
   /// next call.
-  /// @param step after the farm's present step, at most last_step()
+  /// @param step later than the farm's present step, at most last_step()
   virtual const RiskLayers& At(std::int32_t step) = 0;
   /// Returns the latest step at which the episode can end. No plan extends beyond this step.
   virtual std::int32_t last_step() const = 0;
@@ -57,8 +57,9 @@ class RiskSource {
   virtual float best_quiet() const = 0;
 };
 
-/// The risks of a farm's disasters and sea in the steps after its present one. It stores the layers
-/// of the first steps (up to 64 MiB), so that several searches compute them once.
+/// The risks of a farm's disasters and sea in the steps after the farm's present step. Stores the
+/// layers of the first of these steps (up to 64 MiB), so that later searches do not compute them
+/// again.
 class DisasterRisk final : public RiskSource {
  public:
   /// @param farm must outlive the object and must not step while the object is in use

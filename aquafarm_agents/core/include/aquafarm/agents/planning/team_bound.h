@@ -8,7 +8,7 @@
 ///
 /// A trip starts in any port at any step, fetches the device along the best route, and brings it to
 /// any port or ends with the pickup. Time before the trip costs nothing. In calm water, a step of
-/// waiting on the route costs the smallest of these penalties: a step, an illegal action, a crash
+/// waiting on the route costs the smallest of the penalties for a step, an illegal action, a crash
 /// into a neighbouring rock or island and, if there are several agents, a collision. The bound
 /// ignores that a ship makes one trip at a time, that other ships may be in the way, and that ships
 /// without work also pay for each step.

@@ -6,13 +6,13 @@
 ///   1. Assign the devices to ships. A local search minimizes the estimated time at which the last
 ///      ship finishes.
 ///   2. For one ship after the other, compute the best plan for its devices (planner.h) that avoids
-///      the ships planned before.
+///      the ships that already have a plan.
 ///   3. Repeat both steps if a disaster differs from the assumed future, if a ship deviates from
 ///      its plan, or if a ship has completed its plan.
 ///
-/// Self-propelled devices plan their own routes. Step 1 considers only distances. Step 2 also
-/// considers energy, the kinds of devices, and damage. The result is not optimal; team_bound.h has
-/// an upper bound of the return.
+/// A self-propelled device is an agent with its own plan in step 2. Step 1 considers only distances
+/// and the capacity. Step 2 also considers risks, damage, the kinds of devices, and energy. The
+/// result may be worse than the optimum; team_bound.h has an upper bound of the return.
 
 #include <cstdint>
 #include <memory>
@@ -27,8 +27,8 @@ namespace aquafarm::agents {
 class TeamPlanner {
  public:
   /// @param scenario must outlive the planner
-  /// @throws InputError in the same cases as the constructor of Planner, for the max number of
-  ///   devices of one ship
+  /// @throws InputError in the same cases as the constructor of Planner with the max number of
+  ///   devices of one ship (see Assign) as `max_devices`
   TeamPlanner(const Scenario& scenario, Foresight foresight);
   ~TeamPlanner();
   TeamPlanner(TeamPlanner&&) noexcept;
@@ -54,7 +54,8 @@ class TeamPlanner {
   /// Assigns the undelivered devices to agents. The devices of a ship are those that it carries and
   /// those that it fetches next. Their max number is the average per ship, rounded up, plus two. A
   /// self-propelled device is assigned to itself.
-  /// @returns ids of devices, by agent. Devices are missing if each ship has its max number
+  /// @returns ids of devices, by agent. A device is left out if all ships that could take it have
+  ///   their max number
   std::vector<std::vector<std::int32_t>> Assign(const Farm& farm) const;
 
  private:

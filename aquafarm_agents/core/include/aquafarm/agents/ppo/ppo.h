@@ -18,7 +18,7 @@
 /// agents of the farm. V is needed only for learning, so a trained ship needs only its own
 /// observation.
 ///
-/// With the option `teacher` the policy also imitates a teacher (kickstarting).
+/// With the option `teacher`, the policy also imitates a teacher (kickstarting).
 
 #include <memory>
 #include <string>
@@ -32,14 +32,14 @@ namespace aquafarm::agents {
 /// @throws InputError if an option is wrong
 std::uint8_t PpoObservationTypes(const std::string& options);
 std::uint8_t MappoObservationTypes(const std::string& options);
-/// Makes the policy that the learner imitates with teacher_policy=planner.
+/// Function that makes the policy that the learner imitates with teacher_policy=planner.
 using PlannerMaker = std::unique_ptr<Policy> (*)(const EnvironmentSpec&);
 /// Makes an untrained learner.
-/// @param make_planner may be null unless the options select teacher_policy=planner and a teacher
-///   above 0
+/// @param make_planner may be null unless the options set teacher_policy=planner and a weight
+///   `teacher` above 0
 /// @throws InputError if an option is wrong, if the options do not fit the features of `spec`, if
-///   the number of farms is not a multiple of the shards, or if the planner does not support the
-///   farms
+///   the number of farms is not a multiple of the number of shards, or if the planner does not
+///   support the farms
 std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options, PlannerMaker make_planner = nullptr);
 std::unique_ptr<Learner> MakeMappo(const EnvironmentSpec& spec, std::uint64_t seed,
@@ -47,8 +47,8 @@ std::unique_ptr<Learner> MakeMappo(const EnvironmentSpec& spec, std::uint64_t se
 /// Makes the learner of one rank of a process group.
 /// @param spec spec of the farms of this rank
 /// @param group must outlive the learner
-/// @throws InputError in the cases listed for MakePpo. Also if the number of shards is not a
-///   multiple of the ranks, or if the exploration contains icm
+/// @throws InputError in the cases listed for MakePpo, if the number of shards is not a multiple of
+///   the number of ranks, or if the exploration contains icm
 std::unique_ptr<ShardedLearner> MakePpoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
                                                const std::string& options, ProcessGroup& group,
                                                PlannerMaker make_planner = nullptr);

@@ -50,11 +50,11 @@ struct PpoOptions {
   bool mask_illegal{true};          ///< probability 0 for illegal pickups and drop-offs
   /// Probability 0 for moves onto a rock or an island or off the map, unless all moves lead there.
   bool mask_blocked{true};
-  /// `level` is the coefficient of the entropy bonus. `curiosity` (icm in the option) is the mean
-  /// intrinsic reward.
+  /// `level` is the coefficient of the entropy bonus. `curiosity` (icm in the option) is the weight
+  /// of the intrinsic reward.
   ExplorationOptions exploration{
       ExplorationKind::kEntropy, {ScheduleKind::kLinear, 0.02, 0.0, 1.0}, {}};
-  /// Weight of the cross-entropy with a teacher's actions, which is part of the loss (kickstarting,
+  /// Weight that the cross-entropy with a teacher's actions has in the loss (kickstarting,
   /// src/ppo/ppo_loss.h). The cross-entropy is averaged over all agent steps, labelled or not. A
   /// teacher that labels every n-th step therefore needs n times the weight. 0: no teacher.
   Schedule teacher{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
@@ -72,9 +72,10 @@ struct PpoOptions {
   /// earlier use of the action in the same situation (cell, load, remaining devices). Only the last
   /// 1024 steps of the episode are counted.
   double repetition_penalty{0.0};
-  /// The trained greedy policy counts how often each situation occurs. When a situation occurs for
-  /// the max_visits-th time, the policy starts to follow the route of src/ppo/route_rule.h, in each
-  /// step in which this route is safe (src/ppo/loop_guard.h). Needs entity tokens. 0: never.
+  /// The trained greedy policy counts how often each situation occurs. From the max_visits-th
+  /// occurrence of a situation until the load or the remaining devices change, the policy follows
+  /// the route of src/ppo/route_rule.h in each step in which this route is safe
+  /// (src/ppo/loop_guard.h). Needs entity tokens. 0: never.
   std::int32_t max_visits{0};
   std::int32_t threads{1};  ///< CPU threads of libtorch and BLAS
   /// Number of groups of farms, a power of two up to 4096. Each group contributes its own part to

@@ -49,8 +49,8 @@ class ProcessGroup {
   virtual std::string Broadcast(const std::string& bytes) = 0;
 
   /// Calls `work` on rank 0. The other ranks wait until it has returned, for at most
-  /// GroupTimes::work_s. The default of this limit is longer than that of an exchange, since access
-  /// to a disk may take longer.
+  /// GroupTimes::work_s. The default of this limit is longer than that of an exchange, because
+  /// access to a disk may take longer.
   /// @param work ignored on the other ranks
   /// @throws RankLost; on rank 0 also every exception of `work`, after which the group must not be
   ///   used

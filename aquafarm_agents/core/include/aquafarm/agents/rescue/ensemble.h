@@ -39,8 +39,8 @@ class Ensemble {
   static constexpr std::int16_t kNoArrival = std::numeric_limits<std::int16_t>::max();
 
   /// @param sites cells of the map for which Exposure is computed
-  /// @throws InputError if the number of members, steps or rings is out of range, or if they would
-  ///   need too much memory
+  /// @throws InputError if the number of members, steps or rings is out of range, or if
+  ///   members × cells × rings is too large
   Ensemble(const CentralForecast& forecast, const EnsembleOptions& options,
            const std::vector<Cell>& sites);
 
@@ -75,7 +75,7 @@ class Ensemble {
   const std::vector<EnsembleSpread>& spread() const { return spread_; }
 
   /// Returns the mean of the members' risk layers for the planner (risk_source.h), for the steps
-  /// from first_step on. It has no layers by kind of device.
+  /// from first_step on. The result has no layers by kind of device.
   /// @param first_step [0, steps())
   /// @param step_reward reward of a step without risk
   RiskField MeanRisk(std::int32_t first_step, float step_reward) const;

@@ -17,16 +17,16 @@
 ///
 /// The sources contain only mean errors. It is assumed that errors are normal, have the same size
 /// along and across the track, and are correlated by exp(-difference of lead times / 48 h). An
-/// error along the track is an error of the time of arrival.
+/// error along the track changes the time of arrival.
 ///
 /// **Radii.** All radii of a storm are multiplied by one log-normal factor. Without reported radii,
 /// the spread of the factor is that of recorded radii about EstimateRadius (tracks/wind_radii.h).
-/// It depends on the storm's strength at each time: 0.45 below 48 kt, 0.41 below 64 kt, 0.35 above.
-/// After a report with radii, the spread grows from the error of the report to this value. The
-/// logarithm of radius / EstimateRadius, in units of this spread, decays with exp(-time / 165 h).
-/// The 165 h are fitted to the JMA's best tracks of 2015 to 2021. The correlation of the 30 kt
-/// radii of one storm is 0.87 after 24 h (2,864 pairs), 0.76 after 48 h, 0.64 after 72 h, 0.55
-/// after 96 h and 0.48 after 120 h (798 pairs).
+/// This spread depends on the storm's wind at each time. For radii of 30 and 34 kt it is 0.45 below
+/// 48 kt, 0.41 from 48 kt and 0.35 from 64 kt. After a report with radii, the spread grows from the
+/// error of the report to this value. The logarithm of radius / EstimateRadius, in units of this
+/// spread, decays with exp(-time / 165 h). The 165 h are fitted to the JMA's best tracks of 2015 to
+/// 2021. The correlation of the 30 kt radii of one storm is 0.87 after 24 h (2,864 pairs), 0.76
+/// after 48 h, 0.64 after 72 h, 0.55 after 96 h and 0.48 after 120 h (798 pairs).
 
 #include <vector>
 
@@ -34,7 +34,8 @@
 
 namespace aquafarm::agents {
 
-/// Statistics of forecast errors. The defaults are those of the table above.
+/// Statistics of forecast errors. The default lead times and mean errors are those of the table
+/// above.
 struct ForecastErrors {
   std::vector<double> position_lead_h{0.0, 24.0, 48.0, 72.0, 96.0, 120.0};
   std::vector<double> position_km{14.1, 66.2, 119.5, 176.3, 244.3, 328.5};  ///< mean distances

@@ -60,7 +60,7 @@ struct LastDeparture {
                                              ///< end after the known time
 };
 /// Returns the latest of the devices' deadlines with a chance of 50 %. This time is stored in
-/// not_known_beyond_s if one of these deadlines is open (Deadline::is_open), else in none_after_s.
+/// not_known_beyond_s if any of these deadlines is open (Deadline::is_open), else in none_after_s.
 /// Devices aboard do not count, because their ships do not leave to fetch them. Neither member is
 /// set if there is no such deadline, if no winds come, or if the winds are unknown.
 LastDeparture LastDepartureOf(const RescueProblem& problem, const PlanReport& report);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Makes the inputs of a rescue plan from a ranch, a storm file, and lists of devices and ships.
-/// The result depends only on these inputs, not on the time of the computer's clock.
+/// Makes the inputs of a rescue plan from a scenario and a RescueRequest, which names a storm file
+/// and lists of devices and ships. The result does not depend on the computer's clock.
 
 #include <cstdint>
 #include <memory>
@@ -17,26 +17,26 @@
 
 namespace aquafarm::agents {
 
-/// Inputs of the operator. RescueCase::assumptions lists the values that replace most unset fields.
+/// Inputs of the operator. RescueCase::assumptions lists the values that the plan assumes, for
+/// example the speed of the ships if `speed_kn` is unset.
 struct RescueRequest {
   std::string bulletin;    ///< file of bulletins; exactly one of `bulletin` and `storm` must be set
   std::string storm;       ///< file of a recorded track. Its part after `at` serves as the forecast
-  std::string storm_name;  ///< storm in this file; may be empty if the file has one storm
-  /// Start of the plan, UTC [s since 1970]; required for `storm`. If it is unset, the plan starts
-  /// at `now`. If `now` is unset, too, or is before the last report of the bulletin or at least
-  /// 12 h after it, the plan starts at this report.
+  std::string storm_name;  ///< id or name of the storm; may be empty if the file has one storm
+  /// Start of the plan, UTC [s since 1970]; required for `storm`. Default: `now` if it is less than
+  /// 12 h after the last report of the bulletin and not before it, else the time of this report.
   std::optional<std::int64_t> at;
   std::optional<std::int64_t> now;    ///< present time, UTC [s since 1970]; unset for a past storm
   std::string devices;                ///< CSV file; empty: the devices of the scenario
   std::string ships_file;             ///< CSV file; empty: ships in the ports of the scenario
   std::optional<std::int32_t> ships;  ///< number of ships; unset: as in ships_file or scenario
-  std::optional<double> speed_kn;     ///< speed of ships without a speed in ships_file
-  std::optional<std::int32_t> capacity;  ///< capacity of ships without a capacity in ships_file
+  std::optional<double> speed_kn;     ///< speed of ships for which ships_file has no speed
+  std::optional<std::int32_t> capacity;  ///< of ships for which ships_file has no capacity
   double depart_s{};                     ///< earliest departure [s after the start of the plan]
   /// Wind that stops a ship. The strongest ring of at most this wind is used. If there is no such
   /// ring, the weakest ring is used.
   double abort_wind_kt{34.0};
-  double risk_averse{};                ///< see RescueProblem
+  double risk_averse{};                ///< see RescueProblem::risk_averse
   std::string currency;                ///< currency of the devices' values; may be empty
   std::optional<double> utc_offset_h;  ///< local time minus UTC; unset: from the longitude
   std::int32_t members{1000};          ///< members of the ensemble
@@ -69,10 +69,12 @@ struct StormRecord {
   StormRings rings;                         ///< rings at the points of the track
   std::int32_t held{};                      ///< see FineRings
   std::int64_t recorded_until{};            ///< time of the last report, UTC [s since 1970]
-  std::optional<std::int64_t> issued;       ///< issue of the forecast, UTC [s since 1970]
+  std::optional<std::int64_t> issued;       ///< issue of the forecast, UTC [s since 1970]; without
+                                            ///< a forecast, the last report; in a hindcast, the
+                                            ///< start of the plan
   std::optional<std::int64_t> known_until;  ///< end of the forecast, UTC [s since 1970]
-  bool is_hindcast{};                       ///< the forecast is the storm as recorded later
-  bool is_persistence{};  ///< no forecast: the storm is assumed to keep its motion for 24 h
+  bool is_hindcast{};                       ///< true: the forecast is the storm as recorded later
+  bool is_persistence{};  ///< true: no forecast; the storm is assumed to keep its motion for 24 h
   /// Age of the last report [h]: at RescueRequest::now, or at the start of the plan if `now` is
   /// unset or `at` is set. 0 in a hindcast.
   double age_h{};
@@ -84,7 +86,7 @@ struct RescueCase {
   std::shared_ptr<const Scenario> scenario;
   Layout layout;
   GeoFrame frame{{}, 1.0};
-  std::int64_t start{};           ///< start of the plan, which is step 0, UTC [s since 1970]
+  std::int64_t start{};           ///< start of the plan (step 0), UTC [s since 1970]
   std::int32_t utc_offset_min{};  ///< local time minus UTC [min]
   RescueProblem problem;
   CentralForecast forecast;
@@ -94,15 +96,16 @@ struct RescueCase {
   std::vector<RescueWarning> warnings;
   std::vector<RescueAssumption> assumptions;
 
-  /// Returns the cells of the devices, in their order.
+  /// Returns the cells of the devices, in the order of RescueProblem::devices.
   std::vector<Cell> Sites() const;
 };
 
 /// Makes a case.
 /// @param scenario scenario of the ranch, with grid.origin
 /// @throws InputError "devices.csv:3: F3: got …" if a file is wrong, if a device or ship is on land
-///   or off the chart, if no water leads from a listed device to the first port, or if the storm
-///   is not known at and after the start of the plan
+///   or off the chart, if no route by water leads from a device of the CSV file to the first port,
+///   if the storm is not known at and after the start of the plan, or if fields of the request are
+///   missing or contradict each other
 RescueCase MakeRescueCase(std::shared_ptr<const Scenario> scenario, const RescueRequest& request);
 
 /// Formats a time as YYYY-MM-DDTHH:MM:SSZ. @param time UTC [s since 1970]

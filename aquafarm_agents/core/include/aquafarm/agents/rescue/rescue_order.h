@@ -28,7 +28,7 @@ struct RescueOrder {
   std::vector<std::int32_t> devices;  ///< deliver: indices of the devices that the ship unloads
   double km{};                        ///< distance since the previous order [km]
   double kwh{};          ///< energy since the previous order [kWh]; 0 without RescueProblem::energy
-  double probability{};  ///< share of the members in which the order is carried out
+  double probability{};  ///< share of the ensemble members in which it is carried out
 };
 
 /// A cell on the route of a ship.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The orders of a plan, and its outcome for each device and each member.
+/// The orders of a plan, and its outcome for each device and each member of the ensemble.
 
 #include <cstdint>
 #include <vector>
@@ -24,7 +24,7 @@ struct ShipRoute {
 struct DeviceOutcome {
   std::int32_t ship{kNone};  ///< ship that delivers the device; kNone: no ship delivers it
   std::int32_t port{kNone};  ///< port of the delivery
-  double fetch_s{};          ///< end of the pickup; if aboard at the start: when the ship is ready
+  double fetch_s{};          ///< end of the pickup; if aboard at the start: RescueShip::ready_s
   double deliver_s{};        ///< end of the delivery
   double home{};             ///< probability that the device reaches a port
   /// By ring: probability that the device is in port before the ring reaches its site, or that it
@@ -44,11 +44,12 @@ struct RescuePlan {
   double saved{};                        ///< mean loss if no ship leaves minus mean loss
   double bound{};                        ///< upper bound of `saved` over all plans
   double cost{};                         ///< cost of energy and ship-hours
-  /// Upper bound of how much smaller the objective of any other plan (rescue_plan.h) can be. With
-  /// risk_averse, the objective is the mean loss of the worst members plus cost. Infinity if the
-  /// search was not exhaustive; 0 without risk_averse.
+  /// With risk_averse: upper bound of the difference between the objective of this plan and the
+  /// smallest objective of any plan of the kind in rescue_plan.h. The objective is the mean loss of
+  /// the worst members plus the cost. Infinity if the search was not exhaustive. Without
+  /// risk_averse: 0.
   double averse_gap{};
-  bool is_exhaustive{};  ///< whether the search considered all plans (rescue_plan.h)
+  bool is_exhaustive{};  ///< whether the search was exhaustive (rescue_plan.h)
 };
 
 /// Rule by which a ship without a plan chooses the next device.

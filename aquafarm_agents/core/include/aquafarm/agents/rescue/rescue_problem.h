@@ -12,18 +12,18 @@
 /// of `abort_ring` have reached since the start of the plan. This is also true in port. From then
 /// on it fetches and delivers nothing, and it does not resume work after the storm. Delivered
 /// devices are safe. A device that is not delivered, even if it is aboard, takes the damage of the
-/// whole storm at its own site. A trip fails in all members if it
-/// ends after the time until which the storm is known.
+/// whole storm at its own site. A trip fails in all members if it ends after the time until which
+/// the storm is known.
 ///
 /// **Devices aboard at the start.** A ship that starts with devices aboard gets the order to
-/// deliver them, even if no winds are expected or if winds stop it in all members. There are two
-/// exceptions: a ship in a port stays there if winds stop it in all members, and a ship that
-/// reaches no open port gets no order. The site of these devices is the cell of the ship at the
+/// deliver them, even if no winds are expected, and even if winds stop it in all members. There are
+/// two exceptions: a ship in a port stays there if winds stop it in all members, and a ship that
+/// can reach no open port gets no order. The site of these devices is the cell of the ship at the
 /// start of the plan.
 ///
 /// **Damage.** Until it is delivered, a device loses in each step of the ensemble the share
-/// `exposure_damage` · |r| · `damage_factor` of its value, where r is the risk at its site. It
-/// never loses more than the value that it still has.
+/// `exposure_damage` · |r| · `damage_factor` of its undamaged value, where r is the risk at its
+/// site. It never loses more than the value that it still has.
 
 #include <cstdint>
 #include <optional>
@@ -44,7 +44,7 @@ struct RescueDevice {
   Cell cell{};                ///< its site
   double value{};             ///< undamaged value, in a currency or in units of the reward
   double damage_before{};     ///< share of the value that was lost before the plan, [0, 1]
-  double damage_factor{1.0};  ///< factor of its kind in a typhoon (DamageSpec::kinds)
+  double damage_factor{1.0};  ///< damage factor of its kind in a typhoon (DamageSpec::kinds)
 };
 
 /// Returns whether a rescue can save a part of the value of a device.
@@ -69,8 +69,8 @@ struct RescueShip {
   std::vector<std::int32_t> aboard{};  ///< indices of the devices aboard at the start
 };
 
-/// Energy and cost of the ships. The energy is that of the ranch (farm/energy.h) in calm water.
-/// The additional energy in rough sea is not included.
+/// Energy and cost of the ships. The energy is computed as in the ranch (farm/energy.h), but
+/// without the additional energy in rough sea.
 ///
 ///   kWh  = per_km · km · (1 + per_device · devices aboard) + idle_kw · hours
 ///   cost = per_kwh · kWh + per_hour · hours
@@ -94,7 +94,7 @@ struct RescueProblem {
   double handling_s{};        ///< duration of a pickup or drop-off [s]
   double depart_s{};          ///< earliest departure of a ship that CompareChanges adds [s]
   std::int32_t abort_ring{};  ///< ring of the ensemble whose winds stop a ship
-  double exposure_damage{};   ///< share of the value per step of the ensemble and unit of |risk|
+  double exposure_damage{};   ///< share of value lost per step of the ensemble and unit of |risk|
   /// In [0, 1]. Above 0: the plan minimizes the mean loss of this share of the members, the worst
   /// ones, plus the cost. 0: it maximizes the mean value saved over all members minus the cost.
   double risk_averse{};

@@ -13,8 +13,8 @@ namespace aquafarm::agents {
 
 /// The plan for one changed input, compared with the original plan.
 struct WhatIf {
-  /// Identifier for programs, such as none, ships+1, ships-1, depart+3h, port_closed:2 or
-  /// capacity+1.
+  /// Identifier for programs: `none` for the original plan, else for example `ships+1`, `ships-1`,
+  /// `depart+3h`, `port_closed:2` or `capacity+1`.
   std::string change;
   std::string text;         ///< the change in words
   bool is_possible{true};   ///< false: there is no such plan, and the numbers are not set
@@ -26,8 +26,8 @@ struct WhatIf {
   double difference_high{};
 };
 
-/// Returns the original plan, then the possible changes by increasing mean loss, then the
-/// impossible ones.
+/// Returns one element for the original plan, then the possible changes in the order of increasing
+/// mean loss, then the impossible changes.
 /// @param plan the plan for `problem` and `ensemble`
 std::vector<WhatIf> CompareChanges(const RescueProblem& problem, const Ensemble& ensemble,
                                    const RescuePlan& plan);

@@ -21,7 +21,7 @@ struct Algorithm {
   /// Returns the ObservationTypeBits that the algorithm requires with these options.
   /// @throws InputError if an option is wrong
   std::uint8_t (*observation_types)(const std::string& options);
-  /// Creates the learner; nullptr if the algorithm cannot be trained.
+  /// Creates the learner. The pointer is null if the algorithm cannot be trained.
   std::unique_ptr<Learner> (*make)(const EnvironmentSpec& spec, std::uint64_t seed,
                                    const std::string& options);
   /// Creates the policy for farms of `spec` from a checkpoint. For algorithms that do not learn,
@@ -29,8 +29,8 @@ struct Algorithm {
   /// @throws InputError if the policy does not fit the farms
   std::unique_ptr<Policy> (*make_policy)(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
   std::int32_t default_farms{kDefaultFarms};  ///< default number of farms of aquafarm_train
-  /// Creates the learner of one rank of a process group; nullptr if the algorithm cannot be trained
-  /// by several ranks.
+  /// Creates the learner of one rank of a process group. The pointer is null if several ranks
+  /// cannot train the algorithm.
   std::unique_ptr<ShardedLearner> (*make_rank)(const EnvironmentSpec& spec, std::uint64_t seed,
                                                const std::string& options,
                                                ProcessGroup& group){nullptr};

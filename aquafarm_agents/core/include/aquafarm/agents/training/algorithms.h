@@ -29,7 +29,7 @@ std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& sp
 std::string LargeTableNote(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options);
 
-/// Name with which ChooseAlgorithm selects the algorithm.
+/// Name that users give so that ChooseAlgorithm selects the algorithm.
 inline constexpr const char* kAutoAlgorithm = "auto";
 
 /// Result of ChooseAlgorithm.
@@ -39,7 +39,7 @@ struct Choice {
 };
 
 /// Selects an algorithm as in Fig. 6 of the paper, by the number of squads (rescue ships) and by
-/// whether the devices are intelligent and networked:
+/// whether the devices are intelligent and networked. The first row that applies is used:
 ///
 ///   one agent                                          a single-agent learner (lstm_dqn)
 ///   several squads, or networked intelligent devices   a multi-agent learner (vdn)

@@ -2,9 +2,9 @@
 #pragma once
 
 /// Policies in Python: a function such as act(observations, masks) in a file, or a model of
-/// Stable-Baselines3. Each policy runs in a separate process, so that it may use any Python and any
-/// package. The process runs aquafarm_agents/scripts/serve_policy.py. That script describes the
-/// messages.
+/// Stable-Baselines3. The function or model runs in a separate process, so that it may use any
+/// Python and any package. The process runs aquafarm_agents/scripts/serve_policy.py, which
+/// describes the messages.
 
 #include <chrono>
 #include <memory>

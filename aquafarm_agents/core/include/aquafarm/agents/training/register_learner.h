@@ -21,8 +21,8 @@ namespace aquafarm::agents {
 /// Name of the environment variable that lists libraries with learners.
 inline constexpr const char* kLearnersVariable = "AQUAFARM_LEARNERS";
 
-/// Adds a learner or policy to Algorithms(). Must be called before the first call of Algorithms(),
-/// for example by the initialization of a static object.
+/// Adds a learner or policy to Algorithms(). Must be called before the first call of Algorithms()
+/// or by a library that this call loads, for example by the initialization of a static object.
 /// @param algorithm its texts must stay valid until the program ends
 /// @param built_with version of the headers that the caller was compiled with; do not set it
 /// @returns true, so that the call can initialize a static object

@@ -63,7 +63,7 @@ struct RunReport {
   std::string summary;      ///< a few readable lines; on ranks other than 0 only an error, or empty
   std::string policy_path;  ///< empty if no policy was written
   std::int32_t ranks{1};    ///< number of ranks
-  double exchange_fraction{};  ///< share of the training time in exchanges between ranks, [0, 1]
+  double exchange_fraction{};  ///< share of the training time spent on exchanges between ranks
 };
 
 /// Checks the options before the run starts. @throws InputError if an option is wrong
@@ -78,8 +78,9 @@ struct RankedRun {
   MakeEnvironment make_share;  ///< makes the environment with the farms of this rank
 };
 
-/// Default number of shards of a training with several ranks. If there are more ranks than this,
-/// the default is the number of ranks.
+/// Default number of shards (groups of farms, see PpoOptions::shards) of a training with several
+/// ranks, or with the option --ranks 1. If there are more than 8 ranks, the default is the number
+/// of ranks.
 inline constexpr int kDefaultShards = 8;
 
 /// Trains, saves the policy, and evaluates it and the policy RANDOM. Errors are returned in the
@@ -92,9 +93,9 @@ RunReport Train(const RunOptions& options, const MakeEnvironment& make_environme
                 const std::function<void(const RunStatus&)>& on_status,
                 const std::atomic<bool>* stop, const RankedRun* ranked = nullptr);
 
-/// Checks that an algorithm can be trained by several ranks.
-/// @param source name of the variable with the number of ranks, such as WORLD_SIZE
-/// @throws InputError if it cannot. The message lists the algorithms that several ranks can train
+/// Checks that several ranks can train an algorithm.
+/// @param source name of the variable or option with the number of ranks, such as WORLD_SIZE
+/// @throws InputError if they cannot. The message lists the algorithms that several ranks can train
 void CheckRanks(const std::string& algorithm, int ranks, const std::string& source);
 
 /// Returns a line such as "steps 812,000 / 3,000,000  episodes 1,240  return 81.2  …  left 1.2 s".

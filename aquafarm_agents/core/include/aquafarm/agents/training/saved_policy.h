@@ -17,7 +17,7 @@ inline constexpr const char* kGeneralist = "generalist";
 /// A policy loaded from disk, or a built-in one.
 struct SavedPolicy {
   std::string path;       ///< source file, or the name of a built-in policy
-  Checkpoint checkpoint;  ///< of a policy that learns; others have only the algorithm
+  Checkpoint checkpoint;  ///< complete for a trained policy; for others, only `algorithm` is set
   std::uint8_t observation_types{};
   std::shared_ptr<PolicyProcess> process;  ///< process of a policy in Python; null for others
 };

@@ -47,10 +47,10 @@ struct TrainingProgress {
   float best_mean_return{};  ///< max mean of kWindow consecutive episodes; NaN if fewer have ended
   float success_rate{};      ///< of the last kWindow episodes; NaN before the first has ended
   LearnerStatus learner;
-  double steps_per_second{};  ///< since the previous report
+  double steps_per_second{};  ///< farm steps per second since the previous report
   double elapsed_s{};         ///< since the training started or resumed in this process
   double time_left_s{-1.0};   ///< -1 if unknown
-  std::uint32_t restarts{};   ///< times that all farms began new episodes, see ConsumeRestart
+  std::uint32_t restarts{};   ///< number of restarts of all farms, see ConsumeRestart
   inline static constexpr int kWindow = 50;
 };
 
@@ -59,7 +59,7 @@ enum class TrainingEnd : std::uint8_t {
   kDone,         ///< a limit is reached
   kInterrupted,  ///< `stop` was set
   /// The farms were lost. If this process trains alone: also after any InputError, for example if
-  /// the farms came back with another scenario.
+  /// the farms returned with another scenario.
   kLost,
   kStorage,   ///< the run folder cannot be written
   kDiverged,  ///< learning failed (LearnerFailed)
@@ -73,7 +73,8 @@ enum class TrainingEnd : std::uint8_t {
 class Trainer {
  public:
   /// @param environment, learner, folder must outlive the trainer
-  /// @param folder receives metrics and checkpoints; null: none are written (on ranks other than 0)
+  /// @param folder receives metrics and checkpoints; null (as on ranks other than 0): none are
+  ///   written
   /// @throws InputError if no limit is set, or if the seed is not below kEvaluationSeedBit
   Trainer(Environment& environment, Learner& learner, const TrainerOptions& options,
           RunFolder* folder = nullptr);
@@ -90,8 +91,9 @@ class Trainer {
 
   /// Trains until a limit is reached or `stop` is set, then saves a checkpoint. Failures of the
   /// farms, the disk, the learner or the ranks are not thrown: the returned value and message()
-  /// report them. If this process trains alone, a checkpoint is saved even if the farms are lost. A
-  /// rank that failed no longer exchanges data, so its caller must close the group.
+  /// report them. If this process trains alone, a checkpoint is saved even if the farms are lost.
+  /// After a failure on a rank, this rank exchanges no more data, so its caller must close the
+  /// group.
   /// @param stop may be set by a signal handler; null if the training cannot be stopped
   /// @param on_progress called at the start, about every progress_period_s, and at the end
   TrainingEnd Run(const std::atomic<bool>* stop = nullptr, const OnProgress& on_progress = {});

@@ -41,8 +41,9 @@ def scenario_of(ships, folder):
     """Writes a copy of two_squads.yaml with `ships` ships into a folder; returns its path."""
     source = pathlib.Path(rospkg.RosPack().get_path("aquafarm_sim")) / "scenarios/two_squads.yaml"
     text = source.read_text(encoding="utf-8")
-    changed = text.replace("ships: {count: 2,", f"ships: {{count: {ships},")
-    assert changed != text, "two_squads.yaml no longer has 2 ships"
+    two = "ships: {count: 2,"
+    assert two in text, "two_squads.yaml no longer has 2 ships"
+    changed = text.replace(two, f"ships: {{count: {ships},")
     path = pathlib.Path(folder) / "ships.yaml"
     path.write_text(changed, encoding="utf-8")
     return path
@@ -69,12 +70,14 @@ def measure(get_state, rounds, round_s):
     end = time.monotonic() + LIMIT_S
     while get_state().state.step < 100:
         if time.monotonic() > end:
-            raise SystemExit("bench_agents: got no step of the agents; see their output")
+            raise SystemExit(f"bench_agents: the agents did not reach step 100 within {LIMIT_S} s; "
+                             "see their output")
         time.sleep(0.1)
-    end = time.monotonic() + LIMIT_S
+    end = time.monotonic() + LIMIT_S + rounds * round_s
     while len(rates) < rounds:
         if time.monotonic() > end:
-            raise SystemExit("bench_agents: no round stayed within an episode; shorten --round-s")
+            raise SystemExit(f"bench_agents: {len(rates)} of {rounds} rounds stayed within an episode; "
+                             "shorten --round-s or give fewer --rounds")
         before, begin = get_state().state, time.monotonic()
         time.sleep(round_s)
         after, elapsed = get_state().state, time.monotonic() - begin

@@ -29,7 +29,6 @@ HIDDEN = 128
 FEATURES = 81  # of paper.yaml
 OUTPUTS = 11  # ten actions and the value
 WEIGHTS = (FEATURES + 1) * HIDDEN + (HIDDEN + 1) * HIDDEN + (HIDDEN + 1) * OUTPUTS
-ROLLOUT = 16384  # agent steps
 EPOCHS = 2
 BATCHES = (256, 2048)
 RANKS = (1, 2, 4)

@@ -44,7 +44,7 @@ def describe(name, pairs):
     """Returns the printed line of a figure. @param pairs for each round, the results of measure()
     of the old and of the new version"""
     if any(name not in one for pair in pairs for one in pair):
-        return f"{name:44} only in one of them"
+        return f"{name:44} printed by only one version"
     unit = pairs[0][1][name][1]
     before, after = ([pair[i][name][0] for pair in pairs] for i in range(2))
     if min(*before, *after) <= 0.0:

@@ -12,6 +12,7 @@ PATH.
 import csv
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -26,7 +27,8 @@ def energy_block(text, weight):
     lines = text.splitlines()
     for i, line in enumerate(lines):
         if line.startswith("energy: {"):
-            lines[i] = line.replace("{", f"{{weight: {weight:g}, ", 1)
+            lines[i] = re.sub(r"weight: [^,}]*(, )?", "", line).replace(
+                "{", f"{{weight: {weight:g}, ", 1)
             return "\n".join(lines) + "\n"
         if line.startswith("energy:"):
             sys.exit("energy_curve: got a block energy of several lines, expected none or one line")

@@ -4,7 +4,7 @@
 and slurm-client.
 
 Usage, as root: one_node_slurm.py COMMAND [ARGUMENT…]
-The command has SLURM_CONF, so that its sbatch, srun and squeue use the cluster. The cluster ends
+The environment variable SLURM_CONF is set for the command, so that its sbatch, srun and squeue use the cluster. The cluster ends
 when the command ends. All its files are in a temporary folder; a Slurm of this host is not changed.
 """
 import os

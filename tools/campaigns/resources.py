@@ -103,7 +103,7 @@ def judge(campaign, what, folder, code, words):
     campaign.check(code is None or code >= 0, f"{what}: ended by signal {-(code or 0)}: {shown}")
     campaign.check(not RAW.search(words), f"{what}: raw words: {shown}")
     if code:
-        campaign.check(bool(lines), f"{what}: exit code {code} and no word")
+        campaign.check(bool(lines), f"{what}: exit code {code} without a message")
     if folder.is_dir():
         campaign.check(not common.left_over(folder), f"{what}: left {common.left_over(folder)}")
 

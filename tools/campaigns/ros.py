@@ -37,7 +37,11 @@ class Ros:
                                 ROS_LOG_DIR=str(self.folder / "log"))
 
     def __enter__(self):
-        self.start_master()
+        try:
+            self.start_master()
+        except BaseException:
+            self.__exit__()
+            raise
         return self
 
     def start_master(self):

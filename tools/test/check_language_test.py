@@ -57,7 +57,7 @@ class CheckLanguageTest(unittest.TestCase):
         self.write("farm.h", "/// Begins anew and shall end.\n")
         done = self.check()
         self.assertEqual(1, done.returncode)
-        self.assertIn("contains 2 such words, allowed are 1", done.stderr)
+        self.assertIn("contains 2 such words, expected at most 1", done.stderr)
 
     def test_a_page_has_100_columns_but_tables_and_programs_may_have_more(self):
         wide = "word " * 21

@@ -31,7 +31,7 @@ def test_a_higher_rate_and_a_lower_cost_are_both_above_1(tmp_path):
     assert found == {"rate": "1.500 (1.500 to 1.500), n 2, steps/s",
                      "reset": "1.500 (1.500 to 1.500), n 2, ms",
                      "size": "2.000 (2.000 to 2.000), n 2, bytes/farm",
-                     "sent": "2.000 (2.000 to 2.000), n 2, MB/s", "gone": "only in one of them"}
+                     "sent": "2.000 (2.000 to 2.000), n 2, MB/s", "gone": "printed by only one version"}
 
 
 def test_a_workspace_that_is_not_built_is_named(tmp_path):

@@ -28,6 +28,8 @@ def program_arguments(words):
                         for part in ("--set", option)]
         elif name == "resume":
             options += ["--resume"] if arguments.TRUE.fullmatch(value) else []
+        elif name == "run_dir" and value == "auto":
+            continue  # aquafarm_train creates a folder
         elif name in OPTIONS:
             options += [OPTIONS[name], value] if value != LEFT_OUT.get(name) else []
         else:

@@ -15,6 +15,7 @@
 
 #include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/agents/ranks/process_group.h"
+#include "aquafarm/agents/training/progress_text.h"
 #include "aquafarm/agents/training/run.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/limits.h"

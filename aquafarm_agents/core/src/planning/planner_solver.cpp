@@ -28,7 +28,7 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t max_devices)
   }
   if (devices_ > std::size_t{kMaxPlanDevices}) {
     throw InputError(
-        "planner: got " + std::to_string(devices_) + " devices, expected at most " +
+        "planner: got " + std::to_string(devices_) + " devices for one ship, expected at most " +
         std::to_string(kMaxPlanDevices) +
         "; give another policy, such as policy:=fetch_by_value, or policy:=none to hold "
         "the ships");

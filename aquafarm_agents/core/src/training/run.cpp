@@ -2,7 +2,6 @@
 #include "aquafarm/agents/training/run.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include "aquafarm/agents/learning/warm_start.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/agents/training/algorithms.h"
+#include "aquafarm/agents/training/progress_text.h"
 #include "aquafarm/agents/training/saved_policy.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/hash.h"
@@ -29,12 +29,6 @@ constexpr std::uint64_t kSummarySeed = 1000;
 std::string LearnerOptionsOf(const RunOptions& options) {
   if (options.exploration.empty()) return options.options;
   return options.options + " exploration=" + options.exploration;
-}
-
-std::string Count(std::uint64_t value) {
-  std::string text = std::to_string(value);
-  for (std::size_t i = text.size(); i > 3; i -= 3) text.insert(i - 3, ",");
-  return text;
 }
 
 /// One training run. Its members are the state that the steps of Train share.
@@ -363,7 +357,7 @@ void Run::Evaluate(Environment& environment, const Learner& learner, const RunFo
   report_.status.evaluation = agents::Evaluate(
       environment, *greedy, kSummarySeed, options_.evaluation_episodes, stop_,
       [&](std::size_t over) {
-        Notify(RunPhase::kEvaluating, Count(over) + " of " +
+        Notify(RunPhase::kEvaluating, FormatCount(over) + " of " +
                                           std::to_string(options_.evaluation_episodes) +
                                           " episodes played");
       });
@@ -384,24 +378,11 @@ void Run::Summarise() {
   const TrainingProgress& progress = report_.status.progress;
   std::string& text = report_.summary;
   if (progress.steps > 0) {
-    text += "trained    " + options_.algorithm + ", " + Count(progress.steps) + " steps, " +
-            Count(progress.episodes) + " episodes in " + FormatDuration(progress.elapsed_s) + "\n";
+    text += "trained    " + options_.algorithm + ", " + FormatCount(progress.steps) + " steps, " +
+            FormatCount(progress.episodes) + " episodes in " + FormatDuration(progress.elapsed_s) +
+            "\n";
   }
-  if (progress.episodes > 0) {
-    const auto count =
-        static_cast<int>(std::min<std::uint64_t>(progress.episodes, TrainingProgress::kWindow));
-    char line[120];
-    std::snprintf(line, sizeof(line), "last %-3d   return %.1f, success %.1f %% (exploring)", count,
-                  static_cast<double>(progress.mean_return),
-                  100.0 * static_cast<double>(progress.success_rate));
-    text += line;
-    if (!std::isnan(progress.best_mean_return)) {
-      std::snprintf(line, sizeof(line), "; best mean return %.1f",
-                    static_cast<double>(progress.best_mean_return));
-      text += line;
-    }
-    text += "\n";
-  }
+  if (progress.episodes > 0) text += DescribeReturns(progress) + "\n";
   if (report_.status.has_evaluation) {
     text += "greedy     " + agents::Describe(report_.status.evaluation) + "\n";
   }
@@ -479,27 +460,6 @@ RunReport Train(const RunOptions& options, const MakeEnvironment& make_environme
     run.Fail(ExitCode::kInternal, std::string("internal error: ") + error.what());
   }
   return run.End();
-}
-
-std::string DescribeProgress(const TrainingProgress& progress) {
-  const auto of = [](std::uint64_t done, std::uint64_t limit) {
-    return limit == 0 ? Count(done) : Count(done) + " / " + Count(limit);
-  };
-  std::string text = "steps " + of(progress.steps, progress.step_limit) + "  episodes " +
-                     of(progress.episodes, progress.episode_limit);
-  char rest[80];
-  if (progress.episodes > 0) {
-    std::snprintf(rest, sizeof(rest), "  return %.1f  success %.2f",
-                  static_cast<double>(progress.mean_return),
-                  static_cast<double>(progress.success_rate));
-    text += rest;
-  }
-  std::snprintf(rest, sizeof(rest), "  exploration %.3g  %s steps/s",
-                static_cast<double>(progress.learner.exploration),
-                Count(static_cast<std::uint64_t>(progress.steps_per_second)).c_str());
-  text += rest;
-  if (progress.time_left_s >= 0.0) text += "  left " + FormatDuration(progress.time_left_s);
-  return text;
 }
 
 }  // namespace aquafarm::agents

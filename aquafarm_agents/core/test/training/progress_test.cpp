@@ -2,7 +2,9 @@
 // The progress line of a training.
 #include <gtest/gtest.h>
 
-#include "aquafarm/agents/training/run.h"
+#include <cmath>
+
+#include "aquafarm/agents/training/progress_text.h"
 
 namespace aquafarm::agents::test {
 namespace {
@@ -39,6 +41,16 @@ TEST(Progress, BeforeTheFirstEpisodeEndsThereIsNoReturn) {
   progress.steps = 64;
   progress.episode_limit = 50;
   EXPECT_EQ(DescribeProgress(progress), "steps 64  episodes 0 / 50  exploration 0  0 steps/s");
+}
+
+TEST(Progress, ReturnsOfAShortTrainingHaveItsNumberOfEpisodesAndNoBestMean) {
+  TrainingProgress progress = Midway();
+  progress.best_mean_return = 85.0F;
+  EXPECT_EQ(DescribeReturns(progress),
+            "last 50    return 81.2, success 62.0 % (exploring); best mean return 85.0");
+  progress.episodes = 3;
+  progress.best_mean_return = std::nanf("");
+  EXPECT_EQ(DescribeReturns(progress), "last 3     return 81.2, success 62.0 % (exploring)");
 }
 
 TEST(Progress, TimeLeftIsInTheUnitsThatPeopleSay) {

@@ -113,8 +113,8 @@ class Builder {
     } catch (const InputError&) {
       return false;
     }
-    const std::string many = states == 0 ? "too many for a table" : std::to_string(states);
-    Say("states: " + many + "; slow to learn in a table, so networks get routes by water");
+    Say("states: " + (states == 0 ? "too many" : std::to_string(states)) +
+        "; slow to learn in a table, so networks get routes by water");
     return true;
   }
 
@@ -313,8 +313,7 @@ class Builder {
           "time: %g s per step; a storm is nearest 18 to 30 h after the start and lasts %d steps",
           plan_.step_s, duration_));
     }
-    if (request_.track.empty())
-      return Say(Text("time: %g s per step; no storm track", plan_.step_s));
+    if (request_.track.empty()) return Say(Text("time: %g s per step; no track", plan_.step_s));
     const StormTrack track = ReadTrack();
     const double half_diagonal_km =
         std::hypot(width(), height()) / 2.0 * plan_.cell_size_m / 1000.0;

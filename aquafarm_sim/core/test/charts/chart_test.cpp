@@ -124,7 +124,7 @@ TEST(Coast, WarnsOfARingThatCrossesItself) {
       "{\"type\": \"Polygon\",\n\"coordinates\": [[[0,0],[2,2],[2,0],[0,2],[0,0]]]}", "x");
   EXPECT_EQ(coast.warnings,
             std::vector<std::string>{"x:2: coordinates[0]: the ring crosses itself; an area that "
-                                     "it encloses an odd number of times is land"});
+                                     "the ring encloses an odd number of times is land"});
 }
 
 TEST(Coast, WarnsOfARingThatRunsAlongItself) {

@@ -98,7 +98,4 @@ RunReport Train(const RunOptions& options, const MakeEnvironment& make_environme
 /// @throws InputError if they cannot. The message lists the algorithms that several ranks can train
 void CheckRanks(const std::string& algorithm, int ranks, const std::string& source);
 
-/// Returns a line such as "steps 812,000 / 3,000,000  episodes 1,240  return 81.2  …  left 1.2 s".
-std::string DescribeProgress(const TrainingProgress& progress);
-
 }  // namespace aquafarm::agents

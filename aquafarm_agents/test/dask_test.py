@@ -78,7 +78,7 @@ class DaskTest(unittest.TestCase):
         part = self.start("parts", "--scheduler", scheduler.address)
         part.wait_for(lambda: self.under_way("parts"), "two trainings", LIMIT_S)
         workers.pop().kill()
-        part.wait_for(lambda: "its worker was lost; it runs again on" in part.words(),
+        part.wait_for(lambda: "worker or the scheduler was lost; it runs again on" in part.words(),
                       "the run of the lost worker", LIMIT_S)
         scheduler.kill()
         part.wait_for(lambda: f"the scheduler {scheduler.address} was lost" in part.words(),

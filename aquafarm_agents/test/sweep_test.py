@@ -7,6 +7,7 @@ import pathlib
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import rosunit
 
@@ -80,6 +81,16 @@ class SweepTest(unittest.TestCase):
         code, said = self.sweep("--set", "gamma=broken", "--seeds", "1", output="other")
         self.assertEqual(code, 4)
         self.assertIn("out of memory", said)
+
+    def test_refused_defaults_are_named(self):
+        (self.home / "aquafarm_train").write_text("#!/bin/sh\necho 'too many states'; exit 2\n")
+        code, said = self.sweep("--seeds", "1")
+        self.assertEqual(code, 2)
+        self.assertIn("refused: (defaults): too many states", said)
+
+    def test_the_default_number_of_jobs_is_that_of_the_usable_cores(self):
+        with mock.patch("os.sched_getaffinity", return_value={0, 3}):
+            self.assertEqual(sweep.arguments(["paper", "ppo", "--output", "out"]).jobs, 2)
 
     def test_wrong_arguments_are_refused_in_one_line(self):
         self.sweep("--set", "gamma=0.5", "--seeds", "1")

@@ -180,7 +180,8 @@ class _Runs:
         if job is None:
             return
         if job.started is not None and message["command"] == 1:
-            self._report(f"{job.name}: its worker was lost; it runs again on {message['host']}")
+            self._report(f"{job.name}: its worker or the scheduler was lost; it runs again on "
+                         f"{message['host']}")
         job.note_start(message)
 
     def _settle(self, future):

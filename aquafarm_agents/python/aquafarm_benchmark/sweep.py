@@ -81,6 +81,11 @@ def jobs_of(given, settings, train):
     return jobs
 
 
+def describe(chosen):
+    """Returns a combination as text, for tables and messages."""
+    return " ".join(chosen) or "(defaults)"
+
+
 def interval(values):
     """Returns the mean and the half-width of its 95 % interval (Student's t). The half-width is nan
     for one value."""
@@ -105,7 +110,7 @@ def table_of(settings, results):
         if found:
             mean, half = interval([one["return_per_episode"] for one in found])
             success = sum(one["success_rate"] for one in found) / len(found)
-            rows.append((" ".join(chosen) or "(defaults)", len(found), mean, half, success))
+            rows.append((describe(chosen), len(found), mean, half, success))
     return sorted(rows, key=lambda row: -row[2])
 
 
@@ -141,7 +146,7 @@ def arguments(words):
     parser.add_argument("--episodes", type=int, default=200, help="number of evaluation episodes")
     parser.add_argument("--output", type=pathlib.Path, required=True,
                         help="folder for runs and tables")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1,
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)),
                         help="number of trainings in parallel, with --scheduler local or slurm")
     parser.add_argument("--scheduler", default=cluster.LOCAL, help=cluster.HELP)
     parser.add_argument("--programs", type=pathlib.Path,
@@ -193,7 +198,7 @@ def _run(words):
         with cluster.Cluster(given.scheduler, given.jobs) as workers:
             declined = run_all(jobs, workers, lambda text: print(text, flush=True))
         for number, reason in declined.items():
-            print(f"refused: {' '.join(settings[int(number)])}: {reason}", file=sys.stderr)
+            print(f"refused: {describe(settings[int(number)])}: {reason}", file=sys.stderr)
             code = 2
     except (RunFailed, cluster.Lost) as error:
         print(f"aquafarm_sweep: {error}", file=sys.stderr)

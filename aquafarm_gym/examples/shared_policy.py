@@ -14,19 +14,20 @@ import argparse
 import aquafarm_gym
 import numpy as np
 import torch
-from masked_ppo import GAMMA, DecayEntropy, make_model
+from aquafarm_gym.spaces import action_mask
+from masked_ppo import EVALUATION_SEED, GAMMA, DecayEntropy, make_model
 from stable_baselines3.common.vec_env import VecNormalize
 
 
-def play(model, env, seed):
-    """Plays an episode of a PettingZoo environment greedily; returns the episode's summary."""
-    seen, infos = env.reset(seed=seed)
+def play(model, env, episode):
+    """Plays an evaluation episode of a PettingZoo environment greedily; returns its summary."""
+    env.reset()
+    env.farms.reset(EVALUATION_SEED, episode)  # env.reset accepts only seeds of trainings
     while env.agents:
         agents = env.agents
-        masks = np.array([infos[agent]["action_mask"] for agent in agents])
-        actions, _ = model.predict(np.array([seen[agent] for agent in agents]), deterministic=True,
-                                   action_masks=masks)
-        seen, _, _, _, infos = env.step(dict(zip(agents, actions)))
+        actions, _ = model.predict(env.state().reshape(len(agents), -1), deterministic=True,
+                                   action_masks=action_mask(env.farms.buffers["legal"][0]))
+        _, _, _, _, infos = env.step(dict(zip(agents, actions)))
     return infos[agents[0]]["summary"]
 
 
@@ -38,7 +39,7 @@ def main(scenario="two_squads", steps=2_000_000, seed=1, farms=32, episodes=20, 
     model = make_model(envs, seed, **options)
     model.learn(steps, callback=DecayEntropy())
     env = aquafarm_gym.FarmParallelEnv(scenario)
-    played = [play(model, env, 2**62 + k) for k in range(episodes)]
+    played = [play(model, env, k) for k in range(episodes)]
     mean = np.mean([one["episode_return"] for one in played])
     success = np.mean([one["success"] for one in played])
     print(f"{scenario}: {model.num_timesteps:,} steps of ships; mean return {mean:.1f}, success "

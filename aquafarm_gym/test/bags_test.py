@@ -10,6 +10,7 @@ import os
 import pathlib
 import sys
 import tempfile
+import types
 import unittest
 import warnings
 
@@ -89,6 +90,24 @@ class BagsTest(unittest.TestCase):
                            (changed, "got changes from outside")):
             with self.assertRaisesRegex(ValueError, f"^x.bag: episode 3: {words}"):
                 bags.replay(one)
+
+    def test_a_change_at_step_0_is_kept_and_an_episode_is_yielded_once(self):
+        spec = types.SimpleNamespace(scenario_yaml=aquafarm_gym.find_scenario("paper").yaml,
+                                     scenario_name="paper")
+
+        def taken(running, state_hash, episode=3):
+            state = types.SimpleNamespace(step=0, seed=5, episode=episode, hash=state_hash,
+                                          reason=0, ships=[types.SimpleNamespace(action=10, reward=0.0)])
+            return list(bags._take(running, "/a", spec, state, "x.bag"))
+
+        running = {}
+        self.assertEqual(taken(running, 1) + taken(running, 1), [])  # published twice
+        running["/a"].is_changed = True  # as a message saved_state does
+        self.assertEqual(taken(running, 2), [])
+        self.assertTrue(running["/a"].is_changed)
+        before, = taken(running, 7, episode=4)
+        self.assertEqual((before.episode, before.hashes), (3, [1]))
+        self.assertFalse(running["/a"].is_changed)
 
     def test_the_command_says_what_is_wrong_in_one_line(self):
         with tempfile.NamedTemporaryFile(suffix=".bag") as other:

@@ -209,6 +209,27 @@ view: {mode: partial, monitoring_radius: 4, kinds: true}
         expected = alone.reset(seed=9, options={"episode": 21})[0]
         np.testing.assert_array_equal(after[1], expected)
 
+    def test_an_episode_by_number_is_of_the_farms_own_seeds(self):
+        env, alone = FarmVectorEnv(3), FarmEnv()
+        mask = np.array([True, False, True])
+
+        def expect(seen, *starts):
+            for one, (seed, episode) in zip(seen, starts):
+                np.testing.assert_array_equal(
+                    one, alone.reset(seed=seed, options={"episode": episode})[0])
+
+        env.reset(seed=[7, 8, 9])
+        expect(env.reset(options={"episode": 5})[0], (7, 5), (8, 5), (9, 5))
+        expect(env.reset()[0], (7, 6), (8, 6), (9, 6))
+        expect(env.reset(options={"episode": 2, "reset_mask": mask})[0], (7, 2), (8, 6), (9, 2))
+        expect(env.reset(seed=4, options={"reset_mask": mask})[0], (4, 0), (8, 6), (4, 2))
+        env = pickle.loads(pickle.dumps(env))
+        expect(env.reset(options={"episode": 9})[0], (4, 9), (8, 9), (4, 11))
+        expect(env.reset(seed=[None, 1, None])[0], (4, 12), (1, 0), (4, 14))
+        expect(env.reset(options={"episode": 1})[0], (4, 1), (1, 1), (4, 3))
+        env.reset(seed=6)
+        expect(env.reset(options={"episode": 1})[0], (6, 1), (6, 2), (6, 3))
+
     def test_copies_and_pickles_continue_bit_for_bit_and_are_equal(self):
         for make, actions in ((FarmEnv, 3), (lambda: FarmVectorEnv(3), np.array([1, 2, 3])),
                               (FarmParallelEnv, {"ship_0": 1, "ship_1": 2}),

@@ -162,6 +162,11 @@ class GymTest(unittest.TestCase):
         self.assertIs(env.step(np.zeros(4, int))[0].base, first.base)
 
     def test_what_does_not_fit_is_refused_in_one_line(self):
+        def step_unknown_ship():
+            env = FarmParallelEnv()
+            env.reset(seed=1)
+            env.step({"ship_7": 0})
+
         for call, words in (
                 (lambda: FarmEnv("papre"), "scenario: got 'papre', expected an "
                  "aquafarm_core.Scenario, a file or one of: .*paper, paper_partial, paper_plain, partial, "),
@@ -172,7 +177,8 @@ class GymTest(unittest.TestCase):
                 (lambda: FarmEnv().step(10), "action: got 10, expected a whole number in"),
                 (lambda: FarmVectorEnv(2).step(np.array([0, 10])), "actions: got 0 to 10, "),
                 (lambda: FarmVectorEnv(2).step(np.array([0])), r"actions: got int64 \[1\], "),
-                (lambda: FarmParallelEnv().step({"ship_7": 0}), r"actions: got the agents \['ship_7"),
+                (lambda: FarmParallelEnv().step({"ship_0": 0}), "step: the episode is over; "),
+                (step_unknown_ship, r"actions: got the agents \['ship_7"),
                 (lambda: RosFarms("/ranch", 5000).reset(1), "sim node: reset refused: ")):
             with self.assertRaisesRegex(ValueError, f"^{words}"):
                 call()

@@ -17,6 +17,7 @@ import sys
 import tempfile
 import unittest
 import zlib
+from unittest import mock
 
 from venv_tools import enter_venv, run_tests
 
@@ -162,6 +163,18 @@ class RenderTest(unittest.TestCase):
         np.testing.assert_array_equal(shown, env._pictures.draw())
         env.close()
         self.assertFalse(pygame.display.get_init())
+
+    @unittest.skipUnless(DRAWS and importlib.util.find_spec("pygame"), "no OpenCV or no pygame")
+    def test_human_prints_the_farm_if_the_display_cannot_be_reached(self):
+        with mock.patch.dict(os.environ, SDL_VIDEODRIVER="x11", DISPLAY=":999"), \
+                contextlib.redirect_stdout(io.StringIO()) as shown, \
+                contextlib.redirect_stderr(io.StringIO()) as errors:
+            env = FarmEnv(render_mode="human")
+            env.reset(seed=1)
+            env.step(0)
+        self.assertEqual(shown.getvalue().count("paper  step "), 2)
+        self.assertIn("render_mode human: prints text, because: ", errors.getvalue())
+        self.assertEqual(errors.getvalue().count("because"), 1)
 
     @unittest.skipUnless(DRAWS and importlib.util.find_spec("moviepy"), "no OpenCV or no moviepy")
     def test_record_video_writes_an_mp4(self):

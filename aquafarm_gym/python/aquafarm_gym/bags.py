@@ -98,7 +98,7 @@ def _take(running: dict[str, Recorded], prefix: str, spec: Any, state: Any,
           path: str) -> Iterator[Recorded]:
     """Adds a state to the current episode of its ranch. If the state starts another episode, yields
     the previous episode. prefix: namespace of the ranch."""
-    if state.step == 0:
+    if state.step == 0 and not _is_same_start(running.get(prefix), state):
         if prefix in running:
             yield running.pop(prefix)
         scenario = core.Scenario.parse(spec.scenario_yaml, spec.scenario_name)
@@ -116,6 +116,14 @@ def _take(running: dict[str, Recorded], prefix: str, spec: Any, state: Any,
     one.rewards.append([np.float32(ship.reward) for ship in state.ships])
     one.hashes.append(int(state.hash))
     one.reasons.append(int(state.reason))
+
+
+def _is_same_start(one: Recorded | None, state: Any) -> bool:
+    """Returns whether a state of step 0 belongs to the start that an episode already contains: it
+    was published again, or a service has changed the farm."""
+    return (one is not None and len(one.hashes) == 1
+            and (state.seed, state.episode) == (one.seed, one.episode)
+            and (one.is_changed or state.hash == one.hashes[0]))
 
 
 def replay(recorded: Recorded, observation: str = "features") -> list[Replayed]:

@@ -75,10 +75,10 @@ class FarmParallelEnv(SingleFarm,
 
     def step(self, actions: dict[str, Any]) -> tuple[
             dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Any]]:
-        if set(actions) != set(self.agents):
-            raise ValueError(f"actions: got the agents {sorted(actions)}, expected {self.agents}")
         if not self.agents:
             raise ValueError("step: the episode is over; reset first")
+        if set(actions) != set(self.agents):
+            raise ValueError(f"actions: got the agents {sorted(actions)}, expected {self.agents}")
         joint = np.full((1, self.farms.agents), core.HOLD, np.uint8)
         for agent, action in actions.items():
             if not self.action_spaces[agent].contains(action):

@@ -62,8 +62,8 @@ class Pictures:
 
 
 class Window:
-    """Shows the first farm in a pygame window. Prints the farm as text if pygame, a display or
-    OpenCV is missing."""
+    """Shows the first farm in a pygame window. Prints the farm as text if pygame, OpenCV or a
+    reachable display is missing."""
 
     def __init__(self, pictures: Pictures, farms: Any) -> None:
         self._pictures, self._farms = pictures, farms
@@ -91,14 +91,22 @@ class Window:
             import aquafarm_core.pictures  # noqa: F401
             import pygame
         except ImportError as error:
-            print(f"render_mode human: prints text, because: {error}", file=sys.stderr)
-            return False
-        pygame.display.init()
+            return self._refuse(error)
         picture = self._pictures.draw()
-        self._screen = pygame.display.set_mode((picture.shape[1], picture.shape[0]))
+        try:
+            pygame.display.init()
+            self._screen = pygame.display.set_mode((picture.shape[1], picture.shape[0]))
+        except pygame.error as error:  # for example, the X server cannot be reached
+            pygame.display.quit()
+            return self._refuse(error)
         pygame.display.set_caption(f"aquafarm: {self._farms.name}")
         self._clock = pygame.time.Clock()
         return True
+
+    @staticmethod
+    def _refuse(error: Exception) -> bool:
+        print(f"render_mode human: prints text, because: {error}", file=sys.stderr)
+        return False
 
     def close(self) -> None:
         """Closes the window."""

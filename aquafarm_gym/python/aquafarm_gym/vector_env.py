@@ -72,6 +72,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self._copy = copy
         self._episodes = Episodes()
         self._own_sequences = False  # True if the farms may have different sequences
+        self._seeds = [0] * self.num_envs  # seed of the sequence of each farm
+        self._is_listed = np.zeros(self.num_envs, bool)  # whether a farm's seed comes from a list
         # Number of episodes that each farm has started since all farms last started together.
         self._begun = np.zeros(self.num_envs, np.int64)
         self._attach()
@@ -107,8 +109,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         """Starts episodes. seed: a number starts one sequence for all farms, with farm i at episode
         i. A list starts one sequence per farm, at episode 0. A farm without a seed (or with None in
         the list) starts the next episode of its sequence. options: with `episode` k, farm i starts
-        at episode k + i, or at episode k if its seed comes from a list. `reset_mask` (bool [N])
-        selects the farms that start; the other farms do not change."""
+        at episode k + i of its sequence, or at episode k if its seed comes from a list.
+        `reset_mask` (bool [N]) selects the farms that start; the other farms do not change."""
         options = check_options(options, ("episode", "reset_mask"))
         mask = self._mask_of(options)
         seeds = self._seeds_of(seed)
@@ -116,7 +118,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         super().reset(seed=one_seed)
         if seeds is not None:
             self._start_each(mask, seeds, int(options.get("episode", 0)))
-        elif mask is None and not (self._own_sequences and seed is None and not options):
+        elif mask is None and not (self._own_sequences and seed is None):
             self._start_all(one_seed, options)
         elif seed is None and "episode" not in options:
             self._start_next(self._everywhere if mask is None else mask)
@@ -158,9 +160,12 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         # Farm i of N plays every N-th episode. Without a seed, the new episodes follow the latest
         # episode of all farms.
         by = self.num_envs * (1 + int(self._begun.max()))
-        self.farms.reset(*self._episodes.next(seed, options, lambda: self.np_random_seed, by))
+        first = self._episodes.next(seed, options, lambda: self.np_random_seed, by)
+        self.farms.reset(*first)
         self._begun[:] = 0
         self._own_sequences = False
+        self._seeds = [first[0]] * self.num_envs
+        self._is_listed[:] = False
 
     def _ensure_reset(self) -> None:
         if self._episodes.seed is None:
@@ -177,15 +182,28 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         seeded = mask & np.array([one is not None for one in seeds])
         if (mask & ~seeded).any():
             self._start_next(mask & ~seeded)
-        if seeded.any():
-            self.farms.start(seeded, [one or 0 for one in seeds], [episode] * self.num_envs, 1)
-        self._own_sequences = True
+        self._seeds = [one if new is None or not is_started else new
+                       for one, new, is_started in zip(self._seeds, seeds, mask)]
+        self._is_listed |= seeded
+        self._start_at(seeded, episode)
 
     def _start_masked(self, mask: Array | None, seed: int | None, episode: int) -> None:
         self._ensure_reset()
-        sequence = self._episodes.seed if seed is None else seed
-        self.farms.start(self._everywhere if mask is None else mask, [sequence] * self.num_envs,
-                         [episode + i for i in range(self.num_envs)], self.num_envs)
+        mask = self._everywhere if mask is None else mask
+        if seed is not None:
+            self._seeds = [seed if is_started else one
+                           for one, is_started in zip(self._seeds, mask)]
+            self._is_listed &= ~mask
+        self._start_at(mask, episode)
+
+    def _start_at(self, mask: Array, episode: int) -> None:
+        """Starts farms at an episode of their sequences. See the option `episode` of reset."""
+        listed, others = mask & self._is_listed, mask & ~self._is_listed
+        if listed.any():
+            self.farms.start(listed, self._seeds, [episode] * self.num_envs, 1)
+        if others.any():
+            self.farms.start(others, self._seeds, [episode + i for i in range(self.num_envs)],
+                             self.num_envs)
         self._own_sequences = True
 
     def step(self, actions: Any) -> tuple[Any, Array, Array, Array, dict[str, Any]]:
@@ -266,8 +284,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
             f"<p>{shown} of {self.num_envs} farms</p>")
 
     def __getstate__(self) -> dict[str, Any]:
-        kept = ("_own_sequences", "_begun", "_mode", "_copy", "_episodes", "_np_random",
-                "_np_random_seed")
+        kept = ("_own_sequences", "_seeds", "_is_listed", "_begun", "_mode", "_copy", "_episodes",
+                "_np_random", "_np_random_seed")
         return {name: value for name, value in self.__dict__.items()
                 if not name.startswith("_") or name in kept}
 

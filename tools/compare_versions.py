@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compares the speed of two versions, each in a workspace that ./aquafarm bench has built. Runs
 their benchmarks alternately. Prints for each figure the geometric mean of the ratios new / old and
-its 95 % interval. For costs, such as seconds or bytes, the ratio is old / new: a ratio above 1
-means that the new version is better."""
+its 95 % interval. For costs, such as seconds, bytes or figures whose name starts with cost_, the
+ratio is old / new: a ratio above 1 means that the new version is better."""
 import argparse
 import pathlib
 import re
@@ -49,7 +49,8 @@ def describe(name, pairs):
     before, after = ([pair[i][name][0] for pair in pairs] for i in range(2))
     if min(*before, *after) <= 0.0:
         return f"{name:44} has no ratio: not above 0"
-    ratio = paired_ratio.paired_ratio(*((before, after) if COST.match(unit) else (after, before)))
+    is_cost = COST.match(unit) or name.startswith("cost_")
+    ratio = paired_ratio.paired_ratio(*((before, after) if is_cost else (after, before)))
     return f"{name:44} {paired_ratio.describe(ratio)}, n {len(pairs)}, {unit}"
 
 

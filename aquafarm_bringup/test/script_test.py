@@ -307,6 +307,8 @@ class ScriptTest(unittest.TestCase):
         for words, expected in (("-o x.png", "--values-every 0"),
                                 ("-o x.png --layers risk,values", "--values-at 0"),
                                 ("-o x.png --layers=values --step 3 5", "--values-at 3 5"),
+                                ("-o x.png --layers values --end", "--values-every 1"),
+                                ("-o x.MP4 --layers values --every 3", "--values-every 3"),
                                 ("-o x.mp4 --layers moves --every 4", "--values-every 4")):
             self.assertEqual(expected.split(), render.maps_of_values(words.split()))
         self.assertEqual(("runs/x", ["day.bag", "-o", "x.png", "--step", "-1"]), render.without_policy(

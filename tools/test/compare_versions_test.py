@@ -22,16 +22,18 @@ def compare(*words):
 
 def test_a_higher_rate_and_a_lower_cost_are_both_above_1(tmp_path):
     old = workspace(tmp_path / "old", "a table", "rate 100 steps/s", "reset 3 ms", "size 8 bytes/farm",
-                    "sent 5 MB/s", "gone 1 x")
+                    "sent 5 MB/s", "cost_per_ship 2 ratio", "share 2 ratio", "gone 1 x")
     new = workspace(tmp_path / "new", "rate 150 steps/s", "reset 2 ms", "size 4 bytes/farm",
-                    "sent 10 MB/s")
+                    "sent 10 MB/s", "cost_per_ship 1 ratio", "share 1 ratio")
     done = compare(old, new, "--rounds", "2")
     assert done.returncode == 0, done.stderr
     found = {line.split()[0]: line.split(maxsplit=1)[1] for line in done.stdout.splitlines()}
     assert found == {"rate": "1.500 (1.500 to 1.500), n 2, steps/s",
                      "reset": "1.500 (1.500 to 1.500), n 2, ms",
                      "size": "2.000 (2.000 to 2.000), n 2, bytes/farm",
-                     "sent": "2.000 (2.000 to 2.000), n 2, MB/s", "gone": "printed by only one version"}
+                     "sent": "2.000 (2.000 to 2.000), n 2, MB/s",
+                     "cost_per_ship": "2.000 (2.000 to 2.000), n 2, ratio",
+                     "share": "0.500 (0.500 to 0.500), n 2, ratio", "gone": "printed by only one version"}
 
 
 def test_a_workspace_that_is_not_built_is_named(tmp_path):

@@ -14,13 +14,16 @@ def maps_of_values(words):
     """Returns the options with which bag_policy computes the maps that render draws."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--step", nargs="*", action="extend", default=[])
+    parser.add_argument("--end", action="store_true")
     parser.add_argument("--every", default="1")
     parser.add_argument("--layers", default="")
     parser.add_argument("-o", "--output", default="")
     drawn, _ = parser.parse_known_args(words)
     if not {"values", "moves"} & set(drawn.layers.split(",")):
         return ["--values-every", "0"]
-    if drawn.output.endswith(VIDEOS):
+    if drawn.end:  # the last step is unknown here, so all steps get a map
+        return ["--values-every", "1"]
+    if drawn.output.lower().endswith(VIDEOS):
         return ["--values-every", drawn.every]
     return ["--values-at", *(drawn.step or ["0"])]
 

@@ -1,13 +1,17 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Key handling and output of the keyboard node."""
+import contextlib
+import io
 import os
 import pathlib
 import pty
 import subprocess
 import sys
 import unittest
+from unittest import mock
 
+import rospy
 import rostest
 from aquafarm_msgs.msg import (Cell, CommandResult, DeviceState, DisasterState, FarmSpec, FarmState,
                                Outcome, PortInfo, RewardTerms, RockInfo, ShipState)
@@ -39,6 +43,26 @@ class KeyboardTest(unittest.TestCase):
     def test_a_refusal_is_shown_with_its_code(self):
         result = CommandResult(code=Outcome.EPISODE_OVER, message="reset first")
         self.assertEqual("episode over: reset first", keyboard.describe(result))
+
+    def test_only_decimal_digits_choose_a_ship(self):
+        node = keyboard.Keyboard.__new__(keyboard.Keyboard)
+        node._spec, node._ship = FarmSpec(agents=2), 0
+        with contextlib.redirect_stdout(io.StringIO()) as shown:
+            for key in ("²", "٣", "1"):
+                self.assertTrue(node.act(key))
+        self.assertEqual([*(f"no such key: '{key}'; ? lists the keys" for key in "²٣"),
+                          "driving ship 1"], shown.getvalue().splitlines())
+
+    def test_a_service_without_a_response_is_shown_without_an_outcome(self):
+        node = keyboard.Keyboard.__new__(keyboard.Keyboard)
+        node._spec, node._state, node._ship = FarmSpec(agents=1), FarmState(), 0
+        error = rospy.ServiceException("ship_0/move did not respond within 15 s")
+        with mock.patch.object(keyboard, "call", side_effect=error), \
+                mock.patch.object(rospy, "is_shutdown", return_value=False), \
+                contextlib.redirect_stdout(io.StringIO()) as shown:
+            self.assertTrue(node.act("k"))
+        self.assertEqual("N        no result: ship_0/move did not respond within 15 s\n",
+                         shown.getvalue())
 
     def test_the_map_has_north_at_the_top(self):
         spec = FarmSpec(width=3, height=2, islands=[Cell(0, 0)], ports=[PortInfo(0, Cell(1, 0))],

@@ -12,6 +12,7 @@ import tempfile
 import threading
 import unittest
 import xml.etree.ElementTree as ElementTree
+from unittest import mock
 
 import roslaunch.config
 import roslib.packages
@@ -19,7 +20,7 @@ import rospkg
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from ranch import program  # noqa: E402
+from ranch import load_script, program  # noqa: E402
 
 PACKAGE = "aquafarm_bringup"
 LAUNCH = pathlib.Path(rospkg.RosPack().get_path(PACKAGE)) / "launch"
@@ -133,6 +134,18 @@ class LaunchFilesTest(unittest.TestCase):
             done = subprocess.run([check, LAUNCH / "train.launch", *words], capture_output=True,
                                   text=True, timeout=LIMIT_S, check=False)
             self.assertEqual(code, done.returncode, done.stderr)
+
+    def test_the_port_of_roslaunch_is_found_in_each_of_its_forms(self):
+        check = load_script("check_arguments")
+        with mock.patch.dict("os.environ", ROS_MASTER_URI="http://host:7"):
+            for words, expected in (("-p 11312 x.launch", "http://127.0.0.1:11312"),
+                                    ("-p11312 x.launch", "http://127.0.0.1:11312"),
+                                    ("--port 11312 x.launch", "http://127.0.0.1:11312"),
+                                    ("x.launch --port=11312", "http://127.0.0.1:11312"),
+                                    ("-p 1 x.launch -p2", "http://127.0.0.1:2"),
+                                    ("x.launch port:=3 -pid", "http://host:7")):
+                self.assertEqual(expected, check.master_of_roslaunch(
+                    ["python3", "roslaunch", *words.split(), ""]), words)
 
     def test_every_ship_gets_a_node_of_its_own(self):
         nodes = load(LAUNCH / "agents.launch", ["scenario:=four_squads", "ships:=4"]).nodes

@@ -36,6 +36,31 @@ class PlanFiguresTest(unittest.TestCase):
         for one, other in zip(dates, dates[1:]):
             self.assertGreaterEqual(other["x"] - one["x"], figures.DATE_WIDTH)
 
+    def test_ticks_of_a_long_plan_are_days_apart(self):
+        for hours, step_h in ((40, 6), (150, 12), (400, 48), (1000, 96)):
+            _, clock = self.dates("2021-07-23T18:00:00Z")
+            ticks = figures._time_ticks(clock, 3600.0 * hours, lambda seconds: seconds / 3600.0)
+            gaps = {round(b["x"] - a["x"], 6) for a, b in zip(ticks, ticks[1:])}
+            self.assertEqual({step_h}, gaps)
+            self.assertLessEqual(len(ticks), 14)
+
+    def test_routes_without_a_path_have_no_legs(self):
+        plan = plan_sample.sample(members=100)
+        for route in plan["plan"]["routes"]:
+            route["path"] = []
+        self.assertEqual([[], []], [route["legs"] for route in chart.chart(plan)["routes"]])
+
+    def test_the_sampling_error_is_the_largest_of_the_chances_that_are_shown(self):
+        plan = plan_sample.sample(members=100)
+        planned = [device for device in plan["devices"] if device["order"]]
+        for home, points in ((0.5, 10), (0.9, 6)):  # the other devices have 0.04: 4 points
+            for device in planned:
+                device["odds"]["home"] = 0.04
+            planned[-1]["odds"]["home"] = home
+            self.assertIn(f"sampling error at most {points} points", words.answers(plan)[3][2])
+        plan["devices"], plan["what_if"] = planned, [{"all_home": 0.5}]
+        self.assertIn("sampling error at most 10 points", words._sure(plan)[2])
+
     def test_a_row_of_orders_ends_with_the_time_in_port(self):
         plan = plan_sample.sample(members=100)
         clock = document.Clock(plan["clock"])
@@ -67,7 +92,8 @@ class PlanFiguresTest(unittest.TestCase):
         ring_labels = [label for label in region["labels"] if label.name == "ring"]
         self.assertEqual(len(plan["rings"]), len(ring_labels), "rings of one time")
         nearest = document.Clock(plan["clock"]).day_time(plan_sample.stamp(30))
-        self.assertIn(f"Rings at {nearest}", region["caption"])
+        self.assertEqual(f"Rings at {nearest}, at the later position with known wind radii that is "
+                         "nearest to the ranch.", region["caption"])
         fixes = [label for label in region["labels"] if label.name in ("recorded", "forecast")]
         self.assertLessEqual(2, len(fixes))
         self.assertLessEqual(len(fixes), figures.REGION_LABELS)

@@ -1,11 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The report of a run and of a benchmark: required contents and error messages."""
-import base64
 import contextlib
 import csv
 import html
-import html.parser
 import io
 import json
 import os
@@ -27,6 +25,7 @@ import rostest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from aquafarm_report import curves, intervals, outcomes, references, report, videos  # noqa: E402
 from aquafarm_report.blocks import page as make_page, tiles  # noqa: E402
+from page_reader import Page  # noqa: E402
 from ranch import Ranch, load_script  # noqa: E402
 
 SCENARIO = """
@@ -63,44 +62,6 @@ def run(package, name, *arguments, **options):
     done = subprocess.run([program(package, name), *map(str, arguments)], timeout=120, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False, **options)
     return done.returncode, done.stdout
-
-
-class Page(html.parser.HTMLParser):
-    """Reads the elements, texts and addresses of a page. Fails if its tags do not match."""
-
-    def __init__(self, path):
-        super().__init__()
-        self.text = pathlib.Path(path).read_text()
-        self.open, self.names, self.addresses, self.words, self.meta = [], [], [], "", {}
-        self.feed(self.text)
-        assert not self.open, f"left open: {self.open}"
-
-    def handle_starttag(self, tag, attrs):
-        attributes = dict(attrs)
-        self.names.append(tag)
-        self.addresses += [attributes[key] for key in ("src", "href", "xlink:href")
-                           if key in attributes]
-        if tag == "meta" and "name" in attributes:
-            self.meta[attributes["name"]] = attributes["content"]
-        if tag not in ("meta", "img"):
-            self.open.append(tag)
-
-    def handle_startendtag(self, tag, attrs):
-        self.handle_starttag(tag, attrs)
-        if tag not in ("meta", "img"):
-            self.open.pop()
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag, tag
-
-    def handle_data(self, data):
-        self.words += data
-
-    def embedded(self, kind):
-        """Returns the embedded files of a kind, such as video/mp4."""
-        head = f"data:{kind};base64,"
-        return [base64.b64decode(one[len(head):]) for one in self.addresses
-                if one.startswith(head)]
 
 
 class ReportTest(unittest.TestCase):
@@ -404,6 +365,19 @@ class ReportTest(unittest.TestCase):
             self.assertIn(row["label"], head)
         self.assertNotIn("average rewards", page.words, "captions are words, not file names")
         self.assertEqual([""], self.too_wide(page.text))
+        self.assertIn("The best learner: q_learning, seed 1", page.words)
+        shutil.rmtree(output / "runs" / "random", ignore_errors=True)
+        (output / "runs" / "q_learning").rename(output / "runs" / "random")
+        report.make([output], self.folder / "b.html", 10)
+        self.assertIn("The best contestant with a run folder: random, seed 1",
+                      Page(self.folder / "b.html").words)
+
+    def test_a_comparison_needs_no_metrics(self):
+        other = self.folder / "without_metrics"
+        shutil.copytree(self.trained, other)
+        (other / "metrics.csv").unlink()
+        page = Page(report.make([self.trained, other], self.folder / "c.html", 10))
+        self.assertIn("Greedy play, 95 % intervals", page.words)
 
     def test_with_money_it_shows_losses_next_to_the_references(self):
         self.assertNotIn("Losses", self.page.words, "the scenario of the other tests has no money")

@@ -154,7 +154,7 @@ def _route(plan, frame, route):
     clock = Clock(plan["clock"])
     ends = [clock.seconds(order["time"]) for order in route["orders"]]
     last = max(route["path"][-1][2], 1) if route["path"] else 1
-    first = min(one["path"][0][2] for one in plan["plan"]["routes"] if one["path"])
+    first = min((one["path"][0][2] for one in plan["plan"]["routes"] if one["path"]), default=0)
     shift = (0.07 + 0.06 * route["ship"]) * frame.scale
     legs = []
     for begin, end in zip(ends, ends[1:]):

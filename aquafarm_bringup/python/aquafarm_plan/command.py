@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 from aquafarm_bringup.files import open_atomically
+from aquafarm_bringup.programs import find_program
 
 from . import geojson, page
 from .document import PlanError, load
@@ -106,15 +107,10 @@ def program():
     """Returns the path of aquafarm_plan: AQUAFARM_PLAN, or the program of the workspace."""
     if os.environ.get("AQUAFARM_PLAN"):
         return os.environ["AQUAFARM_PLAN"]
-    import roslib.packages  # imported here, because a page of an existing plan file needs no ROS
-    import rospkg
-    try:
-        found = roslib.packages.find_node("aquafarm_agents", "aquafarm_plan")
-    except rospkg.ResourceNotFound:  # the package is not in the environment
-        found = None
+    found = find_program("aquafarm_agents", "aquafarm_plan")
     if not found:
         raise PlanError("aquafarm_agents has no aquafarm_plan; build the workspace first")
-    return found[0]
+    return found
 
 
 def run(command):

@@ -131,7 +131,8 @@ def _region_rings(plan, points, middle, px, px_per_km, clock):
         "xy": px(*nearest["at"]), "r": radius * px_per_km, "ring": i,
         "time": clock.day_time(nearest["time"])
     } for i, radius in enumerate(nearest["radii_km"]) if radius]
-    return rings, f"Rings at {clock.day_time(nearest['time'])}, the fix nearest to the ranch."
+    return rings, (f"Rings at {clock.day_time(nearest['time'])}, at the later position with known "
+                   "wind radii that is nearest to the ranch.")
 
 
 def _cone(errors, px, px_per_km):
@@ -262,14 +263,15 @@ def _row(plan, route, clock, x_of, y):
 
 
 def _time_ticks(clock, end, x_of):
-    """Returns the ticks of the time axis, at round hours of local time."""
+    """Returns the ticks of the time axis, at round hours of local time: at most about 13 ticks, at
+    midnight if they are a day or more apart."""
     step = next((h for h in (1, 2, 3, 6, 12, 24, 48) if end / 3600 / h <= 13), 96)
     local = clock.local(clock.at(0)).replace(minute=0, second=0)
     ticks = []
     for hour in range(0, int(end // 3600) + 2):
         moment = local + datetime.timedelta(hours=hour)
         seconds = (moment - clock.start).total_seconds()
-        if 0 <= seconds <= end and moment.hour % min(step, 24) == 0:
+        if 0 <= seconds <= end and (24 * moment.toordinal() + moment.hour) % step == 0:
             utc = moment.astimezone(datetime.timezone.utc)
             ticks.append({"x": x_of(seconds), "time": f"{moment:%H:%M}", "utc": f"{utc:%H:%M}"})
     return ticks

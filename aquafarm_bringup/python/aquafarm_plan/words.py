@@ -241,11 +241,12 @@ def _sure(plan):
         answer = (
             f"Each fetched device comes home in {percent(worst['odds']['home'])} ({worst['name']}) to "
             f"{percent(best['odds']['home'])} ({best['name']}) of the futures.")
-    points = f"{max(100 * sampling_error(worst['odds']['home'], members), 1):.0f}"
     base = plan["what_if"][0]["all_home"] if plan["what_if"] else None
-    each = ""
+    each, shares = "", [one["odds"]["home"] for one in planned]
     if base is not None and len(planned) == len(devices) > 1:
         each, answer = answer + " ", f"All {len(devices)} come home in {percent(base)} of the futures."
+        shares.append(base)
+    points = f"{max(1, *(100 * sampling_error(share, members) for share in shares)):.0f}"
     return (
         "How sure is it?", answer,
         f"{each}{members:,} possible storms, sampling error at most {points} "

@@ -16,7 +16,10 @@ EPISODES = 1000  # default number of evaluation episodes, as in aquafarm_evaluat
 
 
 def read_metrics(path):
-    """Returns columns of metrics.csv as {name: array}; empty if the file has no episode."""
+    """Returns columns of metrics.csv as {name: array}; empty if there is no file or the file has no
+    episode."""
+    if not path.is_file():
+        return {}
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
     return {name: np.array([float(row[name] or "nan") for row in rows])
@@ -77,7 +80,7 @@ def show_episodes(run, folder, episodes):
 def report_run(run, folder, episodes):
     """Returns the page of a run folder. folder: folder for temporary files"""
     settings = json.loads((run / "run.json").read_text(encoding="utf-8"))
-    columns = read_metrics(run / "metrics.csv") if (run / "metrics.csv").is_file() else {}
+    columns = read_metrics(run / "metrics.csv")
     summary, rows, sections = show_episodes(run, folder, episodes)
     facts = (f"<p>Trained for {len(columns.get('return', [])):,} episodes with seed "
              f"{settings['seed']}, version {blocks.escape(settings['version'])}.</p>")
@@ -150,7 +153,8 @@ def report_benchmark(benchmark, folder, episodes):
     shown = []
     if run is not None:
         name = run.parent.name
-        shown = [blocks.section(f"The best learner: {name}, seed 1")]
+        kind = "learner" if name == best["name"] else "contestant with a run folder"
+        shown = [blocks.section(f"The best {kind}: {name}, seed 1")]
         shown += show_episodes(run, folder, episodes)[-1]
     seeds = sorted({run["seed"] for of_one in results["runs"].values() for run in of_one})
     return blocks.page(

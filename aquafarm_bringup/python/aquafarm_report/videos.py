@@ -5,9 +5,9 @@ import json
 import pathlib
 import subprocess
 
-import roslib.packages
-import rospkg
 import yaml
+
+from aquafarm_bringup.programs import find_program
 
 LIMIT_S = 300  # default max duration of a program [s]
 FRAMES = 240  # approximate max number of frames of a video
@@ -21,13 +21,10 @@ class ReportError(Exception):
 
 def program(package, name):
     """Returns the path of a program of aquafarm. Raises ReportError if it is not built."""
-    try:
-        found = roslib.packages.find_node(package, name)
-    except rospkg.ResourceNotFound:
-        found = None
+    found = find_program(package, name)
     if not found:
         raise ReportError(f"{package} has no {name}; build the workspace first")
-    return found[0]
+    return found
 
 
 def call(package, name, *arguments, limit_s=LIMIT_S):

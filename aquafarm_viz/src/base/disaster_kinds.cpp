@@ -34,7 +34,8 @@ float Waves(int x, int y, int period) {
 }
 
 float StaggeredDots(int x, int y, int period) {
-  const double shifted = x + (y / period % 2 == 0 ? 0.0 : 0.5 * period);
+  const int row = (2 * y + period) / (2 * period);  // of the nearest dots
+  const double shifted = x + (row % 2 == 0 ? 0.0 : 0.5 * period);
   return static_cast<float>(
       std::max(0.0, std::hypot(ToLine(shifted, period), ToLine(y, period)) - 0.8));
 }

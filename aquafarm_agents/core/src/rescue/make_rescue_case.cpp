@@ -80,9 +80,11 @@ void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
       "with and without a device in tow; one cell per step of the ranch unless given");
   add("Time for a pickup or a drop-off", Short(rescue.problem.handling_s / 60.0, 0) + " min",
       "assumed", "one step of the ranch");
+  const std::int32_t offset_min = std::abs(rescue.utc_offset_min);
+  const std::string minutes = ":" + std::to_string(100 + offset_min % 60).substr(1);
   add("Local time",
-      "UTC" + std::string(rescue.utc_offset_min < 0 ? "-" : "+") +
-          Short(std::abs(rescue.utc_offset_min) / 60.0, 1) + " h",
+      (rescue.utc_offset_min < 0 ? "UTC-" : "UTC+") + std::to_string(offset_min / 60) +
+          (minutes == ":00" ? "" : minutes),
       request.utc_offset_h ? "given" : "assumed", "from the longitude unless given");
 }
 

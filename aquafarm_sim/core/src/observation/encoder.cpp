@@ -60,6 +60,7 @@ Encoder::Encoder(const Scenario& scenario)
 }
 
 std::uint32_t Encoder::Index(const Farm& farm, std::int32_t ship) const {
+  AQUAFARM_CHECK_NE(state_count_, 0U);  // else the code of the devices may exceed its type
   std::int32_t code = 0;
   for (const Device& device : farm.devices()) {
     if (!device.self_propelled) code = code * 3 + Standing(device.status, device.carrier == ship);
@@ -68,6 +69,7 @@ std::uint32_t Encoder::Index(const Farm& farm, std::int32_t ship) const {
 }
 
 std::uint32_t Encoder::Index(const View& view) const {
+  AQUAFARM_CHECK_NE(state_count_, 0U);
   std::int32_t code = 0;
   for (const KnownDevice& device : view.devices) {
     if (!device.self_propelled) code = code * 3 + Standing(device.status, device.aboard_self);
@@ -76,7 +78,6 @@ std::uint32_t Encoder::Index(const View& view) const {
 }
 
 std::uint32_t Encoder::IndexOf(std::int32_t code, Cell cell) const {
-  AQUAFARM_CHECK_NE(state_count_, 0U);
   const std::int32_t rank = status_rank_[static_cast<std::size_t>(code)];
   return static_cast<std::uint32_t>(rank * scenario_.CellCount() +
                                     LinearIndex(cell, scenario_.width));

@@ -76,8 +76,8 @@ def measure(get_state, rounds, round_s):
     end = time.monotonic() + LIMIT_S + rounds * round_s
     while len(rates) < rounds:
         if time.monotonic() > end:
-            raise SystemExit(f"bench_agents: {len(rates)} of {rounds} rounds stayed within an episode; "
-                             "shorten --round-s or give fewer --rounds")
+            raise SystemExit(f"bench_agents: {len(rates)} of {rounds} rounds stayed within an "
+                             "episode; shorten --round-s or give fewer --rounds")
         before, begin = get_state().state, time.monotonic()
         time.sleep(round_s)
         after, elapsed = get_state().state, time.monotonic() - begin

@@ -23,7 +23,7 @@ NM_KM = 1.852
 KT_MPS = 0.514444
 CLASSES = ((0, 48), (48, 64), (64, 200))  # classes of storms by max wind [kt]
 # Medians of (former estimate / recorded radius) over the bulletin rings (docs/data.md): for 34 kt
-# in storms below 48 kt; for 34, 50 and 64 kt in all storms.
+# in storms below 48 kt; for 50 and 64 kt in all storms.
 FORMER_34_TS, FORMER_50, FORMER_64 = 0.47, 1.27, 1.79
 
 

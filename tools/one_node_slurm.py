@@ -4,8 +4,8 @@
 and slurm-client.
 
 Usage, as root: one_node_slurm.py COMMAND [ARGUMENT…]
-The environment variable SLURM_CONF is set for the command, so that its sbatch, srun and squeue use the cluster. The cluster ends
-when the command ends. All its files are in a temporary folder; a Slurm of this host is not changed.
+The environment variable SLURM_CONF is set for the command, so that its sbatch, srun and squeue use
+the cluster. The cluster ends when the command ends. All its files are in a temporary folder; a Slurm of this host is not changed.
 """
 import os
 import pathlib

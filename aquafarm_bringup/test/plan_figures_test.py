@@ -92,7 +92,7 @@ class PlanFiguresTest(unittest.TestCase):
         ring_labels = [label for label in region["labels"] if label.name == "ring"]
         self.assertEqual(len(plan["rings"]), len(ring_labels), "rings of one time")
         nearest = document.Clock(plan["clock"]).day_time(plan_sample.stamp(30))
-        self.assertEqual(f"Rings at {nearest}, at the later position with known wind radii that is "
+        self.assertEqual(f"Rings at {nearest}, at the future position with known wind radii that is "
                          "nearest to the ranch.", region["caption"])
         fixes = [label for label in region["labels"] if label.name in ("recorded", "forecast")]
         self.assertLessEqual(2, len(fixes))

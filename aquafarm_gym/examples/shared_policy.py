@@ -23,10 +23,13 @@ def play(model, env, episode):
     """Plays an evaluation episode of a PettingZoo environment greedily; returns its summary."""
     env.reset()
     env.farms.reset(EVALUATION_SEED, episode)  # env.reset accepts only seeds of trainings
+    every = len(env.possible_agents)
     while env.agents:
         agents = env.agents
-        actions, _ = model.predict(env.state().reshape(len(agents), -1), deterministic=True,
-                                   action_masks=action_mask(env.farms.buffers["legal"][0]))
+        rows = [env.possible_agents.index(agent) for agent in agents]
+        seen = env.state().reshape(every, -1)[rows]
+        masks = action_mask(env.farms.buffers["legal"][0])[rows]
+        actions, _ = model.predict(seen, deterministic=True, action_masks=masks)
         _, _, _, _, infos = env.step(dict(zip(agents, actions)))
     return infos[agents[0]]["summary"]
 

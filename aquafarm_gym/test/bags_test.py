@@ -97,7 +97,8 @@ class BagsTest(unittest.TestCase):
 
         def taken(running, state_hash, episode=3):
             state = types.SimpleNamespace(step=0, seed=5, episode=episode, hash=state_hash,
-                                          reason=0, ships=[types.SimpleNamespace(action=10, reward=0.0)])
+                                          reason=0,
+                                          ships=[types.SimpleNamespace(action=10, reward=0.0)])
             return list(bags._take(running, "/a", spec, state, "x.bag"))
 
         running = {}

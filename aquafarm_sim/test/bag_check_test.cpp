@@ -85,6 +85,34 @@ TEST_F(EpisodeBag, EverySummaryBelongsToItsEpisodeAndEveryEndHasOne) {
             }));
 }
 
+TEST_F(EpisodeBag, AnAbortedRunOfTheSameEpisodeHasNoSummary) {
+  const std::string whole = OneBag();
+  for (const std::uint64_t last : {std::uint64_t{5}, std::uint64_t{39}}) {
+    const std::string path = folder_ + "/again.bag";
+    rosbag::Bag from(whole);
+    rosbag::Bag to(path, rosbag::bagmode::Write);
+    for (const bool is_aborted : {true, false}) {
+      for (const auto& message : rosbag::View(from)) {
+        const ros::Time time = message.getTime() + ros::Duration(is_aborted ? 0.0 : 1e5);
+        const auto state = message.instantiate<FarmState>();
+        if (is_aborted && (message.instantiate<EpisodeSummary>() != nullptr ||
+                           (state != nullptr && state->step > last))) {
+          continue;
+        }
+        if (state != nullptr || message.instantiate<FarmSpec>() != nullptr || !is_aborted) {
+          to.write(message.getTopic(), time, message);
+        }
+      }
+    }
+    to.close();
+    const BagCheck check = CheckBag(path, "");
+    EXPECT_EQ("", check.difference) << last;
+    EXPECT_EQ(2, check.episodes);
+    EXPECT_EQ(1, check.unfinished);
+    fs::remove(path);
+  }
+}
+
 TEST(OldBag, OfVersion010IsVerifiedInSpiteOfItsOtherComments) {
   const BagCheck check = CheckBag(AQUAFARM_SIM_TEST_DATA "/version_0_1_0.bag", "");
   EXPECT_EQ("", check.difference);

@@ -282,6 +282,38 @@ TEST(FarmServer, AStepWhoseNotificationFailsIsKeptForAllShips) {
   ranch->SetListener(nullptr);
 }
 
+TEST(FarmServer, AStepThatFailsReachesTheWaitingShipsAndTheListenerWithItsReason) {
+  struct Full final : FarmRecorder {
+    void OnStart(const aquafarm::Farm&, std::int32_t, const MessageContext&) override {}
+    void OnStep(const aquafarm::Farm&, std::int32_t, const std::uint8_t*) override {
+      throw std::runtime_error("no memory");
+    }
+    void OnIntervention(const aquafarm::Farm&, std::int32_t) override {}
+  } full;
+  struct Counter final : FarmListener {
+    void OnChange(const ServerView&) override { ++changes; }
+    void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary&) override {}
+    int changes{};
+  } counter;
+  const auto ranch = MakeRanch(TwoShips());
+  ranch->SetRecorder(&full);
+  ranch->SetListener(&counter);
+  const int before = counter.changes;
+  auto waiting = std::async(std::launch::async, [&] {
+    return ranch->Command({0, kNorth, 0, 0, 1});
+  });
+  std::this_thread::sleep_for(milliseconds(50));
+  const CommandResult last = ranch->Command({1, kHold, 0, 0, 1});
+  EXPECT_EQ(Outcome::INTERNAL_ERROR, last.code);
+  EXPECT_EQ("no memory", last.message);
+  const CommandResult first = waiting.get();
+  EXPECT_EQ(Outcome::STALE, first.code);
+  EXPECT_EQ("the step failed: no memory", first.message);
+  EXPECT_GT(counter.changes, before);
+  ranch->SetRecorder(nullptr);
+  ranch->SetListener(nullptr);
+}
+
 TEST(FarmServer, AResetReleasesWaitingCommands) {
   const auto ranch = MakeRanch(TwoShips());
   auto waiting = std::async(std::launch::async, [&] {

@@ -220,12 +220,15 @@ TEST_F(TwoShips, AWaitEndsWhenDroppedAtItsDeadlineAndAtTheEnd) {
   ending = true;
   EXPECT_EQ(CommandBarrier::WaitEnd::kTimedOut,
             barrier.Wait(lock, call, steady_clock::now() + kLong, ending));
-  barrier.Drop();
+  barrier.Drop("why");
   CommandBarrier::Call newer;
   barrier.Add({0, 2}, &newer);
   EXPECT_EQ(CommandBarrier::WaitEnd::kDropped,
             barrier.Wait(lock, call, steady_clock::now() + kLong, ending))
       << "also if the ship has a newer command";
+  EXPECT_EQ("why", barrier.drop_reason());
+  barrier.Withdraw(call);
+  EXPECT_TRUE(barrier.HasCommand(0)) << "the newer command";
 }
 
 TEST_F(TwoShips, AWithdrawnCommandIsNotCarriedOut) {

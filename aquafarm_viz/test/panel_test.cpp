@@ -433,6 +433,8 @@ TEST(CurveWidget, IsLinearAboveZeroAndLogarithmicBelow) {
     EXPECT_FALSE(ReturnScale(one).is_bent()) << "returns of one sign";
     EXPECT_LT(one.low, one.high);
   }
+  const CurveRange zeros = RangeOfReturns({{0.0, 0.0, 0.0}, {9.0, 0.0, 0.0}});
+  EXPECT_LT(zeros.low, zeros.high);
 }
 
 TEST(RanchWidget, ShowsTheSymbolOfEachDeviceNextToItsKind) {

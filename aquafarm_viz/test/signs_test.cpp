@@ -117,6 +117,21 @@ TEST(RiskSample, DiffersByKindAndRiskAndStaysInItsBox) {
   EXPECT_EQ(cv::norm(small - cv::Scalar::all(7)), 0.0);
 }
 
+TEST(RiskSample, HasWholeDotsForRedTides) {
+  constexpr int kPeriod = 12;
+  for (const cv::Point dot :
+       {cv::Point(kPeriod, 2 * kPeriod), {kPeriod / 2, kPeriod}, {3 * kPeriod / 2, 3 * kPeriod}}) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        EXPECT_LT(DistanceToPattern(aquafarm_msgs::DisasterState::RED_TIDE, dot.x + dx, dot.y + dy,
+                                    kPeriod),
+                  0.7F)
+            << dot << dx << dy;
+      }
+    }
+  }
+}
+
 TEST(Layout, HasAPanelOfAQuarterOfAWidePicture) {
   EXPECT_GE(MakeLayout(20, 14, {960, 640}).panel.width, 250);
   EXPECT_LT(MakeLayout(20, 14, {640, 640}).panel.width, 250) << "less is left next to a small map";

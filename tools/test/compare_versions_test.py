@@ -21,8 +21,8 @@ def compare(*words):
 
 
 def test_a_higher_rate_and_a_lower_cost_are_both_above_1(tmp_path):
-    old = workspace(tmp_path / "old", "a table", "rate 100 steps/s", "reset 3 ms", "size 8 bytes/farm",
-                    "sent 5 MB/s", "cost_per_ship 2 ratio", "share 2 ratio", "gone 1 x")
+    old = workspace(tmp_path / "old", "a table", "rate 100 steps/s", "reset 3 ms",
+                    "size 8 bytes/farm", "sent 5 MB/s", "cost_per_ship 2 ratio", "share 2 ratio", "gone 1 x")
     new = workspace(tmp_path / "new", "rate 150 steps/s", "reset 2 ms", "size 4 bytes/farm",
                     "sent 10 MB/s", "cost_per_ship 1 ratio", "share 1 ratio")
     done = compare(old, new, "--rounds", "2")
@@ -33,7 +33,8 @@ def test_a_higher_rate_and_a_lower_cost_are_both_above_1(tmp_path):
                      "size": "2.000 (2.000 to 2.000), n 2, bytes/farm",
                      "sent": "2.000 (2.000 to 2.000), n 2, MB/s",
                      "cost_per_ship": "2.000 (2.000 to 2.000), n 2, ratio",
-                     "share": "0.500 (0.500 to 0.500), n 2, ratio", "gone": "printed by only one version"}
+                     "share": "0.500 (0.500 to 0.500), n 2, ratio",
+                     "gone": "printed by only one version"}
 
 
 def test_a_workspace_that_is_not_built_is_named(tmp_path):

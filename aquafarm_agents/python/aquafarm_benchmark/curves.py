@@ -13,8 +13,8 @@ def columns_of_runs(of_one, column):
 
 
 def moving_means(values):
-    """Returns (episodes, means). means: moving means over 50 episodes; episodes: the last episode of
-    each mean, counted from 1."""
+    """Returns (episodes, means). means: moving means over 50 episodes; episodes: the last episode
+    of each mean, counted from 1."""
     window = min(measures.WINDOW, len(values))
     return np.arange(window, len(values) + 1), measures.moving_mean(values, window)
 

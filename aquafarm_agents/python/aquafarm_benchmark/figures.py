@@ -284,7 +284,8 @@ def draw_mean_score(path, contestants, runs, references):
     panels = []
     for letter, algorithm in (("a", "lstm_dqn"), ("b", "sarsa")):
         rows = [one for one in contestants if one.algorithm_name == algorithm]
-        panels += [(letter, [one]) for one in sorted(rows, key=lambda one: one.name != algorithm)[:1]]
+        rows.sort(key=lambda one: one.name != algorithm)
+        panels += [(letter, [one]) for one in rows[:1]]
     figure = plt.figure(figsize=(9, 8.4 if panels else 4.9), layout="constrained")
     places = [[letter for letter, _ in panels], ["c"] * len(panels)] if panels else [["c"]]
     all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)

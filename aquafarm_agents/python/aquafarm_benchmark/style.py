@@ -29,7 +29,8 @@ def save(figure, path, dpi=_DPI):
 
 def explain(figure, finding, note):
     """Writes the finding above a figure, in bold, and the note below it."""
-    figure.suptitle("\n".join(_wrap_evenly(finding)), fontsize=12.5, weight="bold", x=0.01, ha="left")
+    figure.suptitle("\n".join(_wrap_evenly(finding)), fontsize=12.5, weight="bold", x=0.01,
+                    ha="left")
     figure.supxlabel("\n".join(textwrap.wrap(note, 1.25 * _LETTERS)), x=0.01, ha="left", **_NOTE)
 
 

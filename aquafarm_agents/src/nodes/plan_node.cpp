@@ -71,7 +71,7 @@ void ReadRequest(aquafarm_sim::Params& reader, PlanParams& params) {
   int seed = static_cast<int>(request.seed);
   double speed_kn = 0.0;
   double depart_h = 0.0;
-  constexpr double kUnset = -15.0;
+  constexpr double kUnset = 99.0;
   double utc_offset_h = kUnset;
   reader.Int("ships", -1, 64, ships);
   reader.Int("capacity", 0, 100, capacity);
@@ -79,13 +79,17 @@ void ReadRequest(aquafarm_sim::Params& reader, PlanParams& params) {
   reader.Int("seed", 0, INT_MAX, seed);
   reader.Number("speed_kn", 0.0, 60.0, speed_kn);
   reader.Number("depart_h", 0.0, 96.0, depart_h);
-  reader.Number("utc_offset_h", kUnset, 14.0, utc_offset_h);
+  reader.Number("utc_offset_h", -14.0, kUnset, utc_offset_h);
+  if (utc_offset_h > 14.0 && utc_offset_h < kUnset) {
+    throw aquafarm::InputError("~utc_offset_h: got " + std::to_string(utc_offset_h) +
+                               ", expected [-14, 14], or 99 for the zone of the longitude");
+  }
   reader.Number("abort_wind_kt", 10.0, 100.0, request.abort_wind_kt);
   reader.Number("risk_averse", 0.0, 1.0, request.risk_averse);
   if (ships >= 0) request.ships = ships;
   if (capacity > 0) request.capacity = capacity;
   if (speed_kn > 0.0) request.speed_kn = speed_kn;
-  if (utc_offset_h >= -14.0) request.utc_offset_h = utc_offset_h;
+  if (utc_offset_h < kUnset) request.utc_offset_h = utc_offset_h;
   request.members = members;
   request.seed = static_cast<std::uint64_t>(seed);
   request.depart_s = 3600.0 * depart_h;

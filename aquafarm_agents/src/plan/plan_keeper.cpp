@@ -88,8 +88,8 @@ PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin) {
     // The core reports this case as a storm that reaches no device.
     messages.plan.result = has_others ? RescuePlan::NOTHING_SAVED : RescuePlan::PLAN;
     messages.plan.text = has_others ? "Ships have nothing left to fetch. The plan contains no "
-                                      "self-propelled devices: bring "
-                                      "those that are at sea to a port."
+                                      "self-propelled devices: bring those at sea to a "
+                                      "port."
                                     : "Every device is in port: there is nothing left to fetch.";
     auto& warnings = messages.plan.warnings;
     warnings.erase(std::remove_if(warnings.begin(), warnings.end(),

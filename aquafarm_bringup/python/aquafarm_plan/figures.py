@@ -125,13 +125,13 @@ def _region_rings(plan, points, middle, px, px_per_km, clock):
     positions with a wind radius above 0."""
     future = [p for p in points if parse_time(p["time"]) > clock.start and any(p["radii_km"])]
     if not future:
-        return [], "No rings: no later position has a known wind radius above 0."
+        return [], "No rings: no position after the start has a known wind radius above 0."
     nearest = min(future, key=lambda p: math.dist(p["at"], middle))
     rings = [{
         "xy": px(*nearest["at"]), "r": radius * px_per_km, "ring": i,
         "time": clock.day_time(nearest["time"])
     } for i, radius in enumerate(nearest["radii_km"]) if radius]
-    return rings, (f"Rings at {clock.day_time(nearest['time'])}, at the later position with known "
+    return rings, (f"Rings at {clock.day_time(nearest['time'])}, at the future position with known "
                    "wind radii that is nearest to the ranch.")
 
 

@@ -118,7 +118,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         super().reset(seed=one_seed)
         if seeds is not None:
             self._start_each(mask, seeds, int(options.get("episode", 0)))
-        elif mask is None and not (self._own_sequences and seed is None):
+        elif mask is None and not (self._own_sequences and seed is None and
+                                   ("episode" not in options or self._is_listed.any())):
             self._start_all(one_seed, options)
         elif seed is None and "episode" not in options:
             self._start_next(self._everywhere if mask is None else mask)
@@ -291,6 +292,9 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
+        # Environments that were pickled by older versions lack the seeds of the farms.
+        self.__dict__.setdefault("_seeds", [self._episodes.seed or 0] * self.num_envs)
+        self.__dict__.setdefault("_is_listed", np.zeros(self.num_envs, bool))
         self._attach()
 
     def __eq__(self, other: object) -> bool:

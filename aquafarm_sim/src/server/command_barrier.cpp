@@ -32,8 +32,8 @@ CommandBarrier::WaitEnd CommandBarrier::Wait(aquafarm::MutexLock& lock, const Ca
   Slot& slot = *slots_[Index(call.ship)];
   bool in_time = true;
   while (true) {
-    if (call.answer) return WaitEnd::kAnswered;     // even if the ship has newer commands
-    if (call.is_dropped) return WaitEnd::kDropped;  // even if the ship has newer commands
+    if (call.answer) return WaitEnd::kAnswered;  // even if the ship has newer commands
+    if (call.number <= slot.dropped) return WaitEnd::kDropped;  // even if the ship has newer ones
     if (slot.number != call.number) return WaitEnd::kSuperseded;
     if (ending || !in_time) return WaitEnd::kTimedOut;
     in_time = lock.WaitUntil(slot.changed, deadline);
@@ -42,14 +42,16 @@ CommandBarrier::WaitEnd CommandBarrier::Wait(aquafarm::MutexLock& lock, const Ca
 
 void CommandBarrier::Withdraw(const Call& call) {
   Slot& slot = *slots_[Index(call.ship)];
+  if (slot.number != call.number) return;
   slot.pending.reset();
   slot.call = nullptr;
 }
 
-void CommandBarrier::Drop() {
+void CommandBarrier::Drop(const std::string& reason) {
+  drop_reason_ = reason;
   for (const auto& slot : slots_) {
     if (!slot->pending) continue;
-    if (slot->call != nullptr) slot->call->is_dropped = true;
+    slot->dropped = slot->number;
     slot->pending.reset();
     slot->call = nullptr;
     slot->changed.notify_all();

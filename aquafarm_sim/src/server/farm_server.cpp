@@ -197,8 +197,9 @@ aquafarm_msgs::CommandResult FarmServer::RefuseAfter(CommandBarrier::WaitEnd end
   barrier_.Withdraw(call);
   if (ending_) return Refuse(call.ship, Outcome::SHUTTING_DOWN, "the sim node is shutting down");
   if (end == CommandBarrier::WaitEnd::kDropped) {
-    return Refuse(call.ship, Outcome::STALE,
-                  episodes == episode_count_ ? drop_reason_ : "a new episode has started");
+    return Refuse(
+        call.ship, Outcome::STALE,
+        episodes == episode_count_ ? barrier_.drop_reason() : "a new episode has started");
   }
   ++counters_.barrier_timeouts;
   return Refuse(call.ship, Outcome::TIMEOUT,
@@ -273,8 +274,7 @@ void FarmServer::StepPublishedFarm() {
 // Drops the waiting commands, whose calls then return STALE. The last answers are forgotten,
 // because step numbers may repeat.
 void FarmServer::DropCommands(const std::string& reason) {
-  drop_reason_ = reason;
-  barrier_.Drop();
+  barrier_.Drop(reason);
   barrier_.ForgetAnswers();
 }
 

@@ -73,7 +73,7 @@ const aquafarm_msgs::Step::Response& FarmServer::Step(const aquafarm_msgs::Step:
     aquafarm_msgs::Step::Response& answer = steps_.Begin();
     Answer(Outcome::OK, "", answer);
     batch_->Step(request.actions.data(), Prepare(request.observation_types, answer.result));
-    barrier_.Drop();
+    barrier_.Drop(kSteppedByAnother);
     Complete(request.actions.data(), answer.result);
     steps_.Complete(key);
     return answer;

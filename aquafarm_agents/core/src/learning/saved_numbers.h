@@ -5,7 +5,9 @@
 // One list of fields serves both directions: fields(visit) calls visit(name, number) for each
 // number. A field may also be a random stream, which is saved as the number of draws taken from it.
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <type_traits>
@@ -25,16 +27,24 @@ Checkpoint::Number SavedNumber(const Value& value) {
 }
 inline Checkpoint::Number SavedNumber(const RandomStream& stream) { return stream.position(); }
 
-// Converts a number. A double outside the range of an integer cannot be converted.
-// @throws InputError if the number does not fit
+// Converts a number.
+// @throws InputError if the number does not fit into the type
 template <typename Value, typename Number>
 Value Converted(Number number) {
   if constexpr (std::is_floating_point_v<Number> && std::is_integral_v<Value>) {
-    constexpr double kLargest = 9007199254740992.0;  // 2^53; up to it doubles contain all integers
-    if (!(number >= (std::is_signed_v<Value> ? -kLargest : 0.0) && number <= kLargest)) {
-      throw InputError("checkpoint: got " + std::to_string(number) + ", expected " +
-                       (std::is_signed_v<Value> ? "an integer" : "an integer from 0") +
-                       ": damaged, use another checkpoint");
+    // Doubles contain all integers up to 2^53.
+    const double high =
+        std::min(9007199254740992.0, static_cast<double>(std::numeric_limits<Value>::max()));
+    const double low = std::is_signed_v<Value> ? -high : 0.0;
+    if (!(number >= low && number <= high)) {
+      throw InputError("checkpoint: got " + std::to_string(number) + ", expected a number in [" +
+                       std::to_string(low) + ", " + std::to_string(high) +
+                       "]: damaged, use another checkpoint");
+    }
+  } else if constexpr (std::is_integral_v<Number> && std::is_integral_v<Value>) {
+    if (static_cast<Number>(static_cast<Value>(number)) != number) {
+      throw InputError("checkpoint: got " + std::to_string(number) +
+                       ", which is too large: damaged, use another checkpoint");
     }
   }
   return static_cast<Value>(number);

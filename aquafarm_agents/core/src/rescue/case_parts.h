@@ -29,6 +29,8 @@ double ExposureDamage(const RescueCase& rescue);
 void ReadFleet(const RescueRequest& request, RescueCase& rescue);
 /// Returns whether energy or ship-hours have a price.
 bool IsPriced(const RescueProblem& problem);
+/// Returns the name of a time zone: "UTC+8", "UTC-3:30".
+std::string ZoneName(std::int32_t offset_min);
 /// Formats a number with `digits` digits after the point.
 std::string Short(double value, int digits);
 

@@ -80,18 +80,21 @@ void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
       "with and without a device in tow; one cell per step of the ranch unless given");
   add("Time for a pickup or a drop-off", Short(rescue.problem.handling_s / 60.0, 0) + " min",
       "assumed", "one step of the ranch");
-  const std::int32_t offset_min = std::abs(rescue.utc_offset_min);
-  const std::string minutes = ":" + std::to_string(100 + offset_min % 60).substr(1);
-  add("Local time",
-      (rescue.utc_offset_min < 0 ? "UTC-" : "UTC+") + std::to_string(offset_min / 60) +
-          (minutes == ":00" ? "" : minutes),
-      request.utc_offset_h ? "given" : "assumed", "from the longitude unless given");
+  add("Local time", ZoneName(rescue.utc_offset_min), request.utc_offset_h ? "given" : "assumed",
+      "from the longitude unless given");
 }
 
 }  // namespace
 
 bool IsPriced(const RescueProblem& problem) {
   return problem.energy && (problem.energy->per_kwh > 0.0 || problem.energy->per_hour > 0.0);
+}
+
+std::string ZoneName(std::int32_t offset_min) {
+  const std::int32_t minutes = std::abs(offset_min);
+  const std::string rest = std::to_string(100 + minutes % 60).substr(1);  // two digits
+  return (offset_min < 0 ? "UTC-" : "UTC+") + std::to_string(minutes / 60) +
+         (minutes % 60 == 0 ? "" : ":" + rest);
 }
 
 std::string Short(double value, int digits) {

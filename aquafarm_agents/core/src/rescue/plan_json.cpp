@@ -101,17 +101,11 @@ class JsonReport {
   }
 
   Json Clock() const {
-    const std::int32_t minutes = std::abs(case_.utc_offset_min);
-    const std::string zone = std::string(case_.utc_offset_min < 0 ? "UTC-" : "UTC+") +
-                             std::to_string(minutes / 60) +
-                             (minutes % 60 == 0   ? ""
-                              : minutes % 60 < 10 ? ":0" + std::to_string(minutes % 60)
-                                                  : ":" + std::to_string(minutes % 60));
     return {{"start", Time(0.0)},
             {"end", Time(StepTime(ensemble_.steps() - 1))},
             {"step_s", ensemble_.options().step_s},
             {"utc_offset_min", case_.utc_offset_min},
-            {"zone", zone}};
+            {"zone", ZoneName(case_.utc_offset_min)}};
   }
 
   Json Ranch() const {

@@ -70,7 +70,7 @@ TEST(Schedule, RefusalsSayWhatIsAllowed) {
   EXPECT_CONTAINS(refuse("constant:1:0:1"), "kind is linear, exponential or harmonic");
   EXPECT_CONTAINS(refuse("linear:1:0:0"), "rate: fraction: got 0, expected (0, 1]");
   EXPECT_CONTAINS(refuse("exponential:1:0:1"), "above 0 for kind exponential");
-  EXPECT_CONTAINS(refuse("harmonic:0:1:1"), "above 0 when harmonic");
+  EXPECT_CONTAINS(refuse("harmonic:0:1:1"), "above 0 for kind harmonic");
 }
 
 TEST(OptionReader, UnknownKeysAreAnsweredWithThoseThereAre) {

@@ -230,6 +230,10 @@ TEST(Losses, ARescueLosesLessThanDoingNothing) {
   EXPECT_LT(fetched.losses->mean_loss, 0.9 * all.mean_loss);
   EXPECT_GT(fetched.losses->operating_cost, 0);
   EXPECT_CONTAINS(DescribeLosses(fetched), " CNY of ");
+  Evaluation one = fetched;  // as with one distinct start
+  one.losses->standard_error = one.losses->var.low = one.losses->cvar.low = std::nan("");
+  EXPECT_EQ(DescribeLosses(one).find("nan"), std::string::npos);
+  EXPECT_EQ(DescribeLosses(one).find('['), std::string::npos);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <sys/resource.h>
 
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
@@ -179,6 +180,10 @@ TEST(SavedNumbers, AreReadByNameOrInTheOrderOfOlderVersions) {
 
   checkpoint.SetNumbers("learnt", {{"due", 0.5}, {"steps", std::uint64_t{3}}});
   EXPECT_CONTAINS(MessageOf<InputError>(load), "section 'learnt': has no number 'loss'");
+  for (const double steps : {-1.0, 1e300, std::nan("")}) {
+    checkpoint.SetNumbers("learnt", {{"due", 0.5}, {"steps", steps}, {"loss", 0.5}});
+    EXPECT_CONTAINS(MessageOf<InputError>(load), "damaged, use another checkpoint");
+  }
   checkpoint.sections["learnt"] = "\xff";
   EXPECT_CONTAINS(MessageOf<InputError>(load), "section 'learnt': is damaged");
   checkpoint.sections["learnt"] = std::string(1'000'000, '\x81');  // lists in lists

@@ -100,6 +100,30 @@ TEST(SequenceBatch, NeverCrossesAnEpisode) {
   }
 }
 
+TEST(ReplaySampler, IsReadyOnlyWhileATransitionCanBeDrawn) {
+  Replay<float> replay({2, 1, 1, 1, 0});
+  DeepOptions options = Options(1);
+  options.batch_size = 1;
+  options.priority_exponent = 0.0;
+  ReplaySampler<float> sampler(replay, options, 1);
+  StepResults results;
+  results.rewards = results.features = {0};
+  results.legal = {kAllActions};
+  results.active = {1};
+  for (int step = 0; step < 6; ++step) {  // episodes of one action
+    const bool is_first = step % 2 == 0;
+    results.is_first = {is_first ? std::uint8_t{1} : std::uint8_t{0}};
+    results.end_reasons = {
+        static_cast<std::uint8_t>(is_first ? EndReason::kNone : EndReason::kAllRetrieved)};
+    replay.Add(results, results.features.data());
+    sampler.Add();
+    replay.SetActions({0});
+    bool begins = false;
+    for (std::size_t age = 0; age < replay.size(); ++age) begins |= replay.Begins(age, 0, 1);
+    EXPECT_EQ(sampler.IsReady(), begins) << step;
+  }
+}
+
 // Two agents; the first is done from the third time step on.
 TEST(ReplaySampler, DrawsMomentsOfWholeFarmsWhileAnybodyIsAtWork) {
   constexpr std::size_t kFarms = 2;

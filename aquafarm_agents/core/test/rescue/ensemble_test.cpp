@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "agents_fixture.h"
 #include "rescue/rescue_samples.h"
 
 namespace aquafarm::agents {
@@ -45,6 +46,15 @@ TEST(Ensemble, RadiiSpreadFromTheirLastReport) {
     const double expected = SizeSpreadAt(ForecastErrors{}, 0.35, 50.0 * static_cast<double>(i));
     EXPECT_NEAR(reported.spread()[i].size_log, expected, 0.05 * expected) << i;
   }
+}
+
+TEST(Ensemble, RefusesArraysThatDoNotFitIntoMemory) {
+  EnsembleOptions options = test::SmallEnsemble(60000);
+  options.steps = 4000;
+  const std::vector<Cell> sites(64, Cell{2, 3});
+  EXPECT_CONTAINS(
+      test::MessageOf<InputError>([&] { Ensemble(test::PassingStorm(), options, sites); }),
+      "members times steps times devices: got 15360000000, expected [0, 400000000]");
 }
 
 // Radii without a wind: an unknown spread would make all radii NaN, which never arrive.

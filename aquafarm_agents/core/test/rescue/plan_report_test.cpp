@@ -121,6 +121,14 @@ TEST_F(Report, TripsThatCostTooMuchAreNotCalledTooLate) {
   EXPECT_EQ(SeverityOf("nothing_can_be_saved"), "none");
 }
 
+TEST_F(Report, DevicesWithoutValueAreNotCalledTooLate) {
+  for (const int hours : {0, 24, 48}) Add(hours, 35.0);
+  for (RescueDevice& device : case_.problem.devices) device.value = 0.0;
+  const PlanReport report = Make();
+  EXPECT_EQ(report.result, PlanResult::kNothingSaved);
+  EXPECT_EQ(report.text, "No device has value left: nothing can be saved.");
+}
+
 TEST_F(Report, ShipsThatAreTooLateAreCalledTooLateWithPricesToo) {
   for (const int hours : {0, 24, 48}) Add(hours, 35.0);
   case_.problem.energy = RescueEnergy{1.0, 0.0, 1.0, 0.0, 1e9};

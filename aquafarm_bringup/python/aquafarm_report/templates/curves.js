@@ -6,7 +6,8 @@ const LINES = [[2, 3], [8, 4], [1, 0]];  // of references
 const DASHES = [null, [9, 4], [2, 3], [12, 4, 2, 4], [5, 5], [1, 6], [14, 6]];
 // Width for the marks of greedy play at the right edge [pixels]. All charts have the same episodes.
 const MARKS = Math.max(...CURVES.charts.map(chart => (chart.marks || []).length));
-const STEP = MARKS <= 4 ? 40 : 20;  // distance of two marks; up to four have their value next to them
+// Distance of two marks; up to four have their value below or above them.
+const STEP = MARKS <= 4 ? 40 : 20;
 const PAD = MARKS ? Math.max(56, 12 + STEP * MARKS) : 0;  // has space for "greedy"
 let moving = false;
 for (const chart of CURVES.charts) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 
 namespace aquafarm::internal {
 
@@ -58,7 +59,7 @@ void WriteFile(const std::string& path, std::string_view bytes) {
   std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
-  std::error_code error(file ? 0 : errno, std::generic_category());
+  std::error_code error(file ? 0 : (errno != 0 ? errno : EIO), std::generic_category());
   if (file) std::filesystem::rename(temporary, path, error);
   if (file && !error) return;
   std::error_code ignored;

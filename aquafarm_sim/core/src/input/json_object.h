@@ -34,8 +34,8 @@ nlohmann::json ParseJson(const std::string& text, ParseContext& place);
 bool IsBlank(const nlohmann::json& value);
 
 /// Returns the line of the value at a path such as "[0].points[3].lat". For an object or a list, it
-/// is the line of the opening bracket; for other values, the line on which the value ends. Without
-/// a value at the path, returns the line of the nearest existing parent.
+/// is the line of the opening bracket; for other values, the line on which the value ends. If the
+/// path does not exist, it is the line of the nearest existing parent.
 std::int32_t LineOfJson(const std::string& text, const std::string& path);
 
 /// A JSON object with its path. Each look-up accepts several spellings of a key and uses the first

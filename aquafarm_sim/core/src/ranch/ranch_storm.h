@@ -13,7 +13,7 @@ namespace aquafarm::internal {
 
 /// Finds the storm of `track` in another file. A single storm in the file matches if its name
 /// equals that of `track` or if one of these names is missing. In other cases the id selects
-/// the storm, or the name if no id matches.
+/// the storm unless it is kUnknownStormId, or the name if no id matches.
 /// @param option name of the option with the file, for messages
 /// @throws InputError if the file has no such storm, or if the period of the storm does not overlap
 ///   that of `track`

@@ -137,8 +137,7 @@ TEST(Coast, WarnsOfARingThatRunsAlongItself) {
   };
   const std::string along =
       "x:2: geometry.coordinates[0]: the ring overlaps itself; an area that the ring encloses an "
-      "odd "
-      "number of times is land";
+      "odd number of times is land";
   EXPECT_EQ(said("[[0,0],[2,0],[2,2],[3,3],[2,2],[0,2],[0,0]]"), along) << "out and back";
   EXPECT_EQ(said("[[0,0],[4,0],[4,1],[4,-1],[4,2],[0,2],[0,0]]"), along) << "upright";
   EXPECT_EQ(said("[[0,0],[3,0],[3,1],[2,1],[2,0],[1,0],[1,2],[0,2],[0,0]]"), along)

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The storm of a ranch: its track, its radii and the forecasts of its bulletins.
+#include "ranch/ranch_storm.h"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -177,6 +179,18 @@ TEST(Ranch, BorrowsRadiiAndHasItsOwnStart) {
   EXPECT_EQ(ranch.scenario.start_time, kMidnight + kHour_s);
   EXPECT_EQ(ranch.scenario.step_duration_s, 60.0);
   EXPECT_FLOAT_EQ(ranch.scenario.disasters[0].track[0].step, -60.0F);
+}
+
+TEST(SameStorm, IsNotFoundByTheIdOfTracksWithoutAnId) {
+  StormTrack bravo;
+  bravo.id = kUnknownStormId;
+  bravo.name = "BRAVO";
+  bravo.fixes.resize(1);
+  StormFile file;
+  file.tracks.push_back(bravo);
+  EXPECT_EQ(internal::SameStorm("radii", file, bravo).name, "BRAVO");
+  file.tracks[0].name = "ALPHA";
+  EXPECT_THROW(internal::SameStorm("radii", file, bravo), InputError);
 }
 
 TEST(Ranch, BorrowsRadiiOfNoOtherStorm) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,7 +30,6 @@ class CommandBarrier {
   struct Call {
     std::int32_t ship{};
     std::uint64_t number{};  ///< number of its command
-    bool is_dropped{};       ///< Drop was called before an answer
     std::optional<aquafarm_msgs::CommandResult> answer;
   };
   enum class WaitEnd { kAnswered, kSuperseded, kDropped, kTimedOut };
@@ -49,10 +49,14 @@ class CommandBarrier {
   /// @param lock lock of the owner's mutex
   WaitEnd Wait(aquafarm::MutexLock& lock, const Call& call, Clock::time_point deadline,
                const bool& ending);
-  /// Removes the command of a call whose Wait has returned kTimedOut or kDropped.
+  /// Removes the command of a call whose Wait has returned kTimedOut or kDropped. A newer command
+  /// of the ship stays.
   void Withdraw(const Call& call);
   /// Removes all commands. Their calls end with kDropped.
-  void Drop();
+  /// @param reason why, for the clients
+  void Drop(const std::string& reason);
+  /// Returns the reason of the last Drop.
+  const std::string& drop_reason() const { return drop_reason_; }
   /// Forgets the last answers of all ships. Must be called if step numbers may repeat.
   void ForgetAnswers();
   /// Wakes the waiting calls, which then check whether they have ended.
@@ -84,6 +88,7 @@ class CommandBarrier {
   struct Slot {
     std::optional<ShipCommand> pending;  // command for the next step
     std::uint64_t number{};              // number of the newest command
+    std::uint64_t dropped{};             // number of the newest command that Drop removed
     Call* call{};                        // call that waits for the answer; null: no call waits
     RequestLog<ShipCommand, aquafarm_msgs::CommandResult> log;
     std::condition_variable changed;
@@ -92,6 +97,7 @@ class CommandBarrier {
   static std::size_t Index(std::int32_t ship) { return static_cast<std::size_t>(ship); }
 
   std::vector<std::unique_ptr<Slot>> slots_;  // by ship
+  std::string drop_reason_;
 };
 
 }  // namespace aquafarm_sim

@@ -46,6 +46,8 @@ namespace aquafarm_sim {
 using aquafarm::kMaxFarms;
 inline constexpr double kMinRate_hz = 0.001;
 inline constexpr double kMaxRate_hz = 1000.0;
+/// Reason of a STALE answer to a client that waited for other ships.
+inline constexpr const char* kSteppedByAnother = "another client has stepped the farm";
 /// Max number of cells and routes of all farms together that Reset accepts if every episode has a
 /// new layout.
 inline constexpr std::int64_t kMaxDrawnCells = 64'000'000;
@@ -215,8 +217,7 @@ class FarmServer {
       AQUAFARM_REQUIRES(mutex_);
   void MarkMissingAbsent() AQUAFARM_REQUIRES(mutex_);
   void StepPublishedFarm() AQUAFARM_REQUIRES(mutex_);
-  void DropCommands(const std::string& reason = "another client has stepped the farm")
-      AQUAFARM_REQUIRES(mutex_);
+  void DropCommands(const std::string& reason = kSteppedByAnother) AQUAFARM_REQUIRES(mutex_);
   void Describe(std::int32_t ship, aquafarm_msgs::CommandResult& result) const
       AQUAFARM_REQUIRES(mutex_);
   aquafarm_msgs::CommandResult ResultOf(std::int32_t ship) const AQUAFARM_REQUIRES(mutex_);
@@ -261,7 +262,6 @@ class FarmServer {
   mutable aquafarm::Mutex mutex_;
   std::unique_ptr<aquafarm::FarmBatch> batch_ AQUAFARM_GUARDED_BY(mutex_);
   CommandBarrier barrier_ AQUAFARM_GUARDED_BY(mutex_);
-  std::string drop_reason_ AQUAFARM_GUARDED_BY(mutex_);  // why the last commands were dropped
   ClaimTable claims_ AQUAFARM_GUARDED_BY(mutex_);
   PaceClock clock_ AQUAFARM_GUARDED_BY(mutex_);
   StepLog steps_ AQUAFARM_GUARDED_BY(mutex_);

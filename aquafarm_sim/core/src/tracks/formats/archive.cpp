@@ -132,27 +132,27 @@ StormTrack ReadHeader(std::string_view line, std::int32_t& averaging_min, ParseC
   return track;
 }
 
-}  // namespace
-
-// Replaces what ends a line, because a storm's heading is one line.
-std::string OneLine(std::string text) {
+// Replaces characters that end a line, because the heading of a storm is one line.
+std::string WithoutLineEnds(std::string text) {
   const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
   std::replace_if(text.begin(), text.end(), ends_line, ' ');
   return text;
 }
 
-// Replaces blanks, because words of a heading are separated by blanks.
+// Replaces blanks, because they separate the words of a heading.
 std::string OneWord(std::string text) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
   std::replace_if(text.begin(), text.end(), is_blank, '_');
   return text;
 }
 
+}  // namespace
+
 StormTrack Archived(const StormTrack& track) {
   StormTrack archived;
   archived.id = OneWord(track.id);
-  archived.name = OneLine(track.name);
-  archived.agency = track.agency.empty() ? "unknown" : OneWord(track.agency);
+  archived.name = WithoutLineEnds(track.name);
+  archived.agency = track.agency.empty() ? "unknown" : WithoutLineEnds(track.agency);
   for (const StormFix& from : track.fixes) {
     StormFix fix;
     fix.time = from.time - ((from.time % 60) + 60) % 60;

@@ -52,8 +52,8 @@ def scenario_of(ships, folder):
 def train_network(scenario, folder):
     """Trains a DQN of the default size for 6,000 steps; returns its run folder.
 
-    More training would not change the speed of the network. A good policy, however, would end
-    episodes within a round, which `measure` then repeats."""
+    More training does not change the speed of the network. A good policy, however, ends episodes
+    within a round, which `measure` then repeats."""
     run = pathlib.Path(folder) / "dqn"
     subprocess.run([program("aquafarm_agents", "aquafarm_train"), scenario, "-a", "dqn", "-n",
                     "6000", "-o", "device=cpu", "--random", "0", "--evaluate", "0", "-d", run],
@@ -65,19 +65,21 @@ def measure(get_state, rounds, round_s):
     """Returns the joint steps per second of `rounds` rounds of `round_s` seconds each.
 
     First waits for step 100 of an episode. Repeats a round in which an episode ends. Ends this
-    program if the wait takes longer than LIMIT_S, or if all rounds together do."""
+    program if the wait takes longer than LIMIT_S, or if all rounds together take more than LIMIT_S
+    longer than `rounds` * `round_s`."""
     rates = []
     end = time.monotonic() + LIMIT_S
     while get_state().state.step < 100:
         if time.monotonic() > end:
             raise SystemExit(f"bench_agents: the agents did not reach step 100 within {LIMIT_S} s; "
-                             "see their output")
+                             "start sim_node and policy_node by hand to see their messages")
         time.sleep(0.1)
-    end = time.monotonic() + LIMIT_S + rounds * round_s
+    limit_s = LIMIT_S + rounds * round_s
+    end = time.monotonic() + limit_s
     while len(rates) < rounds:
         if time.monotonic() > end:
             raise SystemExit(f"bench_agents: {len(rates)} of {rounds} rounds stayed within an "
-                             "episode; shorten --round-s or give fewer --rounds")
+                             f"episode in {limit_s:g} s; shorten --round-s or give fewer --rounds")
         before, begin = get_state().state, time.monotonic()
         time.sleep(round_s)
         after, elapsed = get_state().state, time.monotonic() - begin
@@ -120,9 +122,12 @@ def measure_agents(name, policy, scenario, arguments):
 def main():
     """Measures the policy random, then a network."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--ships", type=int, default=8)
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--round-s", type=float, default=0.5)
+    parser.add_argument("--ships", type=int, default=8,
+                        help="number of ships, with one policy_node each (default: 8)")
+    parser.add_argument("--rounds", type=int, default=5,
+                        help="number of rounds of each policy (default: 5)")
+    parser.add_argument("--round-s", type=float, default=0.5,
+                        help="seconds of a round (default: 0.5)")
     arguments = parser.parse_args()
     children = []
     with tempfile.TemporaryDirectory(prefix="aquafarm_bench_") as folder:
@@ -133,7 +138,8 @@ def main():
             end = time.monotonic() + LIMIT_S
             while not rosgraph.is_master_online():
                 if time.monotonic() > end:
-                    raise SystemExit("bench_agents: no ROS master started; check rosmaster")
+                    raise SystemExit(f"bench_agents: no ROS master started within {LIMIT_S:g} s; "
+                                     "check rosmaster")
                 time.sleep(0.2)
             rospy.init_node("bench_agents", anonymous=True, disable_signals=True)
             scenario = scenario_of(arguments.ships, folder)

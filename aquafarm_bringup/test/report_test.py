@@ -209,8 +209,9 @@ class ReportTest(unittest.TestCase):
             return curves.gap_note("a", columns, references.Player("a", rows, len(rows)))
 
         self.assertEqual(
-            "a: 150.0 at the end of the training, −160.0 [−454.2, 134.2] in greedy play, which has "
-            "no random moves: 2 of 4 episodes end with devices at sea; train longer.",
+            "a: the mean return is 150.0 at the end of the training and −160.0 [−454.2, 134.2] in "
+            "greedy play, which has no random moves: 2 of 4 episodes end with devices at sea; "
+            "train longer.",
             note(-420.0, 100.0, -420.0, 100.0))
         self.assertIn("which has no random moves: its return is lower", note(99.0, 101.0))
         for returns in ((239.0, 241.0), (140.0, 160.0), (-160.0,)):  # better, equal, no interval

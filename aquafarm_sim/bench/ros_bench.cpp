@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures the cost of ROS: the rates of an empty service, of commands of one ship, and of joint
-// steps of 64 farms. The servers run in separate processes, and connections are persistent. The
-// three measurements alternate.
+// Measures the cost of ROS: the rates of an empty service, of commands of one ship, and of farm
+// steps in joint steps of 64 farms (64 times the rate of the joint steps). The servers run in
+// separate processes, and connections are persistent. The three measurements alternate.
 #include <aquafarm_msgs/Move.h>
 #include <aquafarm_msgs/Outcome.h>
 #include <aquafarm_msgs/Reset.h>
@@ -16,9 +16,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -38,7 +40,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kRounds = 5;
 constexpr double kRound_s = 1.0;
-constexpr double kStartLimit_s = 30.0;
+constexpr double kStartLimit_s = 30.0;  // the messages about it contain this number
 constexpr int kFarms = 64;
 constexpr const char* kEmpty = "empty";
 
@@ -52,7 +54,8 @@ class Child {
     for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
     words.push_back(nullptr);
     if (std::freopen("/dev/null", "w", stdout) != nullptr) execvp(words[0], words.data());
-    std::fprintf(stderr, "ros_bench: cannot start %s\n", words[0]);
+    std::fprintf(stderr, "ros_bench: cannot start %s: %s; run ./aquafarm build\n", words[0],
+                 std::strerror(errno));
     _exit(127);
   }
   ~Child() {
@@ -80,7 +83,7 @@ void WaitForMaster() {
   const Clock::time_point start = Clock::now();
   while (!ros::master::check()) {
     if (Seconds(start) > kStartLimit_s)
-      throw std::runtime_error("no ROS master started within the time limit; check rosmaster");
+      throw std::runtime_error("no ROS master started within 30 s; check rosmaster");
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
 }
@@ -94,13 +97,16 @@ class Client {
     const Clock::time_point start = Clock::now();
     while (!client_.isValid() || !client_.exists()) {
       if (Seconds(start) > kStartLimit_s)
-        throw std::runtime_error("service " + name + " did not appear within the time limit");
+        throw std::runtime_error("service " + name +
+                                 " did not appear within 30 s; see the output of its server");
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
       client_ = node.serviceClient<Service>(name, true);
     }
   }
   void Call(Service& call) {
-    if (!client_.call(call)) throw std::runtime_error(client_.getService() + " failed");
+    if (!client_.call(call))
+      throw std::runtime_error("service " + client_.getService() +
+                               " failed; see the output of its server");
   }
 
  private:

@@ -13,14 +13,14 @@ def columns_of_runs(of_one, column):
 
 
 def moving_means(values):
-    """Returns (episodes, means). means: moving means over 50 episodes; episodes: the last episode
-    of each mean, counted from 1."""
+    """Returns (episodes, means). means: moving means over 50 episodes, or one mean over all
+    episodes if there are fewer; episodes: the last episode of each mean, counted from 1."""
     window = min(measures.WINDOW, len(values))
     return np.arange(window, len(values) + 1), measures.moving_mean(values, window)
 
 
 def most_common_count(contestants, runs):
-    """Returns the number of runs that most contestants have."""
+    """Returns the most common number of runs of a contestant."""
     counts = [len(runs[one.name]) for one in contestants]
     return max(set(counts), key=counts.count)
 

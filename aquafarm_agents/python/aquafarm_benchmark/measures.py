@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The measures of the paper's §4.2, computed with numpy and scipy, without files or learners."""
+"""The measures of the paper's §4.2 (docs/model.md), and intervals of them. Computed with numpy and
+scipy, without files or learners. Sections (§), equations and tables are those of the paper."""
 import math
 
 import numpy as np
@@ -31,7 +32,7 @@ def known_moving_mean(values, window=WINDOW):
 
 
 def last_quarter(values):
-    """Returns the values of the plateau: the last quarter, at least one."""
+    """Returns the values of the plateau: the last quarter, and at least one value."""
     values = np.asarray(values, dtype=float)
     return values[-max(1, int(len(values) * PLATEAU_SHARE)):]
 
@@ -42,11 +43,12 @@ def convergence(returns, successes, standard_errors=0.0):
 
     The result is the last of the 50 episodes of the first such mean. Returns None if the run does
     not converge: it has fewer than 100 episodes, its success rate on the plateau is below 0.95, or
-    a 50-episode mean on the plateau is outside this band.
+    the last 50-episode mean outside the band ends on the plateau or at the episode before it.
 
-    standard_errors: half-width of a second band, in standard errors of a 50-episode mean on the
-    plateau. The wider band applies. With the 5 % band alone, the result would depend on chance if
-    the returns of a policy that no longer changes vary by more than a tenth.
+    standard_errors: half-width of a second band, in standard errors of the mean of 50 episodes of
+    the plateau. The wider band applies. The 5 % band alone is too narrow for noisy returns: if
+    their standard deviation is above about a tenth of their mean, the means leave the band by
+    chance, even if the policy no longer changes.
     """
     if len(returns) < 2 * WINDOW or last_quarter(successes).mean() < PLATEAU_SUCCESS:
         return None
@@ -136,8 +138,9 @@ def ea_paper(return_per_step, success, rank, stability):
 def ea_normalised(share_of_optimum, success, converged_at, stability, episodes):
     """Returns Eq. 16 with every term normalised to [0, 1], so that no unit dominates.
 
-    The return is divided by the clairvoyant optimum and limited to [0, 1]. Convergence is the
-    fraction of the training after the episode `converged_at`; 0 if the learner does not converge.
+    share_of_optimum: the return divided by the clairvoyant optimum; this function limits it to
+    [0, 1]. Convergence is the fraction of the training after the episode `converged_at`; 0 if the
+    learner does not converge.
     """
     left = 0.0 if converged_at is None else 1.0 - converged_at / episodes
     return (WEIGHTS["return"] * min(1.0, max(0.0, share_of_optimum)) +

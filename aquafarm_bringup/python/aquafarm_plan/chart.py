@@ -149,8 +149,9 @@ def _offset(points, distance):
 
 
 def _route(plan, frame, route):
-    """Returns the legs of a route between its orders. `late` determines the shade of a leg: 0 if
-    the leg begins when the first ship leaves, 1 if it begins at the end of the route."""
+    """Returns the ship of a route, and the legs between its orders. `late` determines the shade of
+    a leg: 0 if the leg begins when the first ship leaves, 1 if it begins at the end of the
+    route."""
     clock = Clock(plan["clock"])
     ends = [clock.seconds(order["time"]) for order in route["orders"]]
     last = max(route["path"][-1][2], 1) if route["path"] else 1
@@ -228,7 +229,8 @@ def _labels(plan, frame, devices, ports, routes, storm):
 
 
 def nice(target):
-    """Returns the largest number of the form 1, 2 or 5 × 10^n that is at most `target`."""
+    """Returns the largest number of the form 1, 2 or 5 × 10^n that is at most `target`, with a
+    tolerance for rounding errors."""
     power = 10.0**math.floor(math.log10(target))
     return max(n * power for n in NICE if n * power <= target * 1.0001)
 
@@ -274,10 +276,11 @@ def _degrees(value, positive, negative):
 
 
 def isolines(plan, frame):
-    """Returns for each frame of the hazard its time [s after the start of the plan], and for each
-    ring of the storm the outlines of the areas with a probability of at least 10, 50 and 90 %.
+    """Returns for each time of plan["hazard"]["frames"] this time [s after the start of the plan],
+    and for each ring of the storm the outlines of the areas with a probability of at least 10, 50
+    and 90 %.
 
-    frame: the Frame of the drawing
+    frame: the Frame (position and scale) of the drawing
     """
     ranch, clock, result = plan["ranch"], Clock(plan["clock"]), []
     for one in plan["hazard"]["frames"]:

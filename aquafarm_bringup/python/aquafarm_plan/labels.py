@@ -37,7 +37,7 @@ class Label:
     leader: str = ""  # path data of the line from the symbol to the label; empty if they are close
     name: str = ""
     badge: str = ""  # text in a box before the first line
-    ship: int = 0  # ship of the badge
+    ship: int = 0  # index of the ship that fetches the device; selects the colour of the badge
 
     @property
     def width(self):

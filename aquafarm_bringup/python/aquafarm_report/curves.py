@@ -29,7 +29,7 @@ def smooth(values):
 
 def rows_of(columns, name):
     """Returns rows [episode, mean of run 0, mean of run 1, …] for dygraphs. None replaces
-    a mean that a run does not have. Empty if no run has a mean."""
+    a mean that a run does not have. Returns an empty list if no run has a mean."""
     curves = [smooth(one[name]) if name in one else (np.array([]), np.array([]))
               for one in columns]
     last = max((int(episodes[-1]) for episodes, _ in curves if len(episodes)), default=0)
@@ -49,15 +49,15 @@ def rows_of(columns, name):
 
 def gap_note(label, columns, player):
     """Returns a sentence if the last mean return of the training is above the 95 % interval of
-    greedy play. Empty if it is not, or if the mean or the interval is unknown."""
+    greedy play. Returns an empty text if it is not, or if the mean or the interval is unknown."""
     mean, low, high = references.mean_interval(references.column(player, "return"), player.distinct)
     means = smooth(columns["return"])[1]
-    if not len(means) or math.isnan(high) or means[-1] <= high:
+    if not len(means) or math.isnan(means[-1]) or math.isnan(high) or means[-1] <= high:
         return ""
     failed = sum(not float(row["success"]) for row in player.rows)
     what = (f"{failed} of {len(player.rows)} episodes end with devices at sea" if failed else
             "its return is lower")
-    return (f"{label}: {means[-1]:.1f} at the end of the training, "
+    return (f"{label}: the mean return is {means[-1]:.1f} at the end of the training and "
             f"{references.text((mean, low, high))} in greedy play, which has no random moves: "
             f"{what}; train longer.")
 
@@ -82,7 +82,7 @@ def bend(rows, lines, marks):
 
 def show(labels, columns, notes=(), players=()):
     """Returns the section of training curves: a chart for each measure, with a curve for each run.
-    Empty if there are no curves.
+    Returns an empty text if there are no curves.
 
     labels, columns: labels and metrics of the runs
     notes: sentences below the introduction
@@ -90,7 +90,8 @@ def show(labels, columns, notes=(), players=()):
         the mean returns of the runs in greedy play with 95 % intervals; lines show the mean returns
         of the references
     """
-    lines = [{"label": one.label, "value": round(float(np.mean(references.column(one, "return"))), 1)}
+    lines = [{"label": one.label,
+              "value": round(float(np.mean(references.column(one, "return"))), 1)}
              for one in players if one.rows and not one.is_run]
     marks = [[round(value, 1) if math.isfinite(value) else None for value in
               references.mean_interval(references.column(one, "return"), one.distinct)]
@@ -104,7 +105,8 @@ def show(labels, columns, notes=(), players=()):
         if name == "return":
             chart.update(lines=lines, marks=marks, bend=bend(rows, lines, marks))
             if marks:
-                chart["title"] += ", in training and at the right in greedy play (95 % interval)"
+                chart["title"] += (" (curves: training; marks at the right: greedy play with "
+                                   "95 % intervals)")
             if chart["bend"]:
                 chart["title"] += ", logarithmic below 0"
         charts.append(chart)

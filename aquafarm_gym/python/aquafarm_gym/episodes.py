@@ -13,7 +13,8 @@ SEED_LIMIT: int = 1 << 63
 EPISODE_LIMIT: int = 1 << 62
 
 REASON_CODES: dict[str, int] = {name: code for code, name in enumerate(core.REASONS)}
-# Entries of info["summary"] before the end of an episode, with the types that they have at the end.
+# Value of info["summary"] before the end of an episode: placeholders with the keys and value types
+# of the summary at the end.
 NO_SUMMARY: dict[str, Any] = {
     **{name: value for name, value in core.NO_EPISODE.items() if name != "farm"}, "reason": 0}
 
@@ -33,7 +34,7 @@ def whole_number(where: str, value: Any, limit: int, hint: str) -> int:
 
 def check_seed(seed: Any) -> int:
     """Returns `seed` as int. Raises ValueError if it is not a whole number in [0, 2**63)."""
-    return whole_number("seed", seed, SEED_LIMIT, "pass a smaller seed, or None to draw one")
+    return whole_number("seed", seed, SEED_LIMIT, "pass such a number, or None to draw a seed")
 
 
 def check_options(options: dict[str, Any] | None, known: Collection[str]) -> dict[str, Any]:
@@ -51,8 +52,8 @@ def check_options(options: dict[str, Any] | None, known: Collection[str]) -> dic
 
 
 def summary_of(finished: dict[str, Any]) -> dict[str, Any]:
-    """Converts a dict from FarmBatch.finished() to the entries of NO_SUMMARY. Converts the end
-    reason to a number."""
+    """Converts a dict from FarmBatch.finished() to a dict with the keys of NO_SUMMARY. Converts
+    the end reason to a number."""
     numbers = {name: finished[name] for name in NO_SUMMARY}
     numbers["reason"] = REASON_CODES[finished["reason"]]
     return numbers

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes a scenario file from a chart, a place and a storm. Shows the layout and lists the choices
-// of BuildRanch.
+// Makes a scenario file from a chart, a position and a storm. Shows the layout of a ranch that is
+// at most 200 cells wide. Lists the choices of BuildRanch.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -139,10 +139,12 @@ RanchRequest Finished(const Arguments& arguments) {
 void RefuseUnused(const Arguments& arguments, const Scenario& made) {
   const RanchRequest asked = Finished(arguments);
   if (arguments.own_size && (made.width != asked.width || made.height != asked.height)) {
-    throw InputError("size: got '" + arguments.size + "', expected no value: the chart defines it");
+    throw InputError("size: got '" + arguments.size +
+                     "', expected the chart's own size; omit --size");
   }
   if (arguments.own_cell && made.cell_size_m != asked.cell_size_m) {
-    throw InputError("cell: got '" + arguments.cell + "', expected no value: the chart defines it");
+    throw InputError("cell: got '" + arguments.cell +
+                     "', expected the chart's own value; omit --cell");
   }
 }
 
@@ -162,9 +164,9 @@ std::string Learner(const Scenario& made) {
 // rescue plan, which takes only seconds.
 std::string NextSteps(const std::string& path, const Scenario& made) {
   const std::string train = "./aquafarm train scenario:=" + path + Learner(made) + "\n";
-  if (!made.origin) return "now: " + train;
-  return "now: ./aquafarm plan " + path + " --bulletin FILE   (who fetches what before a storm)\n" +
-         "or:  " + train;
+  if (!made.origin) return "next step: " + train;
+  return "next step: ./aquafarm plan " + path +
+         " --bulletin FILE   (which ship fetches which device before a storm)\n" + "or: " + train;
 }
 
 void Run(const Arguments& arguments) {
@@ -197,8 +199,8 @@ void AddPlaceOptions(CLI::App& app, Arguments& arguments) {
 
 void AddStormOptions(CLI::App& app, Arguments& arguments) {
   RanchRequest& ranch = arguments.ranch;
-  CLI::Option* track =
-      app.add_option("--track", ranch.track, "file with the storm's track; empty: calm");
+  CLI::Option* track = app.add_option("--track", ranch.track,
+                                      "file with the storm's track; empty: no storm from a file");
   app.add_option("--storm", ranch.storm, "name or number of the storm in --track")->needs(track);
   CLI::Option* years = app.add_option("--years", arguments.years,
                                       "FIRST:LAST, years of the storms that training draws");
@@ -217,15 +219,16 @@ void AddStormOptions(CLI::App& app, Arguments& arguments) {
                  "max distance in km at which an archived storm passes the ranch's middle")
       ->check(CLI::Range(1.0, 2000.0))
       ->needs(archive);
-  app.add_option("--radii", ranch.radii, "file with wind radii, for a track that has none")
+  app.add_option("--radii", ranch.radii, "file with wind radii, for fixes without radii")
       ->needs(track);
   app.add_option("--forecasts", ranch.forecasts,
                  "bulletins of the storm with forecast points: agents receive these forecasts; the "
                  "storm itself follows --track")
       ->needs(track);
   app.add_option("--rings", arguments.rings,
-                 "shape of the wind rings: equal_area (circles of the same area), largest (circles "
-                 "with the largest radius) or quadrants")
+                 "shape of the wind rings: equal_area (each ring is a circle with the area of its "
+                 "four quadrants), largest (a circle with the largest of the four radii) or "
+                 "quadrants (unchanged)")
       ->needs(track);
 }
 
@@ -236,7 +239,8 @@ void AddRanchOptions(CLI::App& app, Arguments& arguments) {
   app.add_option(
       "--disaster", ranch.disasters,
       "another disaster as KIND:KEY=NUMBER,… such as wave:height_m=4,radius_km=5; kinds: " + kinds);
-  app.add_option("--ports", ranch.ports, "number of ports, spread along the shore")
+  app.add_option("--ports", ranch.ports,
+                 "number of ports, spread along the shore; without a shore, at the edge")
       ->check(CLI::Range(1, 256));
   app.add_option(
       "--port", arguments.ports,
@@ -270,17 +274,18 @@ void AddSeaOptions(CLI::App& app, Arguments& arguments) {
                  "'warmth > 28 ? -8 : 0'")
       ->needs(sea);
   app.add_option("--notices", ranch.notices,
-                 "file of warnings or anchorage forecasts (JSON); lists those in force during the "
-                 "episode");
+                 "JSON file of warnings or anchorage forecasts; the output lists those in force "
+                 "during the episode, or all if the episode has no date");
   app.add_option("--write-map", arguments.map, "write the chart for map_server to this .yaml");
   app.add_option("-o,--output", arguments.output,
-                 "scenario file to write; empty: the ranch is only shown");
+                 "scenario file to write; empty: no scenario file is written");
 }
 
 int Main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app(
-      "Makes a ranch from a chart, a place and a storm, and shows it with the chosen defaults.",
+      "Makes a ranch from a chart, a position and a storm. Shows the ranch if it is at most 200 "
+      "cells wide, and lists the chosen defaults.",
       "aquafarm scenario");
   app.footer("exit codes: 0 made, 2 bad argument or file, 3 not written");
   app.option_defaults()->always_capture_default();

@@ -44,7 +44,7 @@ std::vector<std::pair<std::string, std::string>> SplitOptions(const std::string&
     const std::string word = text.substr(begin, end - begin);
     const std::size_t equals = word.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == word.size()) {
-      throw InputError("options: got '" + word + "', expected key=value");
+      throw InputError("options: got '" + word + "', expected key=value, such as gamma=0.99");
     }
     pairs.emplace_back(word.substr(0, equals), word.substr(equals + 1));
     begin = text.find_first_not_of(kBlanks, end);
@@ -61,12 +61,17 @@ std::string JoinOptions(const std::map<std::string, std::string>& options) {
 }  // namespace
 
 OptionReader::OptionReader(const std::string& text) {
+  std::map<std::string, std::string> names;  // name in `text` by current name
   for (auto& [key, value] : SplitOptions(text)) {
-    const std::string name(CurrentName(key));
-    if (!given_.emplace(name, std::move(value)).second) {
-      throw InputError("options: " + name + " is given twice" +
-                       (name == key ? "" : ", once as " + key + ", its old name"));
-    }
+    const std::string current(CurrentName(key));
+    given_.emplace(current, std::move(value));
+    const auto [first, is_new] = names.emplace(current, key);
+    if (is_new) continue;
+    throw InputError("options: got " +
+                     (first->second == key ? key + " twice"
+                                           : first->second + " and " + key +
+                                                 ", the old and the new name of one option") +
+                     ", expected it once; remove one of them");
   }
 }
 
@@ -115,9 +120,9 @@ void OptionReader::Finish() const {
     if (resolved_.count(key) != 0) continue;
     std::vector<std::string> keys;
     for (const auto& entry : resolved_) keys.push_back(entry.first);
-    throw InputError(
-        "options: got '" + key + "', expected " +
-        (keys.empty() ? "none: this algorithm has no options" : "one of: " + Join(keys)));
+    throw InputError("options: got '" + key + "', expected " +
+                     (keys.empty() ? "no option, because this algorithm has none; remove it"
+                                   : "one of: " + Join(keys)));
   }
 }
 

@@ -52,15 +52,16 @@ FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
   spec_.width = family_->family->width.max;
   spec_.height = family_->family->height.max;
   spec_.step_limit = std::max(spec_.step_limit, kMaxRanchSteps);
-  const std::string is_family =
+  const std::string refusal =
       "scenario " + spec_.scenario_name + ": is a family of ranches of different sizes, expected ";
   if ((options.observation_types & kStatesBit) != 0) {
-    throw InputError(is_family +
-                     "one ranch: planners need one ranch; evaluate a policy that reads features, "
-                     "or generalist, or train without teacher_policy=planner");
+    throw InputError(
+        refusal +
+        "one ranch, whose state this policy reads; evaluate the policy 'generalist' or "
+        "another policy that reads features, or train without teacher_policy=planner");
   }
   if ((options.observation_types & (kIndexBit | kPlanesBit)) != 0) {
-    throw InputError(is_family + "a learner that reads features: use algorithm ppo");
+    throw InputError(refusal + "a learner that reads features: use algorithm ppo");
   }
   std::uint8_t bits = options.observation_types & kFeaturesBit;
   if (options.hashes) bits |= kHashesField;
@@ -139,7 +140,7 @@ const StepResults& FamilyEnvironment::Load(const std::string& bytes) {
     const nlohmann::json states = ParseCbor(TakeSavedFarms(bytes, share_, spec_.farms));
     if (!states.is_array() || states.size() != static_cast<std::size_t>(spec_.farms)) {
       throw InputError("state: got " + std::to_string(states.size()) + " farms, expected " +
-                       std::to_string(spec_.farms));
+                       std::to_string(spec_.farms) + "; load a checkpoint of as many farms");
     }
     for (const nlohmann::json& state : states) {
       loaded.push_back(
@@ -148,7 +149,8 @@ const StepResults& FamilyEnvironment::Load(const std::string& bytes) {
       loaded.back()->Load(std::string(farm.begin(), farm.end()));
     }
   } catch (const nlohmann::json::exception& error) {
-    throw InputError(std::string("state: damaged bytes: ") + error.what());
+    throw InputError(std::string("state: damaged bytes: ") + error.what() +
+                     "; load another checkpoint");
   }
   farms_ = std::move(loaded);
   for (std::int32_t i = 0; i < spec_.farms; ++i) Write(i, 0, farm(i).step() == 0);

@@ -19,6 +19,8 @@ namespace aquafarm::agents {
 namespace {
 
 constexpr std::size_t kFlushBytes = std::size_t{1} << 16U;
+constexpr const char* kFreeSpace = "; free disk space or correct the permissions, then resume";
+constexpr const char* kRestore = "; restore the file, or train in another folder";
 
 template <typename T>
 void Put(T value, std::string& text) {
@@ -100,7 +102,10 @@ std::size_t CountAdded(const std::string& path) {
 
 MetricsFile::MetricsFile(std::string path) : path_(std::move(path)) {
   file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file_ < 0) throw StorageError(ErrnoText(path_, "cannot be written"));
+  if (file_ < 0) {
+    throw StorageError(ErrnoText(path_, "cannot be written") +
+                       "; free disk space or correct the permissions");
+  }
   buffer_ = FirstColumns() + AddedColumns() + "\n";
   buffer_.reserve(2 * kFlushBytes);
 }
@@ -108,18 +113,18 @@ MetricsFile::MetricsFile(std::string path) : path_(std::move(path)) {
 MetricsFile::MetricsFile(std::string path, std::uint64_t size)
     : path_(std::move(path)), added_columns_(CountAdded(path_)) {
   file_ = open(path_.c_str(), O_RDWR | O_CLOEXEC);
-  if (file_ < 0) throw StorageError(ErrnoText(path_, "cannot be continued"));
+  if (file_ < 0) throw StorageError(ErrnoText(path_, "cannot be continued") + kRestore);
   struct stat status {};
   const bool known = fstat(file_, &status) == 0;
   const bool shorter = known && static_cast<std::uint64_t>(status.st_size) < size;
   if (!known || shorter || ftruncate(file_, static_cast<off_t>(size)) != 0 ||
       lseek(file_, 0, SEEK_END) < 0) {
-    const std::string text = ErrnoText(path_, "cannot be continued");
+    const std::string text = ErrnoText(path_, "cannot be continued") + kRestore;
     close(file_);
     if (!shorter) throw StorageError(text);
     throw InputError(path_ + ": got " + std::to_string(status.st_size) +
                      " bytes, expected at least the " + std::to_string(size) +
-                     " that the checkpoint records");
+                     " that the checkpoint records" + kRestore);
   }
   flushed_ = size;
   buffer_.reserve(2 * kFlushBytes);
@@ -153,7 +158,7 @@ void MetricsFile::Flush() {
     const ssize_t written = write(file_, buffer_.data() + done, buffer_.size() - done);
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
-      const std::string text = ErrnoText(path_, "cannot be written");
+      const std::string text = ErrnoText(path_, "cannot be written") + kFreeSpace;
       flushed_ += done;
       buffer_.erase(0, done);
       throw StorageError(text);
@@ -166,7 +171,7 @@ void MetricsFile::Flush() {
 
 void MetricsFile::Sync() {
   Flush();
-  if (fsync(file_) != 0) throw StorageError(ErrnoText(path_, "cannot be synced"));
+  if (fsync(file_) != 0) throw StorageError(ErrnoText(path_, "cannot be synced") + kFreeSpace);
 }
 
 }  // namespace aquafarm::agents

@@ -3,7 +3,8 @@
 
 /// The value networks for features on the CPU, which compute their gradients without libtorch. The
 /// parameters are in the order of the modules of networks.h; each weight is [outputs, inputs]. The
-/// buffers are kept, so a call allocates memory only if it has more rows than all earlier calls.
+/// buffers are kept, so a call allocates memory only if it has more rows (for the LSTM: steps ×
+/// rows) than all earlier calls of the same function.
 
 #include <cstddef>
 #include <vector>
@@ -19,7 +20,7 @@ struct ParameterMemory {
   float* gradient{};
 };
 
-/// Linear - ReLU - head: the last layers of both networks.
+/// Linear - ReLU - head: the last layers of FusedMlpValues and FusedLstmValues.
 class HiddenAndHead {
  public:
   HiddenAndHead(std::size_t inputs, std::size_t hidden, bool dueling)
@@ -103,13 +104,13 @@ class FusedLstmValues final : public RecurrentValueNetwork {
   LstmShape shape_;  // of the last Forward or WarmUp
   const float* seen_{};
   std::vector<float> bias_;           // sum of the two biases of the LSTM
-  std::vector<float> transposed_;     // scratch
-  std::vector<float> hidden_before_;  // h before the first step
-  std::vector<float> input_;          // x
+  std::vector<float> transposed_;     // scratch memory
+  std::vector<float> hidden_before_;  // h, the hidden state, before the first step
+  std::vector<float> input_;          // x, the input of the LSTM
   std::vector<float> gates_;
   std::vector<float> cells_;
   std::vector<float> cell_tanh_;
-  std::vector<float> output_;  // h
+  std::vector<float> output_;  // h after each step
   std::vector<float> joined_;  // [h, x] with the skip connection
   std::vector<float> hidden_slopes_;
   std::vector<float> cell_slopes_;

@@ -67,7 +67,7 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& need
   const auto bytes = std::filesystem::file_size(path, unknown);
   if (!unknown && bytes > kMaxBytes) {
     throw InputError(path + ": got " + std::to_string(bytes) + " bytes, expected at most " +
-                     std::to_string(kMaxBytes));
+                     std::to_string(kMaxBytes) + "; shorten the file");
   }
   std::string text = ReadFile(path);
   if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);  // byte order mark
@@ -82,20 +82,23 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& need
       for (const std::string& name : header_) {
         if (Contains(needed, name) || Contains(known, name)) continue;
         throw InputError(where + ": got a column '" + name + "', expected: " + Join(needed) +
-                         "; optional: " + Join(known));
+                         "; optional: " + Join(known) + "; rename or remove this column");
       }
       for (const std::string& name : needed) {
         if (Contains(header_, name)) continue;
-        throw InputError(where + ": got no column " + name + ", expected: " + Join(needed));
+        throw InputError(where + ": got no column '" + name + "', expected: " + Join(needed) +
+                         "; add it to the header");
       }
       continue;
     }
     if (fields.size() > header_.size()) {
       throw InputError(where + ": got " + std::to_string(fields.size()) +
-                       " fields, expected at most " + std::to_string(header_.size()));
+                       " fields, expected at most " + std::to_string(header_.size()) +
+                       "; put texts with commas in quotes");
     }
     if (rows_.size() == max_rows) {
-      throw InputError(where + ": got more rows, expected at most " + std::to_string(max_rows));
+      throw InputError(where + ": got row " + std::to_string(max_rows + 1) + ", expected at most " +
+                       std::to_string(max_rows) + "; shorten the file");
     }
     rows_.emplace_back(header_, std::move(fields), where);
   }

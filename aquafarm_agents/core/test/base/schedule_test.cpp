@@ -106,7 +106,10 @@ TEST(OptionReader, OldNamesCountAsTheNewOnes) {
   reader.Finish();
   EXPECT_EQ(reader.Resolved(), "batch_size=8 gamma=0.5");
   EXPECT_CONTAINS(MessageOf<InputError>([] { OptionReader("batch_size=8 batch=9"); }),
-                  "batch_size is given twice, once as batch, its old name");
+                  "options: got batch_size and batch, the old and the new name of one option, "
+                  "expected it once");
+  EXPECT_CONTAINS(MessageOf<InputError>([] { OptionReader("batch=8 batch=9"); }),
+                  "options: got batch twice, expected it once");
 }
 
 TEST(OptionReader, OldNamesAreReported) {

@@ -70,8 +70,8 @@ TEST(FamilyEnvironment, RefusesObservationsOfAFixedSize) {
   EXPECT_EQ(refusal_of(kPlanesBit), of_learners);
   EXPECT_EQ(refusal_of(kStatesBit),
             start +
-                "one ranch: planners need one ranch; evaluate a policy that reads features, or "
-                "generalist, or train without teacher_policy=planner");
+                "one ranch, whose state this policy reads; evaluate the policy 'generalist' or "
+                "another policy that reads features, or train without teacher_policy=planner");
 }
 
 TEST(FamilyEnvironment, ARanchThatCannotBeDrawnIsNamed) {

@@ -40,15 +40,18 @@ TEST_F(CsvTables, HaveQuotedFieldsCommentsAndMissingFields) {
 
 TEST_F(CsvTables, WithTooMuchAreRefused) {
   EXPECT_EQ(Read("a,b\n1\n2\n3\n"), "1|;2|;3|;");
-  EXPECT_EQ(Read("a,b\n1\n2\n3\n4\n"), ":5: got more rows, expected at most 3");
-  EXPECT_EQ(Read("a,b\n1,2,3\n"), ":2: got 3 fields, expected at most 2");
-  EXPECT_EQ(Read(std::string((1 << 20) + 1, 'a')), ": got 1048577 bytes, expected at most 1048576");
+  EXPECT_EQ(Read("a,b\n1\n2\n3\n4\n"), ":5: got row 4, expected at most 3; shorten the file");
+  EXPECT_EQ(Read("a,b\n1,2,3\n"),
+            ":2: got 3 fields, expected at most 2; put texts with commas in quotes");
+  EXPECT_EQ(Read(std::string((1 << 20) + 1, 'a')),
+            ": got 1048577 bytes, expected at most 1048576; shorten the file");
 }
 
 TEST_F(CsvTables, WithoutRowsOrWithOtherColumnsAreRefused) {
   EXPECT_EQ(Read("a,b\n"), ": got no rows, expected a header and at least one row");
-  EXPECT_EQ(Read("a,c\n1,2\n"), ":1: got a column 'c', expected: a; optional: b");
-  EXPECT_EQ(Read("b\n1\n"), ":1: got no column a, expected: a");
+  EXPECT_EQ(Read("a,c\n1,2\n"),
+            ":1: got a column 'c', expected: a; optional: b; rename or remove this column");
+  EXPECT_EQ(Read("b\n1\n"), ":1: got no column 'a', expected: a; add it to the header");
 }
 
 }  // namespace

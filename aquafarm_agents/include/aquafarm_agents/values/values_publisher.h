@@ -21,7 +21,7 @@ namespace aquafarm_agents {
 /// current state. The topics are `values` and `values/points`, both latched. A low-priority thread
 /// computes the messages while there are subscribers. The pause after a computation is at least
 /// nine times as long as the computation, so that the thread hardly slows down playing and
-/// training. Farms of more than kMaxCells (greedy_actions.h) cells have no values.
+/// training. Publishes nothing for farms of more than kMaxCells (greedy_actions.h) cells.
 class ValuesPublisher {
  public:
   /// @param period_s min time between the starts of two computations; 0: nothing is published
@@ -36,7 +36,7 @@ class ValuesPublisher {
   void Refresh(const std::function<std::unique_ptr<aquafarm::agents::Policy>()>& make);
 
   /// Replaces the policy. Ignores policies that cannot have values: those that read the complete
-  /// farm state, such as planners, and those that read no observation, such as random.
+  /// farm state, such as planners, and those that read no observation, such as do_nothing.
   void Offer(std::unique_ptr<aquafarm::agents::Policy> policy);
 
  private:

@@ -295,7 +295,7 @@ class Builder {
                        std::string(ToString(file.format)) + " " + FileName(request_.track);
     Say("storm: " + plan_.storm_text +
         Text(", %d fixes, %d-minute winds", recorded, track.fixes[0].averaging_min) + radii +
-        Text("; radii estimated at %d points%s, unknown at %d", plan_.storm.estimated,
+        Text("; radii of %d fixes estimated%s; radii of %d fixes unknown", plan_.storm.estimated,
              blank ? ", where quadrants are blank" : "", plan_.storm.silent));
     return track;
   }

@@ -81,8 +81,9 @@ class Writer {
   void WriteEnergy() {
     constexpr double kOnBoard_kW = 2.0;
     const double idle_kwh = kOnBoard_kW * plan_.step_s / 3600.0;
+    Line("# Units: docs/scenario.md. The reward does not contain the energy.");
     Line("energy: {per_km: 1.2, per_device: 0.5, rough_sea: 0.5, idle_per_step: " +
-         Short(idle_kwh, 4) + "}  # kWh, no part of the reward");
+         Short(idle_kwh, 4) + "}");
   }
 
   void Line(const std::string& line) { yaml_ += line + "\n"; }

@@ -145,7 +145,7 @@ TEST_F(ForecastRanch, HoldsTheLargerRadiiWhereTheWindIsUnknownBetweenTwoPoints) 
 
 TEST_F(ForecastRanch, EstimatesFromTheGradeWhereTheWindIsUnknown) {
   const BuiltRanch ranch = Make(kForecast, "\"strong\": \"台风(TY)\"");
-  EXPECT_TRUE(Says(ranch.decided, "unknown at 0"));
+  EXPECT_TRUE(Says(ranch.decided, "radii of 0 fixes unknown"));
   EXPECT_GT(ranch.scenario.disasters.at(0).track[0].radii.back(), 200.0F) << "of 32.7 m/s";
 }
 

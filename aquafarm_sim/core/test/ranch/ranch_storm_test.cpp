@@ -130,7 +130,7 @@ TEST(Ranch, HasTheStormAsItsFileSays) {
   EXPECT_EQ(storm.track[0].risks, DefaultGradeRisks()[2]);
   EXPECT_EQ(storm.duration, 89) << "to the last fix";
   EXPECT_TRUE(Says(ranch.decided, "In-fa (2106), CMA best track cma.txt, 3 fixes, 2-minute winds"));
-  EXPECT_TRUE(Says(ranch.decided, "radii estimated at 3 points, unknown at 0"));
+  EXPECT_TRUE(Says(ranch.decided, "radii of 3 fixes estimated; radii of 0 fixes unknown"));
   EXPECT_TRUE(Says(ranch.decided, "34 kt over the ranch for 6."));
   EXPECT_TRUE(Says(ranch.warnings, "cma.txt:9: time: 2021-07-25T06:00:00Z occurs twice"));
   Farm farm(std::make_shared<const Scenario>(ranch.scenario));
@@ -165,7 +165,8 @@ TEST(Ranch, SaysThatRadiiAreEstimatedWhereQuadrantsAreBlank) {
   request.chart.clear();
   request.center = GeoPoint{-9.0, 50.0};
   EXPECT_TRUE(Says(BuildRanch(request).decided,
-                   "radii estimated at 2 points, where quadrants are blank, unknown at 0"));
+                   "radii of 2 fixes estimated, where quadrants are blank; radii of 0 fixes "
+                   "unknown"));
 }
 
 TEST(Ranch, BorrowsRadiiAndHasItsOwnStart) {
@@ -207,8 +208,8 @@ TEST(Ranch, BorrowsRadiiOfNoOtherStorm) {
   };
   EXPECT_EQ(Refused(with("Lekima", "201909")).substr(0, 29), "radii: storm: got 'In-fa', ex");
   const std::string id = FindTrack(LoadStormFile(request.track), request.storm).id;
-  EXPECT_TRUE(Says(BuildRanch(with("Lekima", id)).decided, "radii of 3")) << "by its id";
-  EXPECT_TRUE(Says(BuildRanch(with("IN-FA", "202106")).decided, "radii of 3"));
+  EXPECT_TRUE(Says(BuildRanch(with("Lekima", id)).decided, "radii of 3 fixes from")) << "by its id";
+  EXPECT_TRUE(Says(BuildRanch(with("IN-FA", "202106")).decided, "radii of 3 fixes from"));
   fs::remove(path);
 }
 

@@ -31,7 +31,7 @@ TEST(Program, SaysWhatToTrainWith) {
   const fs::path path = fs::temp_directory_path() / ("many_" + std::to_string(getpid()) + ".yaml");
   const auto now = [&path](const std::string& arguments) {
     const std::string text = RunApp("--size 20x20 -o " + path.string() + " " + arguments).second;
-    const std::string made = "now: ./aquafarm train scenario:=" + path.string();
+    const std::string made = "next step: ./aquafarm train scenario:=" + path.string();
     const std::size_t at = text.find(made);
     return at == std::string::npos ? text : text.substr(at + made.size());
   };
@@ -50,9 +50,9 @@ TEST(Program, MakesAFileAndSaysWhatItDecided) {
       data + "/cma.txt --storm in-fa --devices 6 --layout linear -o " + path.string());
   EXPECT_EQ(code, 0) << text;
   EXPECT_NE(text.find("nearest: "), std::string::npos);
-  EXPECT_NE(text.find("\nnow: ./aquafarm plan " + path.string() +
-                      " --bulletin FILE   (who fetches what before a storm)\n" +
-                      "or:  ./aquafarm train scenario:=" + path.string()),
+  EXPECT_NE(text.find("\nnext step: ./aquafarm plan " + path.string() +
+                      " --bulletin FILE   (which ship fetches which device before a storm)\n" +
+                      "or: ./aquafarm train scenario:=" + path.string()),
             std::string::npos)
       << text;
   const Scenario scenario = LoadScenario(path.string());
@@ -138,10 +138,10 @@ TEST(Program, RefusesASizeForAChartWithItsOwn) {
   const std::string chart = "--ports 2 --chart " + path.string();
   const auto [size_code, size] = RunApp(chart + " --size 9x9");
   EXPECT_EQ(size_code, 2);
-  EXPECT_EQ(size, "size: got '9x9', expected no value: the chart defines it\n");
+  EXPECT_EQ(size, "size: got '9x9', expected the chart's own size; omit --size\n");
   const auto [cell_code, cell] = RunApp(chart + " --cell 1km");
   EXPECT_EQ(cell_code, 2);
-  EXPECT_EQ(cell, "cell: got '1km', expected no value: the chart defines it\n");
+  EXPECT_EQ(cell, "cell: got '1km', expected the chart's own value; omit --cell\n");
   EXPECT_EQ(RunApp(chart).first, 0);
   fs::remove(path);
 }

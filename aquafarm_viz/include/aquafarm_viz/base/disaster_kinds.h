@@ -16,8 +16,8 @@ std::size_t DisasterKindCount();
 std::string DisasterName(std::uint8_t kind);
 
 /// Returns the distance of a pixel to the nearest line or dot of a kind's pattern [pixels]; for
-/// waves, the distance along y. The pattern repeats after two periods on both axes. An unknown kind
-/// has the pattern of the last kind.
+/// the kind wave, the distance along y; 0 within 0.8 pixels of the centre of a dot. The pattern
+/// repeats after two periods on both axes. An unknown kind has the pattern of the last kind.
 /// @param period distance between lines along an axis [pixels]
 float DistanceToPattern(std::uint8_t kind, int x, int y, int period);
 

@@ -18,7 +18,8 @@
 ///     | training                                |
 ///     '-----------------------------------------'
 ///
-/// A picture with a side below 300 pixels shows only the map.
+/// A picture with a side below 300 pixels consists of the map only. The end of the episode, the
+/// scale of values and the choice of a policy are then drawn on the map.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>

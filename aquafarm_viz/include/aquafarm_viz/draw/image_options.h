@@ -20,7 +20,9 @@ inline constexpr int kMaxImageSide = 4096;  ///< max width and height [pixels]
 struct ImageSize {
   int width{800};
   int height{640};
-  bool has_panel{true};  ///< false: no lists, inset and legend, so that the map is larger
+  /// false: omits the panel at the right (lists, map of the region, legend), so that the map is
+  /// larger
+  bool has_panel{true};
 };
 
 /// Optional content of a picture in addition to the state. A null pointer omits that content.
@@ -30,8 +32,9 @@ struct Overlays {
   const Trail* route{};                             ///< trails since the start of the episode
   Layers layers{};                                  ///< layers to draw
   const Values* values{};                           ///< values and greedy actions of a policy
-  const aquafarm_msgs::PolicyChoice* choice{};  ///< what a compared policy chooses in one state;
-                                                ///< drawn only with this state
+  /// Actions that another policy chooses in one recorded state, for comparison with the recorded
+  /// actions; drawn only if the picture shows that state.
+  const aquafarm_msgs::PolicyChoice* choice{};
 };
 
 }  // namespace aquafarm_viz

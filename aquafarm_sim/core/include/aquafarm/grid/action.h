@@ -53,16 +53,17 @@ constexpr ActionMask MaskOf(Action action) {
 /// "ship.blocked.<move>".
 inline constexpr std::int32_t kFirstBlockedFeature = 5;
 
-/// Outcome of a ship's action in the last step.
+/// Outcome of the action of a ship in the last step. A self-propelled device is also an agent with
+/// an action and an outcome.
 enum class Outcome : std::uint8_t {
   kOk,
   kEdge,            ///< a move off the map; the ship stayed
   kCrash,           ///< a move into a rock or island; the ship stayed
   kCollision,       ///< a move into another ship's cell outside a port; the ship stayed
-  kIllegalPickup,   ///< no device to pick up here, no capacity, or not a rescue ship
-  kIllegalDropOff,  ///< not at a port, or no device aboard
-  kHeld,            ///< the action was kHold; also before the first step
-  kOutOfPlay,       ///< a delivered self-propelled device; its action was ignored
+  kIllegalPickup,   ///< no device to pick up here, no capacity, or a self-propelled device
+  kIllegalDropOff,  ///< not at a port, or a rescue ship without a device aboard
+  kHeld,            ///< the action was kHold, or the ship has not acted yet
+  kOutOfPlay,       ///< a self-propelled device that was delivered; its action was ignored
 };
 inline constexpr int kOutcomeCount = 8;
 
@@ -79,7 +80,8 @@ constexpr bool IsTerminated(EndReason reason) {
 }
 constexpr bool IsTruncated(EndReason reason) { return reason == EndReason::kStepLimit; }
 
-/// Returns the name of a value in files and feature names, such as "north_west" or "all_retrieved".
+/// Returns the name that files and feature names use for a value, such as "north_west" or
+/// "all_retrieved".
 /// @throws LogicError for a value outside the enumeration
 std::string_view ToString(Action value);
 std::string_view ToString(Outcome value);

@@ -55,7 +55,8 @@ class Encoder {
     Cell cell{};
     std::vector<DeviceStatus> status;  ///< kDelivered: delivered or aboard another ship
   };
-  /// Inverse of Index. @param index in [0, state_count()), else LogicError is thrown
+  /// Inverse of Index.
+  /// @throws LogicError if `index` is not in [0, state_count())
   TabularState Decode(std::uint32_t index) const;
 
   /// Writes the feature vector. @param out [feature_count()]
@@ -76,7 +77,7 @@ class Encoder {
   std::vector<std::int32_t> status_code_;  // by rank
   std::uint32_t state_count_{};
   std::int32_t feature_count_{};
-  std::int32_t fetchable_{};  // devices that are not self-propelled
+  std::int32_t fetchable_{};  // number of devices that are not self-propelled
   std::size_t planes_size_{};
   std::vector<std::uint8_t> sea_plane_;  // [H, W] risk of the sea; empty without `seas.risk`
 };

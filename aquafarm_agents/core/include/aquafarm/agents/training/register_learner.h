@@ -29,7 +29,7 @@ inline constexpr const char* kLearnersVariable = "AQUAFARM_LEARNERS";
 bool RegisterLearner(const Algorithm& algorithm, const char* built_with = kVersion);
 
 /// Loads the libraries. Returns all registered learners in the order of their registration. A
-/// library that is already loaded is not loaded again.
+/// library that an earlier call loaded is not loaded again.
 /// @param libraries paths separated by ':'; may be empty
 /// @throws InputError if a library cannot be loaded, registers no learner or was built with the
 ///   headers of another version

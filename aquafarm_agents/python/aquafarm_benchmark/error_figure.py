@@ -35,14 +35,14 @@ def draw_square_error(path, contestants, runs):
     note = (f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic. The titles "
             "give the first and the last value and their ratio. "
             f"{describe_shading(contestants, runs)} The error is measured against each learner's "
-            "own targets, so a learner with a lower error is not a better one. A policy that fails "
-            "can have a low error too.")
+            "own targets, so a lower error does not mean a better policy: a policy that fails can "
+            "have a low error.")
     unused = all_axes.flat[len(learners):]
     for axes in unused:
         axes.axis("off")
     if len(unused):
         write_note(unused[0], note)
-    explain(figure, f"Change of the error of the value estimates in training: {found}",
+    explain(figure, f"Error of the value estimates in training: {found}",
             "" if len(unused) else note)
     save(figure, path)
 

@@ -91,7 +91,7 @@ TEST(OptionReader, ResolvedNamesEveryOption) {
 
 TEST(OptionReader, RefusesWordsAndRepetitions) {
   EXPECT_CONTAINS(MessageOf<InputError>([] { OptionReader("fast"); }), "expected key=value");
-  EXPECT_CONTAINS(MessageOf<InputError>([] { OptionReader("a=1 a=2"); }), "given twice");
+  EXPECT_CONTAINS(MessageOf<InputError>([] { OptionReader("a=1 a=2"); }), "got a twice");
   OptionReader reader("a=yes b=11");
   EXPECT_CONTAINS(MessageOf<InputError>([&] { reader.Flag("a", true); }),
                   "a: got 'yes', expected true or false");

@@ -173,8 +173,9 @@ TEST(TeamBound, NeverCountsLessThanNothingForADeviceThatIsWornOut) {
 TEST(TeamBound, RefusesRewardsForWaiting) {
   Scenario scenario = TinyTeam();
   scenario.rewards.collision = 2.0F;
-  EXPECT_EQ(MessageOf<InputError>([&] { TeamBound(aquafarm::test::MakeFarm(scenario)); }),
-            "bound: rewards.collision: got more than 0, expected at most 0");
+  EXPECT_EQ(
+      MessageOf<InputError>([&] { TeamBound(aquafarm::test::MakeFarm(scenario)); }),
+      "bound: rewards.collision: got more than 0, expected at most 0; evaluate without the bound");
 }
 
 TEST(TeamPlanner, PlansAgainWhenABulletinArrives) {

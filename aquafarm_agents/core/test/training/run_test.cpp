@@ -288,8 +288,10 @@ TEST_F(RunTest, AFullDiskEndsItAndKeepsTheLastGoodCheckpoint) {
   const RunReport report = Train();
   setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_EQ(report.code, ExitCode::kStorage);
-  EXPECT_CONTAINS(report.summary,
-                  "cannot be written: File too large; the last valid checkpoint is");
+  EXPECT_CONTAINS(
+      report.summary,
+      "cannot be written: File too large; free disk space or correct the permissions, then "
+      "resume; the last valid checkpoint is");
   EXPECT_GT(ReadCheckpoint(*RunFolder::NewestCheckpoint(options_.run_dir)).steps, 0U);
 }
 

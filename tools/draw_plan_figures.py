@@ -73,8 +73,8 @@ def finding(storms):
     share = sum(s["saved"] for s in storms) / sum(s["clairvoyant"] for s in storms)
     less = sum(s["promised"] < s["saved"] for s in storms)
     return (f"In {as_good} of {len(staked)} recorded storms with something at stake the plan saves "
-            f"what a clairvoyant saves\n({100 * share:.0f} % of its value). It saves more than it promised in "
-            f"{less} of all {len(storms)} storms.")
+            f"what a clairvoyant saves.\nOver all {len(storms)} storms it saves {100 * share:.0f} % of "
+            f"the clairvoyant's value; in {less} it saves more than it promised.")
 
 
 def name_of(storm):

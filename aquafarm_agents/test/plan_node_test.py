@@ -286,8 +286,8 @@ class PlanNodeTest(unittest.TestCase):
         time.sleep(2.0)  # silent, as in lockstep, but there
         self.assertEqual("", self.plans[-1].fault)
         service.shutdown()
-        plan = self.wait(lambda one: "the ranch is gone" in one.fault, "the fault")
-        self.assertIn("the last state is of step 0: start it again", plan.fault)
+        plan = self.wait(lambda one: "the ranch has ended or hangs" in one.fault, "the fault")
+        self.assertIn("(last state: step 0); start the ranch again", plan.fault)
         self.assertEqual("First", plan.storm_name)
         self.plans.clear()
         state.step = 1

@@ -211,7 +211,7 @@ TEST(RosEnvironment, StartsAfreshWhenAnotherHasMovedOrResetTheFarms) {
     ASSERT_EQ(i + 1, notices.size());
     EXPECT_CONTAINS(notices.back(),
                     "another client has stepped or reset them, or the node has restarted");
-    EXPECT_CONTAINS(notices.back(), "fresh episodes from number " + std::to_string(13 + 3 * i));
+    EXPECT_CONTAINS(notices.back(), "new episodes from number " + std::to_string(13 + 3 * i));
     EXPECT_FALSE(step());
     EXPECT_FALSE(environment.ConsumeRestart());
   }
@@ -254,7 +254,7 @@ TEST(RosEnvironment, AShareKeepsToItsEpisodesAfterALossOfTheFarms) {
   EXPECT_TRUE(environment.ConsumeRestart());
   ASSERT_EQ(notices.size(), 1U);
   // Farms 0 to 7 have started 3 to 10; farm 4 or 5 may have started 15 or 16. 19 = 3 + 2 * 8.
-  EXPECT_CONTAINS(notices.back(), "fresh episodes from number 19");
+  EXPECT_CONTAINS(notices.back(), "new episodes from number 19");
   aquafarm_msgs::GetState state;
   ASSERT_TRUE(node.serviceClient<aquafarm_msgs::GetState>("get_state").call(state));
   EXPECT_EQ(state.response.state.episode, 23U);

@@ -208,7 +208,7 @@ class TrainNodeTest(unittest.TestCase):
         run.wait_for(lambda: "the sim node is gone" in run.words(), "a word of the loss")
         start_sim(self, self.namespace, TINY)
         self.assertEqual(0, run.code(), run.words())
-        self.assertIn("continuing with fresh episodes", run.words())
+        self.assertIn("continuing with new episodes", run.words())
         lines = metrics.read_text().splitlines()
         column = lines[0].split(",").index("episode")
         episodes = [int(line.split(",")[column]) for line in lines[1:]]

@@ -12,7 +12,7 @@ from matplotlib.path import Path
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import plan_sample  # noqa: E402
-from aquafarm_plan import chart, coast, document, figures, words  # noqa: E402
+from aquafarm_plan import chart, coast, document, figures, labels, words  # noqa: E402
 
 
 class PlanFiguresTest(unittest.TestCase):
@@ -86,14 +86,20 @@ class PlanFiguresTest(unittest.TestCase):
         self.assertEqual("ship 1", words.numbered_name(plan, 0))
         self.assertEqual("2: Haixing", words.numbered_name(plan, 1))
 
+    def test_a_leader_that_crosses_a_label_costs_more(self):
+        label = labels.Label(["now"], (100.0, 100.0), 6.0, 12.0)
+        box = (180.0, 94.0, 0.0)  # to the right of the anchor
+        between, below = (130.0, 90.0, 160.0, 110.0), (130.0, 130.0, 160.0, 150.0)
+        free = labels._cost(box, label, [below], [], 400.0, 400.0)
+        self.assertGreater(labels._cost(box, label, [between], [], 400.0, 400.0), free + 50.0)
+
     def test_the_region_has_few_labels_and_the_rings_where_the_centre_is_nearest(self):
         plan = plan_sample.sample(members=100)
         region = figures.region(plan)
         ring_labels = [label for label in region["labels"] if label.name == "ring"]
         self.assertEqual(len(plan["rings"]), len(ring_labels), "rings of one time")
         nearest = document.Clock(plan["clock"]).day_time(plan_sample.stamp(30))
-        self.assertEqual(f"Rings at {nearest}, at the future position with known wind radii that is "
-                         "nearest to the ranch.", region["caption"])
+        self.assertEqual(f"Rings at {nearest}, the future point nearest to the ranch.", region["caption"])
         fixes = [label for label in region["labels"] if label.name in ("recorded", "forecast")]
         self.assertLessEqual(2, len(fixes))
         self.assertLessEqual(len(fixes), figures.REGION_LABELS)

@@ -337,7 +337,7 @@ view: {mode: partial, monitoring_radius: 4, kinds: true}
         for call, words in (
                 (lambda: FarmEnv(3), "scenario: got 3, expected an aquafarm_core.Scenario, a file"),
                 (lambda: FarmEnv().reset(seed=2**63), "reset: seed: got 9223372036854775808, "
-                 r"expected a whole number in \[0, 2\*\*63\); pass a smaller"),
+                 r"expected a whole number in \[0, 2\*\*63\); pass such a number"),
                 (lambda: FarmParallelEnv().reset(seed=2**64), "reset: seed: got 18446744073709551"),
                 (lambda: FarmEnv().reset(options={"episode": -1}), r"reset: options\['episode'\]: "
                  r"got -1, expected a whole number in \[0, 2\*\*62\); number the"),

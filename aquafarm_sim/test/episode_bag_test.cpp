@@ -211,6 +211,19 @@ TEST_F(EpisodeBag, PartialBagsOfKilledProcessesAreRemovedAndThoseBeingWrittenSta
   EXPECT_EQ(RemoveAbandonedBags("/nowhere"), 0);
 }
 
+TEST_F(EpisodeBag, AFileThatAnotherProcessWritesIsNotTouched) {
+  const auto scenario = std::make_shared<const aquafarm::Scenario>(ShortScenario());
+  const std::string path = folder_ + "/x.bag";
+  const std::string active = path + ".partial";
+  std::ofstream(active) << "half";
+  const int file = open(active.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(flock(file, LOCK_EX), 0);  // a lock of another open file, as of another process
+  EXPECT_THROW(EpisodeBagWriter(scenario, {}).Write(HeldLog(scenario), path), std::runtime_error);
+  EXPECT_EQ(fs::file_size(active), 4U);
+  EXPECT_FALSE(fs::exists(path));
+  close(file);
+}
+
 TEST_F(EpisodeBag, ALogThatDoesNotGiveItsResultLeavesNothing) {
   const auto scenario = std::make_shared<const aquafarm::Scenario>(ShortScenario());
   EpisodeLog log = HeldLog(scenario);

@@ -93,12 +93,12 @@ def draw_unfinished(path, routes, title):
     routes: {name of the ranch: route file}
     title: title of the figure
     """
-    columns = 3
+    columns = 2
     rows = -(-(len(routes) + 1) // columns)  # the last map is followed by the legend
     routes = {name: json.loads(file.read_text()) for name, file in routes.items()}
     size = [max(route["chart"][side] for route in routes.values()) for side in ("width", "height")]
     figure, all_axes = plt.subplots(
-        rows, columns, figsize=(4.2 * columns, (0.7 + 4.2 * size[1] / size[0]) * rows),
+        rows, columns, figsize=(5.0 * columns, (0.8 + 5.0 * size[1] / size[0]) * rows),
         squeeze=False, layout="constrained")
     figure.get_layout_engine().set(h_pad=0.2)
     all_axes = list(all_axes.flat)

@@ -131,8 +131,8 @@ def _region_rings(plan, points, middle, px, px_per_km, clock):
         "xy": px(*nearest["at"]), "r": radius * px_per_km, "ring": i,
         "time": clock.day_time(nearest["time"])
     } for i, radius in enumerate(nearest["radii_km"]) if radius]
-    return rings, (f"Rings at {clock.day_time(nearest['time'])}, at the future position with known "
-                   "wind radii that is nearest to the ranch.")
+    return rings, (f"Rings at {clock.day_time(nearest['time'])}, the future point nearest to the "
+                   "ranch.")
 
 
 def _cone(errors, px, px_per_km):

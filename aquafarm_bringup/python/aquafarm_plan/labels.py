@@ -7,6 +7,7 @@ import unicodedata
 # Widths of characters, as fractions of the font size, in a wide bold sans-serif font (DejaVu).
 CHAR_WIDTH = 0.7
 WIDTHS = {" ": 0.36, "%": 1.0}
+_CROSSED = 60.0  # cost if a leader crosses a label
 WIDE = ("W", "F")  # East Asian width classes (Unicode) of characters as wide as the font size
 
 
@@ -54,28 +55,44 @@ class Label:
 
 def place(labels, points, width, height):
     """Sets the position of each label to the candidate with the lowest cost. A candidate costs more
-    if the label covers symbols, routes or earlier labels, leaves the map, or is far from its point.
+    if the label covers symbols, routes, or earlier labels or their leaders, if its leader crosses an
+    earlier label, if the label leaves the map, or if it is far from its point.
 
     @param points (x, y, weight) of what should stay visible: symbols, land, and samples of lines
     @param width, height size of the map [px]
     @returns the labels
     """
-    taken = []
+    taken, points = [], list(points)
     for label in labels:
         best = min(_candidates(label),
                    key=lambda box: _cost(box, label, taken, points, width, height))
         label.x, label.y = best[0], best[1] + label.height
         label.leader = _leader(best, label)
+        if label.leader:
+            points += [(x, y, _CROSSED) for x, y in _line_to(best, label)]
         taken.append((*best[:2], best[0] + label.width, best[1] + label.height))
     return labels
+
+
+def _nearest(box, label):
+    """Returns the point of the label that is nearest to its anchor."""
+    x, y = label.anchor
+    return (min(max(x, box[0]), box[0] + label.width), min(max(y, box[1]), box[1] + label.height))
+
+
+def _line_to(box, label):
+    """Returns points of the line from the anchor to the label, at most 4 px apart, without its
+    ends."""
+    (x, y), (near_x, near_y) = label.anchor, _nearest(box, label)
+    count = int(math.hypot(near_x - x, near_y - y) / 4.0) + 1
+    return [(x + (near_x - x) * i / count, y + (near_y - y) * i / count) for i in range(1, count)]
 
 
 def _leader(box, label):
     """Returns the path data of a line from the edge of the symbol to the nearest point of the
     label; empty if they are close."""
     x, y = label.anchor
-    near_x = min(max(x, box[0]), box[0] + label.width)
-    near_y = min(max(y, box[1]), box[1] + label.height)
+    near_x, near_y = _nearest(box, label)
     gap = math.hypot(near_x - x, near_y - y)
     if gap <= label.clearance + 0.8 * label.size:
         return ""
@@ -107,6 +124,9 @@ def _cost(box, label, taken, points, width, height):
         across, along = min(x1, a1) - max(x0, a0), min(y1, b1) - max(y0, b0)
         if across > -2 and along > -2:
             cost += 2000
+    if taken and any(a0 < x < a1 and b0 < y < b1 for x, y in _line_to(box, label)
+                     for a0, b0, a1, b1 in taken):
+        cost += _CROSSED
     margin = 2
     return cost + sum(weight for x, y, weight in points
                       if x0 - margin < x < x1 + margin and y0 - margin < y < y1 + margin)

@@ -42,6 +42,8 @@ class FileLock {
     if (file_ >= 0) close(file_);
   }
   bool is_held() const { return is_held_; }
+  /// Returns whether the file is open, and another process holds the lock.
+  bool is_held_by_another() const { return file_ >= 0 && !is_held_; }
 
  private:
   const int file_;
@@ -188,7 +190,11 @@ EpisodeBagWriter::EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> sce
 void EpisodeBagWriter::Write(const EpisodeLog& log, const std::string& path) {
   const std::string active = path + kPartial;
   std::error_code error;
-  const FileLock lock(active, O_RDWR | O_CREAT);  // if open fails, ChunkedBag throws
+  const FileLock lock(active, O_RDWR | O_CREAT);  // if it is not opened, ChunkedBag reports why
+  if (lock.is_held_by_another()) {
+    throw std::runtime_error(active + ": another process writes this file; keep the episodes of " +
+                             "each process in a folder of its own");
+  }
   try {
     ChunkedBag bag(active);
     Messages messages(bag, log, format_);

@@ -274,22 +274,20 @@ std::string Describe(const Evaluation& evaluation) {
 std::string DescribeLosses(const Evaluation& evaluation) {
   if (!evaluation.losses) return "";
   const Losses& losses = *evaluation.losses;
-  const auto number = [](const char* format, double value) {
+  const auto number = [](double value) {
     char text[60];
-    std::snprintf(text, sizeof(text), format, value);
+    std::snprintf(text, sizeof(text), "%.2f", value);
     return std::string(text);
   };
   const auto interval = [&number](const auto& of) {  // NaN with fewer than two distinct starts
-    return number("%.2f", of.value) +
-           (std::isnan(of.low)
-                ? ""
-                : " [95 %: " + number("%.2f", of.low) + ", " + number("%.2f", of.high) + "]");
+    return number(of.value) +
+           (std::isnan(of.low) ? "" : " [95 %: " + number(of.low) + ", " + number(of.high) + "]");
   };
-  return "loss " + number("%.2f", losses.mean_loss) +
-         (std::isnan(losses.standard_error) ? "" : " ± " + number("%.2f", losses.standard_error)) +
-         " " + losses.currency + " of " + number("%.2f", losses.Mean(losses.Total().insured)) +
-         " insured, operating cost " + number("%.2f", losses.Mean(losses.operating_cost)) +
-         ", VaR 5 % " + interval(losses.var) + ", CVaR 5 % " + interval(losses.cvar);
+  return "loss " + number(losses.mean_loss) +
+         (std::isnan(losses.standard_error) ? "" : " ± " + number(losses.standard_error)) + " " +
+         losses.currency + " of " + number(losses.Mean(losses.Total().insured)) +
+         " insured, operating cost " + number(losses.Mean(losses.operating_cost)) + ", VaR 5 % " +
+         interval(losses.var) + ", CVaR 5 % " + interval(losses.cvar);
 }
 
 }  // namespace aquafarm::agents

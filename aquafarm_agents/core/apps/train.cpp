@@ -142,9 +142,7 @@ int Run(Arguments& arguments, char** argv) {
     CheckRanks(arguments.options.algorithm, ranks, is_started ? variables.launcher : "ranks");
     if (!is_started) return RunLocalRanks(ranks, argv);
   }
-  const bool has_ranks = arguments.options.algorithm != kAutoAlgorithm &&
-                         FindAlgorithm(arguments.options.algorithm).make_rank != nullptr;
-  if (arguments.ranks == 1 && has_ranks &&
+  if (arguments.ranks == 1 && CanUseRanks(arguments.options.algorithm) &&
       arguments.options.options.find("shards=") == std::string::npos) {
     arguments.options.options += " shards=" + std::to_string(kDefaultShards);
   }

@@ -32,8 +32,12 @@ std::string ToBytes(const Decision& decision) {
 
 }  // namespace
 
+bool CanUseRanks(const std::string& algorithm) {
+  return algorithm != kAutoAlgorithm && FindAlgorithm(algorithm).make_rank != nullptr;
+}
+
 void CheckRanks(const std::string& algorithm, int ranks, const std::string& source) {
-  if (algorithm != kAutoAlgorithm && FindAlgorithm(algorithm).make_rank != nullptr) return;
+  if (CanUseRanks(algorithm)) return;
   std::string able;
   for (const Algorithm& one : Algorithms()) {
     if (one.make_rank != nullptr) able += (able.empty() ? "" : ", ") + std::string(one.name);

@@ -93,6 +93,10 @@ RunReport Train(const RunOptions& options, const MakeEnvironment& make_environme
                 const std::function<void(const RunStatus&)>& on_status,
                 const std::atomic<bool>* stop, const RankedRun* ranked = nullptr);
 
+/// Returns whether several ranks can train an algorithm.
+/// @param algorithm a name of Algorithms(), or kAutoAlgorithm, which several ranks cannot train
+bool CanUseRanks(const std::string& algorithm);
+
 /// Checks that several ranks can train an algorithm.
 /// @param source name of the variable or option with the number of ranks, such as WORLD_SIZE
 /// @throws InputError if they cannot. The message lists the algorithms that several ranks can train

@@ -75,6 +75,10 @@ class SimNodePairTest(unittest.TestCase):
 
     def test_waiting_commands_block_no_other_client(self):
         waiting = [Caller(0, HOLD, token=i + 1) for i in range(20)]
+        end = time.monotonic() + 60
+        while sum(caller.is_alive() for caller in waiting) > 1:  # the last command has not arrived
+            self.assertLess(time.monotonic(), end, "20 commands did not arrive within 60 s")
+            rospy.rostime.wallsleep(0.02)
         start = time.monotonic()
         self.assertEqual(0, state().step)
         self.assertTrue(call("save_state").ok)

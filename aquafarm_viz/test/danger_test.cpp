@@ -151,7 +151,7 @@ TEST(DangerMarkers, NameSeveralDisastersOutsideBelowTheNextDanger) {
   scene.state.disasters[1].kind = aquafarm_msgs::DisasterState::RED_TIDE;
   const auto markers = scene.Draw();
   EXPECT_EQ(markers.at({"outside", 0}).text,
-            "typhoon, centre 20 km W, stands still\nred tide, centre 48 km E, E at 10 km/h");
+            "typhoon, centre 20 km W, stands still\nred tide, centre 48 km E, E at 10 km/h now");
   EXPECT_LT(markers.at({"outside", 0}).pose.position.y, markers.at({"alarm", 0}).pose.position.y);
 }
 
@@ -302,7 +302,7 @@ TEST(DangerMarkers, SayWhenAStormOutsideIsClosest) {
   scene.SetTrackTo(-3);
   scene.state.disasters[0].speed = 0.5F;
   EXPECT_EQ(scene.Draw().at({"outside", 0}).text,
-            "typhoon, centre 20 km W, E at 10 km/h, closest 15 km W in 30 min");
+            "typhoon, centre 20 km W, E at 10 km/h now, closest 15 km W in 30 min");
 }
 
 TEST(DangerMarkers, FollowTheTrackOfTheScenario) {

@@ -365,11 +365,11 @@ TEST(LabelDanger, NamesEveryDeviceThatHasAFreePlaceNearby) {
 
 TEST(Outlook, GivesTheMotionAndTheClosestApproach) {
   Outlooks scene;
-  EXPECT_EQ(ApproachText(scene.spec, scene.state.disasters[0], scene.course()), "W at 20 km/h")
+  EXPECT_EQ(ApproachText(scene.spec, scene.state.disasters[0], scene.course()), "W at 20 km/h now")
       << "the present motion does not say when a storm is closest";
   scene.storms = ReadStormTracks(kRecorded, 1000.0);
   EXPECT_EQ(ApproachText(scene.spec, scene.state.disasters[0], scene.course()),
-            "W at 20 km/h, closest 8.0 km E in 30 min");
+            "W at 20 km/h now, closest 8.0 km E in 30 min");
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST(OutlookText, NamesTheNextAndTheWorstArrivalOfAllDevices) {
                      {2, -5.0, 0U, 34, {{40.0, -10.0, 0U, 50}, {60.0, -20.0, 0U, 64}}},
                      {5, 0.0, 0U, 0, {{3.0, -5.0, 0U, 34}, {50.0, -10.0, 0U, 50}}}};
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "typhoon: gale over F1 and F2 now, gale reaches F5 in 9 min, "
+            "typhoon: gale over F1 and F2 now, F5 in 9 min, "
             "hurricane force reaches F2 in 3.0 h");
   outlook.devices[2].arrivals = {{3.0, -8.0, 1U, 0}};
   EXPECT_NE(OutlookText(scene.spec, scene.state, outlook).find("now, red tide risk -8 reaches F5"),

@@ -168,12 +168,12 @@ TEST(RegionWords, OfAStormOverTheFarmThatLeaves) {
   Storms storms;
   storms.Add("{step: 0, x: 30, y: 12, radii: [10]}, {step: 30, x: 212, y: 12, radii: [10]}", 30.0F,
              12.0F);
-  EXPECT_EQ(storms.words().heading, "RISK -5 OVER THE RANCH");
+  EXPECT_EQ(storms.words().heading, "RISK -5 OVER PART OF THE RANCH");
   EXPECT_EQ(storms.words().lines[0], "centre 18 km E");
   storms = Storms();
   storms.Add("{step: 0, x: 30, y: 12, radii: [10]}, {step: 20, x: 12, y: 12, radii: [10]}", 30.0F,
              12.0F);
-  EXPECT_EQ(storms.words().heading, "RISK -5 OVER THE RANCH");
+  EXPECT_EQ(storms.words().heading, "RISK -5 OVER PART OF THE RANCH");
   EXPECT_EQ(storms.words().lines[0].substr(0, 7), "closest");
 }
 
@@ -182,7 +182,7 @@ TEST(RegionWords, NameADisasterWithoutATrackAndItsRiskOverTheFarm) {
   storms.Add("", 30.0F, 12.0F);
   EXPECT_EQ(storms.words().heading, RegionWords().heading);
   EXPECT_EQ(storms.words().lines[0], "typhoon, centre 18 km E");
-  EXPECT_EQ(storms.words().lines[1], "risk -5 over a part of the ranch");
+  EXPECT_EQ(storms.words().lines[1], "risk -5 over part of the ranch");
 }
 
 TEST(RegionWords, OfAStormWithGrowingRings) {
@@ -233,7 +233,7 @@ TEST(RegionWords, GiveTheTimeOfTheClosestApproachInsideARing) {
   storms.spec.has_start_time = true;
   storms.spec.step_duration_s = 3600.0;
   storms.state.world_time.sec = 1627095600;  // 24 July 2021, 03:00 UTC
-  EXPECT_EQ(storms.words().heading, "RISK -5 OVER THE RANCH");
+  EXPECT_EQ(storms.words().heading, "RISK -5 OVER PART OF THE RANCH");
   EXPECT_EQ(storms.words().lines[0].substr(0, 8), "closest ");
   EXPECT_EQ(storms.words().lines[1], "24 Jul 23:00 UTC, 40 m/s");
   storms.spec.has_origin = true;
@@ -256,6 +256,8 @@ TEST(RegionWords, NameTheStrongestWindOverTheFarm) {
   storms.state.disasters[0].radii = {5.0F, 20.0F, 60.0F};
   storms.state.disasters[0].risks = {-20.0F, -10.0F, -5.0F};
   EXPECT_EQ(storms.words().heading, "RISK -5 OVER THE RANCH") << "the winds are not given";
+  storms.state.disasters[0].radii[2] = 51.0F;  // one cell less than to the farthest corner
+  EXPECT_EQ(storms.words().heading, "RISK -5 OVER PART OF THE RANCH");
 }
 
 TEST(Region, MarksHaveTheWindAhead) {

@@ -43,13 +43,15 @@ struct ShadeEntry {
 
 using ShadeTable = std::array<ShadeEntry, 256>;
 
-ShadeTable MakeShadeTable(const Style& style, double tint) {
+// @param is_filled  false: neither tint nor pattern, only the edges of rings
+ShadeTable MakeShadeTable(const Style& style, bool is_filled) {
   ShadeTable table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
     const double severity = SeverityOf(i);
     const double cover = std::min(1.0, double(i) / kFaintest);
     table[i].color = Bgr(style.Risk(severity));
-    table[i].tint = static_cast<float>(tint * cover *
+    if (!is_filled) continue;
+    table[i].tint = static_cast<float>(style.ring_tint * cover *
                                        (kTintFaintest + (kTintWorst - kTintFaintest) * severity));
     table[i].half_width = static_cast<float>(cover * (0.35 + 1.15 * severity));
   }
@@ -205,20 +207,22 @@ void DrawRiskSample(cv::Mat& image, cv::Rect box, std::uint8_t kind, double risk
   cv::rectangle(image, box, Bgr(layout.style->sea_south), cv::FILLED);
   Patterns patterns(DisasterKindCount());
   patterns[KindIndex(kind)].emplace(kind, std::max(4, layout.Px(6)));
-  const ShadeTable table = MakeShadeTable(*layout.style, layout.style->ring_tint);
+  const ShadeTable table = MakeShadeTable(*layout.style, /*is_filled=*/true);
   const std::vector<std::uint8_t> land(std::size_t(box.width), 0);
   RingRow line(std::size_t(box.width), kind);
   line.Clear();
   std::fill(line.shades.begin(), line.shades.end(), static_cast<float>(Shade(risk)));
+  const int edge = std::min(layout.Px(1.0), box.width / 2);  // width of the edge
   for (int row = 0; row < box.height; ++row) {
-    const bool is_edge = row == 0 || row == box.height - 1;
+    const bool is_edge = row < edge || row >= box.height - edge;
     std::fill(line.edges.begin(), line.edges.end(), is_edge ? 1.0F : 0.0F);
-    line.edges.front() = line.edges.back() = 1.0F;
+    std::fill_n(line.edges.begin(), edge, 1.0F);
+    std::fill_n(line.edges.rbegin(), edge, 1.0F);
     PaintRow(image.ptr(box.y + row) + 3 * box.x, land.data(), row, line, patterns, table);
   }
 }
 
-void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land, bool is_tinted,
+void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land, bool is_filled,
                     const Layout& layout) {
   std::vector<Rings> all;
   for (const auto& disaster : state.disasters) {
@@ -234,7 +238,7 @@ void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land,
     });
     pattern.emplace(rings.kind, layout.Px(has_edge ? 13 : 30));  // wider if no edge is on the map
   }
-  const ShadeTable table = MakeShadeTable(*layout.style, is_tinted ? layout.style->ring_tint : 0.0);
+  const ShadeTable table = MakeShadeTable(*layout.style, is_filled);
   RingRow line(static_cast<std::size_t>(map.cols), all.front().kind);
   for (int row = 0; row < map.rows; ++row) {
     line.Clear();

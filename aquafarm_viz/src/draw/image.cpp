@@ -99,8 +99,9 @@ struct FarmPainter::Parts {
   std::vector<CourseMark> DrawDisasters(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
                                         const Forecasts& forecasts, bool has_risk,
                                         bool has_values) {
-    // A tint would change the colours of the values, so that they would not match their scale.
-    if (has_risk) ShadeDisasters(map, state, land, /*is_tinted=*/!has_values, layout);
+    // A tint would change the colours of the values, so that they would not match their scale, and
+    // a pattern would make them hard to read.
+    if (has_risk) ShadeDisasters(map, state, land, /*is_filled=*/!has_values, layout);
     std::vector<CourseMark> marks;
     for (std::size_t i = 0; has_risk && i < state.disasters.size(); ++i) {
       if (!IsDrawn(state.disasters[i])) continue;

@@ -104,6 +104,20 @@ cv::Size PlateSize(const std::vector<std::string>& lines, const Layout& layout,
   return {width + layout.Px(kPlateMargins), layout.Px(2.0 + kPlateRow * double(lines.size()))};
 }
 
+constexpr double kTextMargin = 2.5;  // around a text without a plate [design units]
+
+// Returns the size of a text without a plate, with its margin.
+cv::Size TextSize(const Font& font, const std::string& text, const Layout& layout) {
+  const int margin = layout.Px(kTextMargin);
+  return {font.Width(text) + 2 * margin, font.cap_height() + 2 * margin};
+}
+
+// Returns the upper left corner of a text in a place of TextSize.
+cv::Point TextAt(cv::Rect place, const Layout& layout) {
+  const int margin = layout.Px(kTextMargin);
+  return place.tl() + cv::Point(margin, margin);
+}
+
 Rgb RiskColor(double risk, const Layout& layout) { return layout.style->Risk(Severity(risk)); }
 
 }  // namespace
@@ -271,12 +285,11 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
                 LabelSpace& space, const Layout& layout, const Fonts& fonts) {
   const bool are_several =
       std::count_if(state.disasters.begin(), state.disasters.end(), IsDrawn) > 1;
+  const Style& style = *layout.style;
   for (std::size_t index = 0; index < state.disasters.size(); ++index) {
     const DisasterState& disaster = state.disasters[index];
     const std::vector<std::int32_t>& winds = courses[index].ring_winds_kt;
     if (!IsDrawn(disaster)) continue;
-    const std::string disaster_name = NameNow(disaster, courses[index]);
-    const std::string whose = are_several ? disaster_name + ", " : "";
     for (std::size_t ring = 0; ring < std::min(disaster.radii.size(), disaster.risks.size());
          ++ring) {
       const std::string name = ring < winds.size() ? aquafarm::RingName(winds[ring]) + ", " : "";
@@ -284,19 +297,26 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
       const auto points = PointsOnMap(disaster, ring, map.size(), layout);
       FreeSpace water = space.space(Cover::kNothing);
       BlockOtherRings(state, disaster, ring, map.size(), water, layout);
-      std::vector<std::vector<std::string>> candidates{{whose + name + "risk " + risk},
-                                                       {whose + "risk " + risk}};
-      if (are_several) candidates.push_back({disaster_name, "risk " + risk});
+      const Rgb color = RiskColor(double(disaster.risks[ring]), layout);
+      if (are_several) {  // only the risk, because many plates would cover the rings
+        const auto place =
+            PlaceBesideRing(points, TextSize(fonts.bold, risk, layout), water, layout);
+        if (!place) continue;
+        space.Add(*place);
+        DrawLabel(map, fonts.bold, risk, TextAt(*place, layout), layout,
+                  Mix(color, style.label, 0.3));
+        continue;
+      }
       std::optional<cv::Rect> place;
       std::vector<std::string> lines;
-      for (const auto& candidate : candidates) {
-        lines = candidate;
+      for (const std::string& text : {name + "risk " + risk, "risk " + risk}) {
+        lines = {text};
         place = PlaceBesideRing(points, PlateSize(lines, layout, fonts), water, layout);
         if (place) break;
       }
       if (!place) continue;  // only the key of risks explains the ring
       space.Add(*place);
-      DrawPlate(map, *place, lines, RiskColor(double(disaster.risks[ring]), layout), layout, fonts);
+      DrawPlate(map, *place, lines, color, layout, fonts);
     }
   }
 }
@@ -356,24 +376,6 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     DrawPlate(map, *place, lines, color, layout, fonts);
   }
 }
-
-namespace {
-
-constexpr double kTextMargin = 2.5;  // around a text without a plate [design units]
-
-// Returns the size of a text without a plate, with its margin.
-cv::Size TextSize(const Font& font, const std::string& text, const Layout& layout) {
-  const int margin = layout.Px(kTextMargin);
-  return {font.Width(text) + 2 * margin, font.cap_height() + 2 * margin};
-}
-
-// Returns the upper left corner of a text in a place of TextSize.
-cv::Point TextAt(cv::Rect place, const Layout& layout) {
-  const int margin = layout.Px(kTextMargin);
-  return place.tl() + cv::Point(margin, margin);
-}
-
-}  // namespace
 
 void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
                   const std::set<std::int32_t>& labelled, LabelSpace& space, const Layout& layout,

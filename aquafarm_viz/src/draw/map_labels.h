@@ -42,8 +42,8 @@ std::set<std::int32_t> LabelDanger(cv::Mat& map, const aquafarm_msgs::FarmSpec& 
 
 /// Labels each ring that crosses the map: on the line of the ring or, if there is no free space on
 /// the line, next to it. Labels do not cover land. The text is "risk -5", or "gale (34 kt), risk
-/// -5" if the wind of the ring is given. If there are several disasters, the text starts with the
-/// name of the disaster. If a text does not fit, shorter texts down to "risk -5" are tried.
+/// -5" if the wind of the ring is given and there is space for it. If there are several disasters,
+/// the text is only the risk, "-5".
 /// @param courses  one per disaster of the state
 void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmState& state,
                 const std::vector<Course>& courses, LabelSpace& space, const Layout& layout,

@@ -256,7 +256,7 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
             : Count(std::uint64_t(disaster.steps_left)) + " steps left";
     const std::string known =
         disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago";
-    const std::string motion = MotionText(spec, disaster.heading_deg, disaster.speed);
+    const std::string motion = MotionNow(spec, disaster);
     std::string wind = over ? "" : WindText(courses[i].ahead.front());
     const std::string both = grade + (known.empty() ? "" : ", " + known);
     if (wind.empty() && panel.Fits(motion, known)) {

@@ -16,11 +16,12 @@ constexpr double kBetweenHeads = 50.0;  // min distance between arrowheads [desi
 
 // Returns the colour of a part of a ship's path. If there is only one ship, its path is green,
 // because no risk is green. If there are several ships, each path has the colour of its ship, mixed
-// with the colour of labels. Older parts have a colour that is closer to that of the sea.
+// with the colour of labels. Older parts have a colour that is closer to that of the sea; paths of
+// several ships less, so that their colours remain different.
 // @param age  0: now, 1: the oldest part
 Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
-  const Rgb fresh = state.ships.size() > 1 ? Mix(style.label, ShipColor(ship), 0.5) : style.good;
-  return Mix(fresh, style.sea_south, 0.4 * age);
+  if (state.ships.size() == 1) return Mix(style.good, style.sea_south, 0.4 * age);
+  return Mix(Mix(style.label, ShipColor(ship), 0.6), style.sea_south, 0.25 * age);
 }
 
 // Draws one move of a path: a line or, on a dashed path, a shorter line as one dash.
@@ -46,11 +47,11 @@ cv::Point2d Turn(cv::Point2d at, cv::Point2d own, cv::Point2d other, double asid
   return cosine < -0.2 ? at + aside * own : at + (own + other) * (aside / (1.0 + cosine));
 }
 
-// Returns the distance of a ship's path from the centres of the cells [pixels]. If there are
-// several ships, there are three distances, by id, so that two paths on the same cells are usually
-// both visible.
+// Returns the distance of a ship's path from the centres of the cells [pixels], so that the ways
+// out and back on the same cells are both visible. If there are several ships, there are three
+// distances, by id, so that two paths on the same cells are usually both visible.
 double AsideOf(std::int32_t ship, bool are_several, const Layout& layout) {
-  const double units = 2.2 + (are_several ? 2.4 * (ship % 3) : 0.0);
+  const double units = are_several ? 2.2 + 2.4 * (ship % 3) : 3.2;
   return std::min(units * layout.unit, 0.3 * layout.view.cell_px());
 }
 

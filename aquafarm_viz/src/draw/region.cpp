@@ -141,9 +141,6 @@ std::string Upper(std::string text) {
   return text;
 }
 
-// Returns the heading for the case that a ring covers a part of the farm now.
-std::string OverText(const std::string& wind) { return Upper(wind) + " OVER THE RANCH"; }
-
 // Returns the heading for the case that a ring reaches the farm in a later step. It contains the
 // strongest wind over the farm in that step: "NEAR GALE IN 2.0 h". If winds are not given, it is
 // "REACHES THE RANCH IN 2.0 h". After the end of the known course, "IN ABOUT" replaces "IN".
@@ -163,8 +160,7 @@ RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subj
   const std::string centre = "centre " + PlaceText(spec, now.x, now.y);
   const double ahead_s = (subject.nearest.step - now.step) * spec.step_duration_s;
   const bool is_over = subject.danger == 0.0;
-  const std::string wind = WindOverFarm(spec, course, now);
-  const std::string over = OverText(wind.empty() ? RiskOverFarm(spec, course) : wind);
+  const std::string over = Upper(OverFarmText(spec, course));
   if (ahead_s > 0.0) {
     const std::string nearest = "closest " + PlaceText(spec, subject.nearest.x, subject.nearest.y) +
                                 " in " + HoursText(ahead_s);
@@ -215,7 +211,7 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
   // An extrapolated course can show that a ring will arrive, but not that no ring will.
   words.lines[0] =
       DisasterName(disaster.kind) + ", centre " + PlaceText(spec, disaster.x, disaster.y);
-  words.lines[1] = subject->danger == 0.0 ? RiskOverFarm(spec, course) + " over a part of the ranch"
+  words.lines[1] = subject->danger == 0.0 ? OverFarmText(spec, course)
                    : std::isfinite(subject->danger)
                        ? "reaches the ranch in about " + AheadText(spec, subject->danger)
                        : SourceText(spec, disaster, course);

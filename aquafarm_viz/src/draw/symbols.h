@@ -87,9 +87,9 @@ cv::Mat1b IslandCoverage(const aquafarm_msgs::FarmSpec& spec, const Layout& layo
 /// that marks the kind of disaster. Where rings overlap, tint and pattern are those of the worst
 /// risk.
 /// @param land  IslandCoverage; rings are fainter over land
-/// @param is_tinted  false: draws no tint between the lines of the pattern
+/// @param is_filled  false: draws only the outlines
 void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const cv::Mat1b& land,
-                    bool is_tinted, const Layout& layout);
+                    bool is_filled, const Layout& layout);
 
 /// Fills a box of the legend like a ring on the map: with the pattern of a kind of disaster and the
 /// colour of a risk.

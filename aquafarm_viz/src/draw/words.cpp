@@ -2,6 +2,7 @@
 // Draws the texts above and below the map.
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -59,7 +60,7 @@ bool DrawDanger(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
 }
 
 // Draws two rows. The first row contains the danger or, if there is none, the scenario. After the
-// end of an episode it is empty, because DrawEnd uses it. The second row contains the scenario (if
+// end of an episode it is left to DrawEnd. The second row contains the scenario (if
 // the first row does not), the episode, step, return and time. Its texts end before the time.
 void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
              const Layout& layout, const Fonts& fonts) {
@@ -141,17 +142,22 @@ void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layo
   if (const auto left = Duration(training.time_left_s); !left.empty()) pair("left", left);
 }
 
+// Writes why the episode ended: in the first row, or on a plate on the map if there are no rows.
 void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const Fonts& fonts) {
   if (!state.terminated && !state.truncated) return;
   static constexpr std::array<const char*, 4> kReasons{"episode over", "all devices retrieved",
                                                        "the disaster has ended", "step limit"};
-  const std::string text = kReasons[state.reason < kReasons.size() ? state.reason : 0U];
-  const int width = fonts.title.Width(text) + layout.Px(28);
-  const bool has_top = !layout.top.empty();  // false: the text covers a part of the map
-  const cv::Rect plate = has_top ? cv::Rect(layout.Px(10), layout.Px(2), width, layout.Px(21))
-                                 : cv::Rect(layout.map.x + (layout.map.width - width) / 2,
-                                            layout.map.y + layout.Px(12), width, layout.Px(28));
+  std::string text = kReasons[state.reason < kReasons.size() ? state.reason : 0U];
   const bool success = state.reason == FarmState::ALL_RETRIEVED;
+  if (!layout.top.empty()) {
+    text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
+    fonts.title.Draw(image, text, {layout.Px(10), layout.Px(18)},
+                     Bgr(success ? layout.style->good : layout.style->words));
+    return;
+  }
+  const int width = fonts.title.Width(text) + layout.Px(28);
+  const cv::Rect plate(layout.map.x + (layout.map.width - width) / 2, layout.map.y + layout.Px(12),
+                       width, layout.Px(28));
   Tint(image, plate, Bgr(success ? Rgb{0x12, 0x6b, 0x3a} : kInk), 0.92);
   cv::rectangle(image, plate, Bgr(success ? layout.style->good : layout.style->faint), 1);
   fonts.title.Draw(

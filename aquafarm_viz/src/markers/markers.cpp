@@ -146,15 +146,31 @@ void AddDirections(MarkerArray& array, const Maker& maker, const FarmSpec& spec)
   }
 }
 
+// Writes the label of each deployed device at a corner of its symbol: south-east of it or, if a
+// ship is there, at the next corner where no ship is.
 void AddLabels(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                const FarmState& state) {
-  const double aside = 0.75 * maker.thing_m() / maker.cell_m();
+  const double thing = maker.thing_m() / maker.cell_m();
+  const double aside = 0.75 * thing;
+  const auto is_free = [&](cv::Point2d at) {
+    return std::none_of(state.ships.begin(), state.ships.end(), [&](const auto& ship) {
+      const cv::Point2d place = ShipPlace(spec, state, ship.x, ship.y, kShipAside * thing);
+      return ship.visible && ship.active && cv::norm(place - at) < thing;
+    });
+  };
   for (const auto& device : state.devices) {
-    array.markers.push_back(IsLabelled(spec, device)
-                                ? maker.Text("device_label", device.id, device.x + aside,
-                                             device.y - aside, DeviceLabel(device.id),
-                                             maker.word_m(), kDirectionColor)
-                                : maker.Delete("device_label", device.id));
+    if (!IsLabelled(spec, device)) {
+      array.markers.push_back(maker.Delete("device_label", device.id));
+      continue;
+    }
+    const cv::Point2d here(device.x, device.y);
+    const std::array<cv::Point2d, 4> corners{
+        here + cv::Point2d(aside, -aside), here + cv::Point2d(-aside, -aside),
+        here + cv::Point2d(-aside, aside), here + cv::Point2d(aside, aside)};
+    const auto* free = std::find_if(corners.begin(), corners.end(), is_free);
+    const cv::Point2d at = free == corners.end() ? corners.front() : *free;
+    array.markers.push_back(maker.Text("device_label", device.id, at.x, at.y,
+                                       DeviceLabel(device.id), maker.word_m(), kDirectionColor));
   }
 }
 

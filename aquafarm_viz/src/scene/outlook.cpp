@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "aquafarm/tracks/wind_name.h"
 #include "aquafarm_viz/base/checks.h"
@@ -35,10 +36,15 @@ struct RingRisk {
   std::size_t ring{};
 };
 
+// Returns the quadrant of a point that is seen from the centre: 0: NE, 1: SE, 2: SW, 3: NW.
+std::size_t QuadrantOf(double east, double north) {
+  return north >= 0.0 ? (east >= 0.0 ? 0U : 3U) : (east >= 0.0 ? 1U : 2U);
+}
+
 RingRisk RiskAt(const TrackPoint& storm, double x, double y) {
   const double east = x - storm.x;
   const double north = y - storm.y;
-  const std::size_t quadrant = north >= 0.0 ? (east >= 0.0 ? 0U : 3U) : (east >= 0.0 ? 1U : 2U);
+  const std::size_t quadrant = QuadrantOf(east, north);
   RingRisk worst;
   for (std::size_t ring = 0; ring < std::min(storm.radii.size(), storm.risks.size()); ++ring) {
     const double radius = storm.radii[ring][quadrant];
@@ -165,6 +171,33 @@ bool IsOverFarm(const FarmSpec& spec, const TrackPoint& storm) {
                      [&](const auto& ring) { return IsOverFarm(spec, storm, ring); });
 }
 
+// Returns whether a ring covers the farm: all cells at its edge, and therefore all other cells.
+bool CoversFarm(const FarmSpec& spec, const TrackPoint& storm, const std::array<double, 4>& ring) {
+  const auto covers = [&](int x, int y) {
+    const double east = x - storm.x;
+    const double north = y - storm.y;
+    return std::hypot(east, north) <= ring[QuadrantOf(east, north)];
+  };
+  for (int x = 0; x < spec.width; ++x) {
+    if (!covers(x, 0) || !covers(x, spec.height - 1)) return false;
+  }
+  for (int y = 0; y < spec.height; ++y) {
+    if (!covers(0, y) || !covers(spec.width - 1, y)) return false;
+  }
+  return true;
+}
+
+// Returns the ring with the worst risk of those that cover a part of the farm; nullopt if none
+// does.
+std::optional<std::size_t> WorstOverFarm(const FarmSpec& spec, const TrackPoint& storm) {
+  std::optional<std::size_t> worst;
+  for (std::size_t i = 0; i < std::min(storm.radii.size(), storm.risks.size()); ++i) {
+    if (!IsOverFarm(spec, storm, storm.radii[i])) continue;
+    if (!worst || storm.risks[i] < storm.risks[*worst]) worst = i;
+  }
+  return worst;
+}
+
 // Returns whether a leg of a course is so far from the farm that no ring can reach the farm.
 bool IsFar(const FarmSpec& spec, const TrackPoint& from, const TrackPoint& to) {
   const TrackPoint nearest = ClosestApproach(spec, {from, to}, from.step);
@@ -181,21 +214,19 @@ double WorstRisk(const DeviceOutlook& device) {
 }
 
 const char* WindOverFarm(const FarmSpec& spec, const Course& course, const TrackPoint& at) {
-  std::int32_t strongest_kt = 0;
-  for (std::size_t i = 0; i < std::min(at.radii.size(), course.ring_winds_kt.size()); ++i) {
-    if (!IsOverFarm(spec, at, at.radii[i])) continue;
-    strongest_kt = std::max(strongest_kt, course.ring_winds_kt[i]);
-  }
-  return strongest_kt > 0 ? aquafarm::WindName(strongest_kt) : "";
+  const std::optional<std::size_t> ring = WorstOverFarm(spec, at);
+  const std::int32_t wind_kt = ring ? WindOf(course, *ring) : 0;
+  return wind_kt > 0 ? aquafarm::WindName(wind_kt) : "";
 }
 
-std::string RiskOverFarm(const FarmSpec& spec, const Course& course) {
+std::string OverFarmText(const FarmSpec& spec, const Course& course) {
   const TrackPoint& now = course.ahead.front();
-  double worst = 0.0;
-  for (std::size_t i = 0; i < std::min(now.radii.size(), now.risks.size()); ++i) {
-    if (IsOverFarm(spec, now, now.radii[i])) worst = std::min(worst, now.risks[i]);
-  }
-  return "risk " + Number(worst, 0);
+  const std::optional<std::size_t> ring = WorstOverFarm(spec, now);
+  if (!ring) return "";
+  const std::string wind = WindOverFarm(spec, course, now);
+  return (wind.empty() ? "risk " + Number(now.risks[*ring], 0) : wind) +
+         (CoversFarm(spec, now, now.radii[*ring]) ? " over the ranch"
+                                                  : " over part of the ranch");
 }
 
 double StepsToFarm(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,

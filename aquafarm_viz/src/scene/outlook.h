@@ -75,15 +75,16 @@ Outlook ComputeOutlook(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs:
 double StepsToFarm(const aquafarm_msgs::FarmSpec& spec,
                    const aquafarm_msgs::DisasterState& disaster, const Course& course);
 
-/// Returns the name of the strongest wind of the rings that cover a part of the farm, such as
-/// "gale"; empty if no ring does, or if the winds of the rings are not given.
+/// Returns the name of the wind of the worst ring that covers a part of the farm, such as "gale";
+/// empty if no ring does, or if the winds of the rings are not given.
 /// @param at  a point of the course
 const char* WindOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& course,
                          const TrackPoint& at);
 
-/// Returns the worst risk of the rings that cover a part of the farm now: "risk -5"; "risk 0" if no
-/// ring does.
-std::string RiskOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& course);
+/// Returns the worst ring that covers a part of the farm now: "gale over the ranch", or "gale over
+/// part of the ranch" if it does not cover all of it. If its wind is not given, the text begins with
+/// its risk, such as "risk -5". Empty if no ring covers a part of the farm.
+std::string OverFarmText(const aquafarm_msgs::FarmSpec& spec, const Course& course);
 
 /// Returns the risk of the worst ring that covers a device now or reaches it later; 0 if none does.
 double WorstRisk(const DeviceOutlook& device);

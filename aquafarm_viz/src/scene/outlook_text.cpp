@@ -190,17 +190,19 @@ class Sentence {
     whom_ = Names(outlook_, [&first](const DeviceOutlook& one) {
       return one.disaster_now == first.disaster_now && one.risk_now == first.risk_now;
     });
-    text_ = Name(disaster_) + ": " + RingText(first.risk_now, first.wind_now_kt) + " over " +
-            whom_ + " now";
+    ring_ = RingText(first.risk_now, first.wind_now_kt);
+    text_ = Name(disaster_) + ": " + ring_ + " over " + whom_ + " now";
   }
 
-  // Adds the arrival of a ring. Names the disaster and the devices only if they differ from those
-  // of the previous part.
+  // Adds the arrival of a ring. Names the disaster, the ring and the devices only if they differ
+  // from those of the previous part.
   void Add(const RingArrival& ring, const std::string& clock) {
     const std::string these = WhomText(spec_, outlook_, ring);
     const std::string what = RingText(ring.risk, ring.wind_kt);
     if (text_.empty()) {
       text_ = Name(ring.disaster) + ": " + what + " reaches " + these;
+    } else if (ring.disaster == disaster_ && what == ring_ && these != whom_) {
+      text_ += ", " + these;
     } else {
       const char* between = HasDirection(ring.disaster) ? ", " : " ";
       text_ += ", " + (ring.disaster == disaster_ ? "" : Name(ring.disaster) + between) + what +
@@ -208,6 +210,7 @@ class Sentence {
     }
     text_ += " in " + When(ring.steps) + clock;
     whom_ = these;
+    ring_ = what;
     disaster_ = ring.disaster;
   }
 
@@ -240,6 +243,7 @@ class Sentence {
   bool has_directions_;
   std::string text_;
   std::string whom_;          // devices of the previous part
+  std::string ring_;          // RingText of the previous part
   std::size_t disaster_ = 0;  // disaster of the previous part
 };
 
@@ -347,7 +351,7 @@ std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState&
 
 std::string MotionNow(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster) {
   const std::string motion = MotionText(spec, disaster.heading_deg, double(disaster.speed));
-  return disaster.speed > 0.0F ? "now moving " + motion : motion;
+  return disaster.speed > 0.0F ? motion + " now" : motion;
 }
 
 std::string ClosestText(const FarmSpec& spec, const Course& course) {
@@ -360,7 +364,7 @@ std::string ClosestText(const FarmSpec& spec, const Course& course) {
 
 std::string ApproachText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
                          const Course& course) {
-  const std::string motion = MotionText(spec, disaster.heading_deg, double(disaster.speed));
+  const std::string motion = MotionNow(spec, disaster);
   const std::string closest = ClosestText(spec, course);
   return closest.empty() ? motion : motion + ", closest " + closest;
 }

@@ -90,7 +90,7 @@ std::pair<std::string, std::string> NameAndDanger(
 std::string CentreText(const aquafarm_msgs::FarmSpec& spec,
                        const aquafarm_msgs::DisasterState& disaster, const Course& course);
 
-/// Returns the present motion of a disaster: "now moving NW at 13 km/h", or "stands still".
+/// Returns the present motion of a disaster: "NW at 13 km/h now", or "stands still".
 std::string MotionNow(const aquafarm_msgs::FarmSpec& spec,
                       const aquafarm_msgs::DisasterState& disaster);
 

@@ -134,8 +134,8 @@ std::vector<RanchModel::Row> RanchModel::Disasters() const {
     const auto& disaster = state.disasters[i];
     if (!disaster.known || disaster.steps_left <= 0) continue;
     rows.push_back({NameNow(disaster, courses[i]), WhereText(spec, disaster.x, disaster.y),
-                    MotionText(spec, disaster.heading_deg, double(disaster.speed)),
-                    ClosestText(spec, courses[i]), AheadText(spec, disaster.steps_left)});
+                    MotionNow(spec, disaster), ClosestText(spec, courses[i]),
+                    AheadText(spec, disaster.steps_left)});
   }
   return rows;
 }

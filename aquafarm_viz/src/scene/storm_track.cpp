@@ -187,18 +187,25 @@ std::vector<std::pair<double, std::string>> NamedRisks(const FarmSpec& spec) {
   const auto winds = ReadStormTracks(spec.scenario_yaml, spec.cell_size_m).ring_winds_kt;
   std::map<double, std::string, std::greater<>> names;  // by risk, the mildest first
   bool is_named = winds.size() == spec.disasters.size();
-  for (std::size_t i = 0; is_named && i < winds.size(); ++i) {
+  for (std::size_t i = 0; i < spec.disasters.size(); ++i) {
     const auto& risks = spec.disasters[i].risks;
-    is_named = !winds[i].empty() && winds[i].size() == risks.size();
-    for (std::size_t ring = 0; is_named && ring < risks.size(); ++ring) {
+    is_named = is_named && winds[i].size() == risks.size();
+    for (std::size_t ring = 0; ring < risks.size(); ++ring) {
       const double risk = std::round(double(risks[ring]));
-      const std::string name =
-          std::string(aquafarm::WindName(winds[i][ring])) + " " + Number(risk, 0);
-      is_named = names.emplace(risk, name).first->second == name;
+      const std::string wind =
+          is_named ? aquafarm::WindName(winds[i][ring]) + std::string(" ") : "";
+      const std::string name = wind + Number(risk, 0);
+      is_named = names.emplace(risk, name).first->second == name && is_named;
     }
   }
-  if (is_named && !names.empty() && names.size() <= kMaxNames) return {names.begin(), names.end()};
-  return {{-5.0, "-5"}, {-10.0, "-10"}, {-15.0, "-15"}, {-20.0, "-20"}};
+  if (names.empty() || names.size() > kMaxNames) {
+    names = {{-5.0, ""}, {-10.0, ""}, {-15.0, ""}, {-20.0, ""}};
+    is_named = false;
+  }
+  for (auto& [risk, name] : names) {
+    if (!is_named) name = Number(risk, 0);
+  }
+  return {names.begin(), names.end()};
 }
 
 TrackPoint TrackAt(const Track& track, double step) {

@@ -14,6 +14,7 @@ matplotlib.use("Agg")  # needs no display
 from matplotlib import pyplot as plt  # noqa: E402
 
 DPI = 160
+MARGIN = 5  # the figure marks groups of promises that are kept this many points more or less often
 KINDS = {"home": "The device comes home", "gales": "Gales reach the device"}
 
 
@@ -22,47 +23,66 @@ def bins_of(data, key):
     return [one for one in data[key]["diagram"] if one["count"] >= 20]
 
 
+def is_far(group):
+    """Returns whether a group of promises is kept more than MARGIN points more or less often."""
+    return abs(100 * (group["kept"]["mean"] - group["promised"])) > MARGIN
+
+
 def reliability(data):
     """Returns a sentence about how well the promises hold in simulated storms."""
     bins = [one for key in KINDS for one in bins_of(data, key)]
-    far = [100 * (one["kept"]["mean"] - one["promised"]) for one in bins]
-    close = sum(abs(one) <= 5 for one in far)
-    return (f"Promised chances are kept: {close} of {len(bins)} groups of promises within 5 points,\n"
-            f"the others {'at most %.0f' % max(map(abs, far))} points off "
-            f"({data['storms']:,} simulated storms)")
+    far = [one for one in bins if is_far(one)]
+    most = max(abs(100 * (one["kept"]["mean"] - one["promised"])) for one in bins)
+    missed = sum(not one["kept"]["low"] <= one["promised"] <= one["kept"]["high"] for one in bins)
+    return (f"Promised chances hold within {MARGIN} points in {len(bins) - len(far)} of "
+            f"{len(bins)} groups, at worst {most:.0f} points off.\nThe 95 % intervals of "
+            f"{len(bins) - missed} groups contain the promise ({data['storms']:,} simulated "
+            "storms).")
+
+
+def draw_groups(axes, bins, colour, label):
+    """Draws the kept chance of groups of promises, with 95 % intervals."""
+    kept = [one["kept"] for one in bins]
+    axes.errorbar([100 * one["promised"] for one in bins], [100 * one["mean"] for one in kept],
+                  yerr=[[100 * max(0.0, one["mean"] - one["low"]) for one in kept],
+                        [100 * max(0.0, one["high"] - one["mean"]) for one in kept]],
+                  fmt="o", color=colour, markersize=6, capsize=3, label=label, clip_on=False,
+                  zorder=3)
 
 
 def draw_reliability(data, path):
-    """Draws kept against promised chances, with 95 % intervals."""
-    figure, axes = plt.subplots(1, 2, figsize=(9, 5), sharey=True)
-    for one, (key, title) in zip(axes, KINDS.items()):
+    """Draws kept against promised chances, with 95 % intervals, and the numbers of cases."""
+    figure, axes = plt.subplots(2, 2, figsize=(9, 6.3), sharex=True, sharey="row",
+                                height_ratios=[4, 1], layout="constrained")
+    for one, sizes, (key, title) in zip(*axes, KINDS.items()):
         bins = bins_of(data, key)
-        x = [100 * b["promised"] for b in bins]
-        y = [100 * b["kept"]["mean"] for b in bins]
-        low = [100 * max(0.0, b["kept"]["mean"] - b["kept"]["low"]) for b in bins]
-        high = [100 * max(0.0, b["kept"]["high"] - b["kept"]["mean"]) for b in bins]
         one.plot([0, 100], [0, 100], color="black", linewidth=0.8, label="kept exactly")
-        one.fill_between([0, 100], [-5, 95], [5, 105], color="0.85", label="within 5 points")
-        one.errorbar(x, y, yerr=[low, high], fmt="o", color="#0b5394", markersize=5, capsize=3,
-                     label="group of promises,\n95 % interval", clip_on=False, zorder=3)
-        sizes = one.inset_axes([0.0, -0.34, 1.0, 0.14], sharex=one)
-        sizes.bar(x, [b["count"] for b in bins], width=3.0, color="#0b5394")
-        sizes.set_yscale("log")
-        sizes.set_ylim(10, 20_000)
-        sizes.set_ylabel("cases", fontsize=9.5)
-        sizes.tick_params(labelsize=9)
-        one.set_title(f"{title} (n = {sum(b['count'] for b in bins):,})", fontsize=11.5)
-        one.set_xlabel("promised chance [%]", fontsize=11)
+        one.fill_between([0, 100], [-MARGIN, 100 - MARGIN], [MARGIN, 100 + MARGIN], color="0.85",
+                         label=f"within {MARGIN} points")
+        draw_groups(one, [group for group in bins if not is_far(group)], "#0b5394",
+                    "group of promises,\n95 % interval")
+        draw_groups(one, [group for group in bins if is_far(group)], "#d55e00",
+                    f"group beyond {MARGIN} points")
+        one.set_title(f"{title} (n = {sum(b['count'] for b in bins):,})", fontsize=12)
         one.set_xlim(0, 100)
         one.set_ylim(0, 100)
         one.set_aspect("equal")
         one.grid(alpha=0.3)
-    axes[0].set_ylabel("share of cases in which it happened [%]", fontsize=11)
-    axes[0].legend(loc="upper left", fontsize=10)
-    for words, x, y in (("more often\nthan promised", 20, 56), ("less often\nthan promised", 80, 30)):
-        axes[1].text(x, y, words, ha="center", fontsize=10, color="0.3")
-    figure.suptitle(reliability(data), fontsize=12.5, weight="bold", x=0.07, y=1.0, ha="left")
-    figure.savefig(path, dpi=DPI, bbox_inches="tight")
+        sizes.bar([100 * group["promised"] for group in bins], [group["count"] for group in bins],
+                  width=3.0, color="#0b5394")
+        sizes.set_yscale("log")
+        sizes.set_ylim(10, 20_000)
+        sizes.set_yticks([10, 100, 1_000, 10_000], ["10", "100", "1,000", "10,000"])
+        sizes.minorticks_off()
+        sizes.grid(alpha=0.3)
+        sizes.set_xlabel("promised chance [%]", fontsize=11)
+    axes[0][0].set_ylabel("share of cases\nin which it happened [%]", fontsize=11)
+    axes[1][0].set_ylabel("cases per\ngroup (log)", fontsize=11)
+    axes[0][0].legend(loc="upper left", fontsize=10)
+    for words, x, y in (("more often", 20, 60), ("less often", 80, 30)):
+        axes[0][1].text(x, y, f"{words}\nthan promised", ha="center", fontsize=11, color="0.3")
+    figure.suptitle(reliability(data), fontsize=12.5, weight="bold", x=0.01, ha="left")
+    figure.savefig(path, dpi=DPI)
     plt.close(figure)
 
 
@@ -72,9 +92,9 @@ def finding(storms):
     as_good = sum(s["saved"] > s["clairvoyant"] - 0.5 for s in staked)
     share = sum(s["saved"] for s in storms) / sum(s["clairvoyant"] for s in storms)
     less = sum(s["promised"] < s["saved"] for s in storms)
-    return (f"In {as_good} of {len(staked)} recorded storms with something at stake the plan saves "
-            f"what a clairvoyant saves.\nOver all {len(storms)} storms it saves {100 * share:.0f} % of "
-            f"the clairvoyant's value; in {less} it saves more than it promised.")
+    return (f"In {as_good} of {len(staked)} storms with something at stake the plan saves what a "
+            f"clairvoyant saves.\nOver all {len(storms)}, it saves {100 * share:.0f} % of the "
+            f"clairvoyant's value; in {less}, more than promised.")
 
 
 def name_of(storm):
@@ -84,37 +104,57 @@ def name_of(storm):
     return f"{name.title() if name.isupper() else name} {storm['nearest'][:4]}"
 
 
+def mean_of(storms):
+    """Returns the mean of the values of several storms; without a range of the saved value."""
+    mean = {key: sum(storm[key] for storm in storms) / len(storms)
+            for key in ("at_risk", "promised", "saved", "clairvoyant")}
+    return {**mean, "saved_low": mean["saved"], "saved_high": mean["saved"]}
+
+
 def draw_back_test(data, path):
     """Draws four values for each recorded storm: at stake, saved by the plan, promised by the plan,
-    and saved by a clairvoyant."""
+    and saved by a clairvoyant. The last row has the means of all storms."""
     storms = sorted(data["storms"], key=lambda storm: -storm["at_risk"])
-    figure, axes = plt.subplots(figsize=(8.2, 0.27 * len(storms) + 1.2))
-    places = range(len(storms), 0, -1)
-    low = [max(0.0, s["saved"] - s["saved_low"]) for s in storms]
-    high = [max(0.0, s["saved_high"] - s["saved"]) for s in storms]
-    axes.barh(places, [s["at_risk"] for s in storms], color="0.87",
+    figure, axes = plt.subplots(figsize=(9, 0.27 * len(storms) + 2.2), layout="constrained")
+    rows = [*storms, mean_of(storms)]
+    places = [*range(len(storms), 0, -1), -0.4]
+    low = [max(0.0, s["saved"] - s["saved_low"]) for s in rows]
+    high = [max(0.0, s["saved_high"] - s["saved"]) for s in rows]
+    axes.barh(places, [s["at_risk"] for s in rows], color="0.87",
               label="at stake: lost if no ship leaves")
-    axes.plot([s["clairvoyant"] for s in storms], places, "|", color="#d55e00", markersize=17,
+    axes.plot([s["clairvoyant"] for s in rows], places, "|", color="#d55e00", markersize=17,
               markeredgewidth=3.5, label="saved by a clairvoyant")
-    axes.errorbar([s["saved"] for s in storms], places, xerr=[low, high], fmt="o", color="black",
-                  markerfacecolor="white", markersize=5, capsize=3, label="saved by the plan (mean, range)")
-    axes.plot([s["promised"] for s in storms], places, "x", color="#0072b2", markersize=7,
+    axes.errorbar([s["saved"] for s in rows], places, xerr=[low, high], fmt="o", color="black",
+                  markerfacecolor="white", markersize=5, capsize=3,
+                  label="saved by the plan (mean, range)")
+    axes.plot([s["promised"] for s in rows], places, "x", color="#0072b2", markersize=7,
               markeredgewidth=1.8, label="promised (beyond the bar: a milder storm came)")
-    for place, storm in zip(places, storms):
+    for place, storm in zip(places, rows):
         if storm["at_risk"] <= 0.5:
             axes.text(max(storm["promised"], storm["saved"]) + 6, place, "nothing at stake",
-                      va="center", fontsize=9, color="0.35")
-    axes.set_yticks(list(places), [name_of(s) for s in storms], fontsize=10)
+                      va="center", fontsize=10, color="0.35")
+    mean = rows[-1]
+    axes.text(mean["at_risk"] + 6, places[-1], va="center", fontsize=10.5,
+              s=f"promised {mean['promised']:.1f}, saved {mean['saved']:.1f}, "
+              f"clairvoyant {mean['clairvoyant']:.1f}")
+    axes.axhline(0.3, color="0.6", linewidth=0.8)
+    axes.set_yticks(places, [*map(name_of, storms), f"mean of {len(storms)}"], fontsize=10.5)
+    axes.get_yticklabels()[-1].set_weight("bold")
     axes.set_xlabel("value of devices [units]", fontsize=11)
+    figure.supxlabel(f"One ship; means of {data['bulletins']} bulletins per storm, issued at least "
+                     f"{data['lead_h']:.0f} h before the closest approach.", x=0.01, ha="left",
+                     fontsize=10.5, color="0.35")
     axes.set_xlim(-4, None)
-    axes.set_ylim(0.3, len(storms) + 0.7)
+    axes.set_ylim(-1.1, len(storms) + 0.7)
     axes.grid(alpha=0.3, axis="x")
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
     handles, words = axes.get_legend_handles_labels()
     order = [words.index(word) for word in sorted(words)]
-    axes.legend([handles[i] for i in order], [words[i] for i in order], fontsize=10, ncol=2,
-                loc="lower left", bbox_to_anchor=(-0.17, 1.0), frameon=False, borderpad=0.2)
-    figure.suptitle(finding(storms), fontsize=12, weight="bold", x=-0.05, y=1.05, ha="left")
-    figure.savefig(path, dpi=DPI, bbox_inches="tight")
+    axes.legend([handles[i] for i in order], [words[i] for i in order], fontsize=10.5, ncol=2,
+                loc="lower left", bbox_to_anchor=(-0.15, 1.0), frameon=False, borderpad=0.2)
+    figure.suptitle(finding(storms), fontsize=12.5, weight="bold", x=0.01, ha="left")
+    figure.savefig(path, dpi=DPI)
     plt.close(figure)
 
 

@@ -20,9 +20,11 @@ MOST_WINDOW = 7  # max side of the window of the SSIM [cells], the default of sc
 _WEAK = 0.3  # below this absolute rank correlation, the headline states "no steady trend"
 FEWEST_CELLS = 10  # min number of cells for a comparison
 NEXT_TO = 2.0  # max distance at which a cell counts as next to a device or port [cells]
-_COLUMN = 2.9  # width of a map in the figure [inch]
-_GAP = 1.1  # between columns and between rows [inch]
-_TOP = 1.05  # height of the titles with a headline of one line [inch]
+_COLUMN = 2.4  # width of a map in the figure; a map alone has twice this width [inch]
+_RELATION = 2.1  # height of a chart of the second row [inch]
+_GAP = 1.0  # between columns and between rows [inch]
+_TOP = 1.15  # height of the titles with a headline of one line [inch]
+_BOTTOM = 1.05  # height of the legend and of the labels of the last row [inch]
 _LINE = 0.22  # height of a line of the headline [inch]
 _LETTER = 0.11  # mean width of a letter of the headline (bold, 13 points) with a reserve [inch]
 _LOW_COLOUR = "#440154"  # the first colour of viridis
@@ -175,12 +177,11 @@ def draw_map(axis, field, km, colours, unit, lowest=0.0):
 
 def draw_places(axis, text, km):
     """Marks the ports, and the devices at the start of the episode, if the file contains them."""
-    for key, words, shape in (("ports", "port", {"marker": "o", "facecolor": "black"}),
-                              ("devices", "device", {"marker": "^", "facecolor": "white"})):
+    for key, words, marker in (("ports", "port", "o"), ("devices", "device", "D")):
         if cells := text.get(key):
             x, y = zip(*(((east + 0.5) * km, (north + 0.5) * km) for east, north in cells))
-            axis.scatter(x, y, s=46, edgecolor="black", linewidth=1.6, label=words, zorder=3,
-                         **shape)
+            axis.scatter(x, y, s=46, facecolor="white", edgecolor="black", linewidth=1.6,
+                         label=words, zorder=3, marker=marker)
 
 
 def draw_relation(axis, values, layer, result, letter):
@@ -201,13 +202,12 @@ def draw_relation(axis, values, layer, result, letter):
     words = sea_words(name)
     axis.set_xlabel(f"{words} [{unit_text(units)}]")
     rest = compare(np.where(low, np.nan, values), field)["spearman_rho"]
-    axis.set_title(f"({letter}) Return against {words}", fontsize=11, pad=32.0)
-    said = (f"rank correlation {signed(result['spearman_rho'])}, {result['cells']} cells\n"
+    said = (f"rank correlation {signed(result['spearman_rho'])}\n"
             f"{signed(rest)} without the lowest twentieth" if result["spearman_rho"] is not None else
-            f"{result['cells']} cells: too few or too alike to compare")
-    axis.text(0.5, 1.03, said, transform=axis.transAxes, fontsize=9, va="bottom",
-              ha="center")
+            f"{result['cells']} cells:\ntoo few or too alike to compare")
+    axis.set_title(f"({letter}) {said}", fontsize=11, loc="left")
     axis.xaxis.set_major_locator(ticker.MaxNLocator(5))
+    axis.yaxis.set_major_locator(ticker.MaxNLocator(7, steps=[1, 2, 5, 10]))
     axis.grid(alpha=0.3)
 
 
@@ -219,23 +219,25 @@ def draw(text, values, layers, results, path):
     km = text["cell_size_m"] / 1000.0
     height, width = values.shape
     tall = min(1.6, max(0.5, height / width))
-    heights = [_COLUMN * tall, 2.4, 0.05] if layers else [_COLUMN * tall, 0.8]
     columns = 1 + len(layers)
-    width_in = _GAP * (columns + 0.6) + _COLUMN * columns
+    column = _COLUMN if layers else 2.0 * _COLUMN
+    heights = [column * tall, _RELATION] if layers else [column * tall]
+    width_in = _GAP * (columns + 0.6) + column * columns
     near = device_relation(values, text)
     found = textwrap.wrap(headline([*zip(layers, results), *([near] if near else [])]),
                           int(width_in / _LETTER)) or [""]
     top = _TOP + _LINE * (len(found) - 1)
-    height_in = sum(heights) + top + _GAP * (len(heights) - 0.6)
+    height_in = top + sum(heights) + _GAP * (len(heights) - 1) + _BOTTOM
     figure, axes = pyplot.subplots(len(heights), columns, squeeze=False,
                                    figsize=(width_in, height_in), height_ratios=heights)
     figure.subplots_adjust(
-        left=0.7 * _GAP / width_in, right=1.0 - 0.9 * _GAP / width_in, wspace=_GAP / _COLUMN,
-        top=1.0 - top / height_in, bottom=0.3 * _GAP / height_in,
-        hspace=0.95 * _GAP / (sum(heights) / len(heights)))
+        left=0.8 * _GAP / width_in, right=1.0 - 0.8 * _GAP / width_in, wspace=_GAP / column,
+        top=1.0 - top / height_in, bottom=_BOTTOM / height_in,
+        hspace=_GAP / (sum(heights) / len(heights)))
     draw_map(axes[0][0], values, km, _VALUE_COLOURS, "points", _LOWEST)
     letters = iter("abcdefghijklmnopqrstuvwxyz")
-    axes[0][0].set_title(f"({next(letters)}) Return if the ship starts here", fontsize=11)
+    axes[0][0].set_title(f"({next(letters)}) Return from each start", fontsize=11,
+                         loc="left")
     draw_places(axes[0][0], text, km)
     axes[0][0].set_ylabel("north [km]")
     for column, (layer, result) in enumerate(zip(layers, results), start=1):
@@ -244,7 +246,7 @@ def draw(text, values, layers, results, path):
                  _SEA_COLOURS.get(name, "cividis"), unit_text(units))
         words = sea_words(name)
         axes[0][column].set_title(f"({next(letters)}) {words[:1].upper()}{words[1:]} of the sea",
-                                  fontsize=11)
+                                  fontsize=11, loc="left")
         draw_places(axes[0][column], text, km)
     if layers:
         draw_relations(axes[1], values, near, list(zip(layers, results)), letters)
@@ -299,21 +301,17 @@ def draw_relations(axes, values, near, seas, letters):
         axes[0].axis("off")
     for axis, (layer, result) in zip(axes[1:], seas):
         draw_relation(axis, values, layer, result, next(letters))
-    axes[0 if near else 1].set_ylabel("return if the ship starts there")
+    axes[0 if near else 1].set_ylabel("return [points]")
 
 
 def draw_key(figure, axes):
-    """Draws one legend of all symbols in place of the last row."""
+    """Draws one legend of all symbols at the lower edge."""
     signs = {}
     for axis in axes.flat:
         signs.update((label, handle) for handle, label in zip(*axis.get_legend_handles_labels()))
-    for axis in axes[-1]:
-        axis.remove()
-    row = figure.add_subplot(axes[-1][0].get_gridspec()[-1, :])
-    row.axis("off")
     signs["land, rocks or unknown"] = patches.Patch(facecolor="0.82", edgecolor="0.65", hatch="////")
-    row.legend(signs.values(), signs.keys(), loc="center", frameon=False,
-               ncols=3 if axes.shape[1] > 1 else 1)
+    figure.legend(signs.values(), signs.keys(), loc="lower center", frameon=False, fontsize=10.5,
+                  ncols=3)
 
 
 def make(values_file, output):

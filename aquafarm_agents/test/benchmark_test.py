@@ -182,7 +182,7 @@ class BenchmarkTest(unittest.TestCase):
         np.testing.assert_allclose(noisy.get_ydata(), np.median(each, axis=0))
         np.testing.assert_allclose(steady.get_ydata(), 40.0)
         self.assertEqual(1, len(axes.collections), "a band for a learner with several runs")
-        self.assertEqual(["Q-learning", "SARSA"], sorted(name for *_, name in ends))
+        self.assertEqual(["Q-learning", "SARSA"], sorted(end.name for end in ends))
 
     def played(self, name, *episodes, policy="clairvoyant", scenario=DATA / "tiny.yaml"):
         """Makes bags of evaluation episodes of seed 1000 in a folder, as if a person had played

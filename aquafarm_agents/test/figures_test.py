@@ -13,6 +13,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
 from aquafarm_benchmark import error_figure, figures, route_figure, style
+from aquafarm_benchmark.curves import End
 from aquafarm_benchmark.protocol import CONTESTANTS, PROFILES
 
 WINDOW = 50
@@ -107,7 +108,7 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(names["clairvoyant 90"], places[-1], "the highest line has the highest name")
 
     def test_lines_to_names_cross_no_name_and_all_names_are_in_reach_of_the_axes(self):
-        ends = [(100.0, value, "black", f"learner {i}")
+        ends = [End(100.0, value, "black", f"learner {i}")
                 for i, value in enumerate((-3000.0, 120.0, 125.0, 131.0, 132.0, 133.0))]
         self.axes.set_xlim(0.0, 100.0)
         self.axes.set_ylim(-3500.0, 140.0)
@@ -156,7 +157,7 @@ class FiguresTest(unittest.TestCase):
         for run in self.runs["sarsa"]:
             run["curve"]["return"] -= 1000.0
         for draw, count in ((figures.draw_repeated, 1), (figures.draw_average_rewards, 1),
-                            (figures.draw_rewards, 2)):
+                            (figures.draw_rewards, 1)):
             figure = self.drawn(draw, self.contestants, self.runs, OPTIMUM)
             self.assertEqual(count, len(figure.axes))
             for axes in figure.axes:
@@ -184,15 +185,17 @@ class FiguresTest(unittest.TestCase):
         ends = {one.label: np.median([run["curve"]["return"][-WINDOW:].mean()
                                       for run in self.runs[one.name]]) for one in self.contestants}
         self.assertEqual({f"{name} −{-value:.0f}" for name, value in ends.items()},
-                         {name.replace(figures._NBSP, " ") for name in self.names_of(axes)})
+                         {name.split(" (")[0].replace(figures._NBSP, " ")
+                          for name in self.names_of(axes)}, "the range of the runs is in brackets")
         self.assertEqual(f"LSTM-DQN has the highest return at the end of the training: "
-                         f"−{-ends['LSTM-DQN']:.0f}",
+                         f"−{-ends['LSTM-DQN']:.0f}; each of its runs is above all runs of the "
+                         "others",
                          " ".join(axes.figure._suptitle.get_text().split()))
 
     def test_almost_equal_references_share_one_line(self):
         ends = figures._plot_references(self.axes, {"planner": 276.0, "clairvoyant": 277.6, "x": 5.0}, 9)
         self.assertEqual([(9, 277.6, "clairvoyant 278, planner 276"), (9, 5.0, "x 5")],
-                         [(x, y, name) for x, y, _, name in ends])
+                         [(end.x, end.y, end.name) for end in ends])
         self.assertEqual([277.6, 5.0], [line.get_ydata()[0] for line in self.axes.lines])
 
     def test_names_are_legible_on_white(self):
@@ -226,7 +229,7 @@ class FiguresTest(unittest.TestCase):
         self.assertIn("clairvoyant 5.10", both)
         self.assertEqual({"SARSA", "LSTM-DQN", "clairvoyant"}, {name.split()[0] for name in both})
         for name in both:
-            self.assertRegex(name, r"^\S+ −?\d\.\d\d$")
+            self.assertRegex(name, r"^\S+ −?\d\.\d\d( \(−?\d\.\d\d to −?\d\.\d\d\))?$")
         panels = [set(self.lines(axes)) for axes in figure.axes]
         self.assertEqual([{"LSTM-DQN"}, {"SARSA"}, {"SARSA", "LSTM-DQN"}], panels)
 
@@ -246,7 +249,7 @@ class FiguresTest(unittest.TestCase):
             self.assertEqual(has_random, "RANDOM" in lines)
             self.assertEqual({"LSTM-DQN", "90 % of 100", "clairvoyant 100"} |
                              ({"RANDOM"} if has_random else set()),
-                             {name for _, _, _, name in ends})
+                             {end.name for end in ends})
             if has_random:
                 self.assertLessEqual(lines["RANDOM"][0].max(), 1500, "SARSA ends there")
 
@@ -268,18 +271,49 @@ class FiguresTest(unittest.TestCase):
     def test_a_headline_says_once_that_all_settings_are_as_printed(self):
         printed = [one for one in PROFILES["paper"].contestants
                    if one.name in ("dqn_printed", "sarsa_printed")]
-        ends = [(9, 4.0, "red", "SARSA, printed"), (9, -2.0, "blue", "DQN, printed")]
+        ends = [End(9, 4.0, "red", "SARSA, printed"), End(9, -2.0, "blue", "DQN, printed")]
         self.assertEqual("With the settings as printed, SARSA has the highest return: 4",
                          figures._highest(printed, ends, "return"))
 
     def test_a_headline_names_all_learners_with_the_highest_printed_value(self):
-        ends = [(9, 4.46, "red", "SARSA"), (9, 4.54, "blue", "LSTM-DQN")]
+        ends = [End(9, 4.46, "red", "SARSA"), End(9, 4.54, "blue", "LSTM-DQN")]
         self.assertEqual("LSTM-DQN has the highest return: 5",
                          figures._highest(self.contestants, ends, "return"))
+        near = [ends[0], End(9, 4.48, "blue", "LSTM-DQN")]
         self.assertEqual("LSTM-DQN and SARSA have the highest return: 4",
-                         figures._highest(self.contestants, [(9, 4.46, "red", "SARSA"),
-                                                             (9, 4.48, "blue", "LSTM-DQN")], "return"))
+                         figures._highest(self.contestants, near, "return"))
         self.assertEqual("SARSA: return 4", figures._highest(self.contestants, ends[:1], "return"))
+
+    def test_a_headline_states_whether_the_ranges_of_the_runs_overlap(self):
+        first = End(9, 8.0, "blue", "LSTM-DQN", 6.0, 9.0)
+        for high, expected in ((5.0, "; each of its runs is above all runs of the others"),
+                               (7.0, "; its runs are not all above those of SARSA")):
+            ends = [End(9, 4.0, "red", "SARSA", 3.0, high), first]
+            self.assertEqual("LSTM-DQN has the highest return: 8" + expected,
+                             figures._highest(self.contestants, ends, "return"))
+        self.assertEqual(["LSTM-DQN 8 (6 to 9)"],
+                         [end.name.replace(figures._NBSP, " ")
+                          for end in figures._with_values(self.contestants, [first])])
+
+    def test_the_headline_of_fig_12b_has_the_episode_of_the_first_mean_above_0(self):
+        rising = np.array([-10.0] * 40 + [30.0] * 80)  # the sum is 0 after 13.3 good episodes
+        self.runs["sarsa"] = [{"curve": {"return": rising}}]
+        self.runs["lstm_dqn"] = [{"curve": {"return": -np.ones(120)}}]
+        self.assertEqual("The mean return of all episodes so far rises above 0 at episode "
+                         "54 (SARSA), and never for LSTM-DQN",
+                         figures._recovery_times(self.contestants, self.runs))
+        self.assertEqual("", figures._recovery_times(self.contestants[1:], self.runs))
+
+    def test_fig_14_enlarges_the_second_half_if_a_learner_is_near_the_reference(self):
+        for run in self.runs["lstm_dqn"]:
+            run["curve"]["return"][:] = 80.0
+        full, half = self.drawn(figures.draw_repeated, self.contestants, self.runs, OPTIMUM).axes
+        self.assertEqual((60.0, 120.0), half.get_xlim())
+        self.assertAlmostEqual(63.0, half.get_ylim()[0], msg="70 % of the clairvoyant")
+        self.assertEqual({"LSTM-DQN", "clairvoyant 90"}, self.names_of(half))
+        self.assertEqual(3, len(self.names_of(full)))
+        self.assertEqual("Enlarged: second half, above 70 % of the clairvoyant",
+                         half.get_title("left"))
 
     def test_the_headline_of_fig_12a_has_the_steps_until_90_percent_of_the_reference(self):
         learnt = {"return": np.array([-100.0] * 50 + [100.0] * 100), "steps": np.full(150, 10)}
@@ -287,20 +321,35 @@ class FiguresTest(unittest.TestCase):
         self.runs["sarsa"] = [{"curve": learnt}]
         self.runs["lstm_dqn"] = [{"curve": {**learnt, "return": np.zeros(150)}}]
         found = figures._learning_times(self.contestants, self.runs, {"clairvoyant": 100.0})
-        self.assertEqual("Time steps until 90 % of the return of the clairvoyant: SARSA 980, "
+        self.assertEqual("Time steps to 90 % of the return of the clairvoyant: SARSA 980, "
                          "LSTM-DQN never", found.replace(figures._NBSP, " "))
+        slow = {"curve": {**learnt, "steps": np.full(150, 30)}}  # 2,940 steps
+        self.runs["sarsa"] = self.runs["lstm_dqn"] = [{"curve": learnt}, slow]
+        found = figures._learning_times(self.contestants, self.runs, {"clairvoyant": 100.0})
+        self.assertIn("(median of 2 runs): LSTM-DQN 2,000, SARSA 2,000",
+                      found.replace(figures._NBSP, " "))
         self.assertEqual("", figures._learning_times(self.contestants, self.runs, {}))
 
-    def test_the_headline_of_fig_12c_has_the_change_of_each_error(self):
+    def test_the_headline_of_fig_12c_names_the_errors_that_rise(self):
         for name, last in (("sarsa", 30.0), ("lstm_dqn", 5.0)):
             for run in self.runs[name]:
                 run["curve"]["loss"] = np.array([10.0] * 60 + [last] * 60)
         figure = self.drawn(error_figure.draw_square_error, self.contestants, self.runs)
-        headline = " ".join(figure._suptitle.get_text().split())
-        self.assertTrue(headline.endswith(
-            "in training: ×0.5 (LSTM-DQN) to ×3.0 (SARSA)"), headline)
-        self.assertEqual({"SARSA: 10 → 30 (×3.0)", "LSTM-DQN: 10 → 5 (×0.5)"},
-                         {axes.get_title("left") for axes in figure.axes} - {""})
+        self.assertEqual("Only the error of SARSA (×3.0) ends higher than it begins",
+                         " ".join(figure._suptitle.get_text().split()))
+        self.assertEqual(["SARSA: ends at ×3.0", "LSTM-DQN: ends at ×0.5"],
+                         [axes.get_title("left") for axes in figure.axes])
+        self.assertEqual([{"10", "30"}, {"10", "5"}], [self.names_of(axes) for axes in figure.axes])
+
+    def test_the_headline_of_fig_12c_has_the_peak_of_an_error_that_ends_lower(self):
+        courses = {"A": (10.0, 100.0, 5.0), "B": (10.0, 12.0, 6.0), "C": (10.0, 10.1, 10.1)}
+        self.assertEqual("The errors of A and B end lower than they begin; that of A first rises "
+                         "to 100", error_figure.describe_courses(courses))
+        courses["D"] = (10.0, 40.0, 20.0)
+        self.assertIn("Only the error of D (×2.0) ends higher",
+                      error_figure.describe_courses(courses))
+        self.assertEqual("Error of the value estimates in training",
+                         error_figure.describe_courses({"C": courses["C"]}))
 
     def test_a_row_with_printed_settings_has_the_colour_of_its_learner_dashed(self):
         printed = next(one for one in PROFILES["paper"].contestants if one.name == "sarsa_printed")
@@ -380,7 +429,7 @@ class FiguresTest(unittest.TestCase):
             {**steps[3], "disasters": []}]
         route = {"chart": chart, "steps": steps, "reason": "time_limit", "return": -12.4}
         self.assertEqual([[3, 2]], route_figure.devices_left(route))
-        route_figure.plot_unfinished(self.axes, "ranch 7", route, (9, 5))
+        route_figure.plot_unfinished(self.axes, "ranch 7", route)
         marks = {marks.get_label(): marks.get_offsets().tolist()
                  for marks in self.axes.collections}
         self.assertEqual([[1, 0]], marks["device that was fetched"])
@@ -390,25 +439,39 @@ class FiguresTest(unittest.TestCase):
         self.assertIn("ring of a disaster in the last step", lines)
         self.assertNotIn("the same ring 60 steps before", lines, "the episode has 3 steps")
         last, = (one for one in self.axes.collections if isinstance(one, LineCollection))
-        self.assertIn("last leg, a device aboard", last.get_label())
+        self.assertIn("last leg, a device aboard", lines)
         np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
+        np.testing.assert_array_equal([0.6, 2.2], last.get_linewidths(), "thin: repeated cells")
         np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
         self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
-                         "time limit at step 3, last stop at 2",
+                         "time limit at step 3, 1 steps after the last stop",
                          self.axes.get_title("left"))
-        low, high = self.axes.get_ylim()
-        self.assertEqual(8.7, self.axes.get_xlim()[1], "the scale of the largest ranch")
-        self.assertAlmostEqual(4.7 + 0.7, high - low, msg="the scale of the largest ranch")
-        self.assertAlmostEqual(route["chart"]["height"] - 0.3, high, msg="ranches are at the top")
+        self.assertEqual({"≥ 3 moves to go"}, self.names_of(self.axes))
         _, self.axes = style.plt.subplots()
         far = {"x": 30.0, "y": 2.0, "radii": [1.0]}
         waiting = [{**steps[0], "disasters": [{**storm, "x": 2.5}, far]}] * 70
         ended = [{**step, "disasters": [storm, far]} for step in steps[:3]]
         route_figure.plot_unfinished(self.axes, "ranch 7", {**route, "steps": [
-            *waiting, *ended, steps[3]]}, (9, 5))
+            *waiting, *ended, steps[3]]})
         labels = [line.get_label() for line in self.axes.lines]
         self.assertEqual(1, labels.count("the same ring 60 steps before"), "not of the far disaster")
         self.assertAlmostEqual(2.5, self.lines()["the same ring 60 steps before"][0].mean(), 1)
+
+    def test_the_map_of_a_failure_shows_the_part_around_the_last_leg(self):
+        chart = {"width": 50, "height": 40, "islands": [], "rocks": [[40, 30]], "ports": [[20, 20]],
+                 "devices": [{"cell": [22, 20]}]}
+        cells = [[20, 20], [21, 20]] * 5 + [[20, 20]]
+        steps = [{"cell": cell, "action": "east", "aboard": 0, "delivered": 0, "disasters": []}
+                 for cell in cells]
+        route_figure.plot_unfinished(self.axes, "ranch 7", {
+            "chart": chart, "steps": steps, "reason": "time_limit", "return": 0.0})
+        self.assertEqual((17 - 0.7, 25 + 0.7), self.axes.get_xlim())
+        self.assertEqual((17 - 0.7, 23 + 0.7), self.axes.get_ylim())
+        labels = self.axes.get_legend_handles_labels()[1]
+        self.assertIn("cell with 5 to 9 visits", labels)
+        self.assertNotIn("cell with 10 or more visits", labels)
+        self.assertNotIn("rock", labels, "outside the map")
+        self.assertIn("no stop", self.axes.get_title("left"))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The curves of runs in the form in which figures show them."""
+import math
+import typing
+
 import numpy as np
 
 from aquafarm_benchmark import measures
+
+
+class End(typing.NamedTuple):
+    """The end of a line in a chart. low and high: lowest and highest value of the runs there; NaN
+    if the line shows one value only."""
+    x: float
+    y: float
+    colour: str
+    name: str
+    low: float = math.nan
+    high: float = math.nan
 
 
 def columns_of_runs(of_one, column):
@@ -30,3 +44,9 @@ def describe_shading(contestants, runs):
     count = most_common_count(contestants, runs)
     return ("One run of each learner." if count == 1 else
             f"Median of {count} runs, shaded from the lowest to the highest run.")
+
+
+def describe_random(contestants):
+    """Returns a sentence on the actions of RANDOM, or "" if it does not take part."""
+    return ("RANDOM draws only legal actions, without moves onto a rock, an island or off the map."
+            if any("actions=reachable" in one.options for one in contestants) else "")

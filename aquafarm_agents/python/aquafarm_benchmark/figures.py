@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the figures of the paper's §4 as PNG from the data of results.py.
 
-Each function draw_… creates a figure and saves it. The functions plot_… draw on given axes. The
-end of a line in a chart is (x, y, colour, name), where x and y are those of its last point.
+Each function draw_… creates a figure and saves it. The functions plot_… draw on given axes.
 """
+import math
+
 import numpy as np
 from matplotlib import ticker
 
 from aquafarm_benchmark import measures
-from aquafarm_benchmark.curves import (columns_of_runs, describe_shading, most_common_count,
-                                       moving_means)
+from aquafarm_benchmark.curves import (End, columns_of_runs, describe_random, describe_shading,
+                                       most_common_count, moving_means)
 from aquafarm_benchmark.protocol import PRINTED
-from aquafarm_benchmark.style import (explain, label_axes, legible, line_style, name_ends, number,
-                                      plt, save, shade)
+from aquafarm_benchmark.style import (explain, joined, label_axes, legible, line_style, name_ends,
+                                      number, plt, save, shade)
 
 _NBSP = "\N{NO-BREAK SPACE}"
 _REACHED = 0.9  # a learner has learnt once it reaches this fraction of the best reference
@@ -25,26 +26,42 @@ def _learners(contestants):
 
 def _highest(contestants, ends, what, digits=0):
     """Returns the headline of a chart, such as "DQN has the highest return: 271". Compares the last
-    values of the lines, rounded to `digits`, without RANDOM. If all labels end with PRINTED, the
-    headline begins with "With the settings as printed" instead of repeating PRINTED."""
+    values of the lines, rounded to `digits`, without RANDOM. With ranges, the headline states
+    whether the runs of other learners reach the lowest run of the first. If all labels end with
+    PRINTED, it begins with "With the settings as printed" instead of repeating PRINTED."""
     learners = {one.label for one in _learners(contestants)}
-    last = sorted(((y, name) for _, y, _, name in ends if name in learners), reverse=True)
+    last = sorted((end for end in ends if end.name in learners), key=lambda end: (-end.y, end.name))
     if not last:
         return what.capitalize()
-    value = number(last[0][0], digits)
-    names = [name for y, name in last if number(y, digits) == value]
-    said = f"{names[0]}: {what} {value}" if len(last) == 1 else (
-        f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} the highest {what}: {value}")
-    if all(name.endswith(PRINTED) for _, name in last):
+    value = number(last[0].y, digits)
+    names = [end.name for end in last if number(end.y, digits) == value]
+    others = last[len(names):]
+    said = f"{last[0].name}: {what} {value}" if len(last) == 1 else (
+        f"{joined(names)} {'has' if len(names) == 1 else 'have'} the highest {what}: {value}")
+    if others and len(names) == 1 and not math.isnan(last[0].low):
+        near = [end.name for end in others if end.high >= last[0].low]
+        said += (f"; its runs are not all above those of {joined(near)}" if near else
+                 "; each of its runs is above all runs of the others")
+    if all(end.name.endswith(PRINTED) for end in last):
         return f"With the settings as printed, {said.replace(PRINTED, '')}"
     return said
 
 
 def _with_values(contestants, ends, digits=0):
-    """Returns the ends of lines. Appends the last values to the names of contestants: "DQN 271"."""
+    """Returns the ends of lines. Appends the last values to the names of contestants, and the range
+    of the runs of learners: "DQN 271 (268 to 273)"."""
     labels = {one.label for one in contestants}
-    return [(x, y, colour, f"{name}{_NBSP}{number(y, digits)}" if name in labels else name)
-            for x, y, colour, name in ends]
+    learners = {one.label for one in _learners(contestants)}
+    values = [_with_range(end, digits) if end.name in learners else number(end.y, digits)
+              for end in ends]
+    return [end._replace(name=f"{end.name}{_NBSP}{value}") if end.name in labels else end
+            for end, value in zip(ends, values)]
+
+
+def _with_range(end, digits=0):
+    """Returns the value at the end of a line as text, with the range of the runs in brackets."""
+    value, low, high = (number(one, digits) for one in (end.y, end.low, end.high))
+    return value if math.isnan(end.low) or low == high else f"{value} ({low} to {high})"
 
 
 def _range_of(axes):
@@ -57,7 +74,9 @@ def _scale_returns(axes):
     """Sets a scale that is linear above 0 and logarithmic below, or only linear if both values of
     _range_of have the same sign. The first episodes have very low returns, which on a linear scale
     would hide the differences between learners. Returns a note on the scale for the label of the
-    axis."""
+    axis. Does nothing if the limits of the axis are fixed."""
+    if not axes.get_autoscaley_on():
+        return ""
     low, top = _range_of(axes)
     if top <= 0.0 or low >= 0.0:
         margin = 0.05 * (top - low)
@@ -76,30 +95,31 @@ def _scale_returns(axes):
     return "\n(logarithmic below 0)"
 
 
-def _draw_returns(path, contestants, find, note, ylabel, plots):
+def _draw_returns(path, contestants, find, note, ylabel, plots, xlabel="episode"):
     """Draws charts of returns, one below the other, on the scale of _scale_returns. Names the lines
     whose ends the functions in `plots` return.
 
-    find: function that returns the headline, given the ends of the lines of the last chart
+    find: function that returns the headline, given the ends of the lines of the first chart
     note: how the data were computed
-    plots: for each chart, from top to bottom: (function, xlabel, has_values). The function plots on
+    plots: for each chart, from top to bottom: (function, title, has_values). The function plots on
         axes and returns the ends of the lines without a name, for name_ends; has_values: names are
         followed by the last values
     """
-    figure, rows = plt.subplots(len(plots), 1, figsize=(8.7, 1.0 + 4.4 * len(plots)),
-                                squeeze=False, layout="constrained")
-    charts = [(axes, plot(axes), xlabel, has_values)
-              for (plot, xlabel, has_values), axes in zip(plots, rows[:, 0])]
-    explain(figure, find(charts[-1][1]), note)
-    for axes, ends, xlabel, has_values in charts:
-        label_axes(axes, "", ylabel + _scale_returns(axes), xlabel)
+    heights = (4.4, 2.9)[:len(plots)]
+    figure, rows = plt.subplots(len(plots), 1, figsize=(8.7, 0.6 + sum(heights)), squeeze=False,
+                                height_ratios=heights, layout="constrained")
+    charts = [(axes, plot(axes), title, has_values)
+              for (plot, title, has_values), axes in zip(plots, rows[:, 0])]
+    explain(figure, find(charts[0][1]), f"{note} {describe_random(contestants)}")
+    for axes, ends, title, has_values in charts:
+        label_axes(axes, title, ylabel + _scale_returns(axes), xlabel)
         axes.yaxis.set_major_formatter(lambda value, _: number(value))
         name_ends(axes, _with_values(contestants, ends) if has_values else ends)
     save(figure, path)
 
 
 _LOGARITHMIC = "#eef1f4"  # background of the logarithmic part of a scale
-_MOST_SHADED = 2  # the shades of more lines would mix
+_ENLARGED = 0.7  # the lower chart of Fig. 14 begins at this fraction of the best reference
 _LETTER = 0.013  # mean width of a letter of a name [widths of the axes]
 _ALIKE = 0.02  # references share one line if their relative difference is below this
 
@@ -110,22 +130,20 @@ def _plot_references(axes, references, end, digits=0):
     ends = []
     for name, value in sorted(references.items(), key=lambda pair: -pair[1]):
         words = f"{name} {value:.{digits}f}"
-        if ends and ends[-1][1] - value < _ALIKE * abs(value):
-            ends[-1] = (*ends[-1][:3], f"{ends[-1][3]}, {words}")
+        if ends and ends[-1].y - value < _ALIKE * abs(value):
+            ends[-1] = ends[-1]._replace(name=f"{ends[-1].name}, {words}")
             continue
         axes.axhline(value, color="black", linestyle="--", linewidth=1.2, label="_reference")
-        ends.append((end, value, "black", words))
+        ends.append(End(end, value, "black", words))
     return ends
 
 
-def _plot_one_run(axes, one, curve, x):
-    """Plots the 50-episode mean return of a run. Returns the end of the line.
-
-    x: position of each episode on the x axis
-    """
+def _plot_one_run(axes, one, curve, **style):
+    """Plots the 50-episode mean return of a run by time steps. Returns the end of the line."""
     episodes, means = moving_means(curve["return"])
-    axes.plot(x[episodes - 1], means, linewidth=1.2, **line_style(one), label=one.label)
-    return x[episodes[-1] - 1], means[-1], one.colour, one.label
+    steps = np.cumsum(curve["steps"])[episodes - 1]
+    axes.plot(steps, means, **{**line_style(one), "label": one.label, "linewidth": 1.5, **style})
+    return End(steps[-1], means[-1], one.colour, one.label)
 
 
 def _mark_reached(axes, references):
@@ -136,22 +154,19 @@ def _mark_reached(axes, references):
     if target <= 0.0:
         return np.inf, []
     axes.axhline(target, color="black", linestyle=":", linewidth=1.2, label="_reached")
-    return target, [(axes.get_xlim()[1], target, "black",
-                     f"{100 * _REACHED:.0f} % of {target / _REACHED:.0f}")]
+    return target, [End(axes.get_xlim()[1], target, "black",
+                        f"{100 * _REACHED:.0f} % of {target / _REACHED:.0f}")]
 
 
-def _name_reached(axes, ends, target):
-    """Marks where lines reach the return `target`. Writes the names and numbers of steps of these
-    lines above the axes, in several rows if they are close. Returns the ends of all other lines."""
-    others = []
-    reached = []
-    for end in ends:
-        line, = (one for one in axes.lines if one.get_label() == end[3])
-        x, y = line.get_data()
-        if (y >= target).any():
-            reached.append((x[np.argmax(y >= target)], end[2], end[3]))
-        else:
-            others.append(end)
+def _name_reached(axes, ends, target, steps_of):
+    """Marks the numbers of steps at which learners reach the return `target`. Writes these numbers
+    and the names of the learners above the axes, in several rows if they are close. Returns the
+    ends of all other lines.
+
+    steps_of: {name of a line: number of steps}
+    """
+    others = [end for end in ends if steps_of[end.name] > axes.get_xlim()[1]]
+    reached = [(steps_of[end.name], end.colour, end.name) for end in ends if end not in others]
     to_axes = axes.transData + axes.transAxes.inverted()
     row_ends = [-np.inf] * len(reached)  # where the last names of the rows end [widths of the axes]
     for steps, colour, name in sorted(reached):
@@ -169,41 +184,43 @@ def _name_reached(axes, ends, target):
 
 
 def plot_rewards_by_steps(axes, contestants, runs, references):
-    """Plots Fig. 12a: the 50-episode mean return of the first run by time steps taken so far.
-    Returns the ends of the lines that have no name yet."""
-    ends = []
-    for one in contestants:
-        curve = runs[one.name][0]["curve"]
-        ends.append(_plot_one_run(axes, one, curve, np.cumsum(curve["steps"])))
+    """Plots Fig. 12a: the 50-episode mean return by time steps taken so far. The lines of runs
+    after the first are thin. Returns the ends of the lines that have no name yet."""
+    ends = [_plot_one_run(axes, one, runs[one.name][0]["curve"]) for one in contestants]
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter(lambda value, _: _steps_text(value))
     axes.xaxis.set_minor_formatter(ticker.NullFormatter())
     # RANDOM takes the most steps. The chart ends where the last learner ends.
     learners = {one.label for one in _learners(contestants)}
-    last = max((x for x, _, _, name in ends if name in learners), default=np.inf)
+    last = max((end.x for end in ends if end.name in learners), default=np.inf)
     ends = [end for end in (_cut(axes, end, last) for end in ends) if end]
     axes.relim()
     axes.margins(x=0.0)
     axes.autoscale_view()
+    axes.set_xlim(axes.get_xlim())  # the other runs do not change the limits
+    for one in _learners(contestants):
+        for run in runs[one.name][1:]:
+            _plot_one_run(axes, one, run["curve"], label="_run", linewidth=0.8, alpha=0.5)
     target, reference = _mark_reached(axes, references)
-    ends = _name_reached(axes, ends, target)
+    ends = _name_reached(axes, ends, target,
+                         {one.label: _steps_until(runs[one.name], target) for one in contestants})
     return ends + reference + _plot_references(axes, references, axes.get_xlim()[1])
 
 
 def _cut(axes, end, last):
     """Cuts the line with this end at x = last. Returns its new end. If nothing is left, removes the
     line and returns None."""
-    if end[0] <= last:
+    if end.x <= last:
         return end
-    line, = (one for one in axes.lines if one.get_label() == end[3])
+    line, = (one for one in axes.lines if one.get_label() == end.name)
     x, y = line.get_data()
     shown = x <= last
     if not shown.any():
         line.remove()
         return None
     line.set_data(x[shown], y[shown])
-    return x[shown][-1], y[shown][-1], *end[2:]
+    return end._replace(x=x[shown][-1], y=y[shown][-1])
 
 
 def _steps_text(value):
@@ -211,56 +228,79 @@ def _steps_text(value):
     return f"{value / 1e6:g}M" if value >= 1e6 else f"{value / 1e3:g}k" if value >= 1e3 else f"{value:g}"
 
 
-def plot_rewards_by_episodes(axes, contestants, runs, references):
-    """Plots the 50-episode mean return of the first run by episode. Returns the ends of lines."""
-    ends = []
-    for one in contestants:
-        curve = runs[one.name][0]["curve"]
-        ends.append(_plot_one_run(axes, one, curve, np.arange(1, len(curve["return"]) + 1)))
-    return ends + _plot_references(axes, references, max(end[0] for end in ends))
-
-
 def draw_rewards(path, contestants, runs, references):
-    """Draws Fig. 12a, and below it the same data by episodes."""
-    data = (contestants, runs, references)
+    """Draws Fig. 12a."""
+    count = most_common_count(contestants, runs)
+    shown = ("one run of each learner" if count == 1 else
+             f"{count} runs of each learner (thick: the first)")
     _draw_returns(
         path, contestants, lambda ends: _learning_times(contestants, runs, references) or
         _highest(contestants, ends, "return at the end of the training"),
-        f"Fig. 12a: the first run of each learner, means of {measures.WINDOW} episodes. The upper "
-        "chart ends with the last learner; RANDOM takes more steps.",
-        f"{measures.WINDOW}-episode mean return", [
-            (lambda axes: plot_rewards_by_steps(axes, *data), "time steps so far (logarithmic)",
-             False),
-            (lambda axes: plot_rewards_by_episodes(axes, *data), "episode", True)])
+        f"Fig. 12a: {shown}. Means of {measures.WINDOW} episodes: a line begins after episode "
+        f"{measures.WINDOW}. Dots: {100 * _REACHED:.0f} % is reached for the first time"
+        f"{', median' if count > 1 else ''}. The chart ends with the last learner; RANDOM takes "
+        "more steps.",
+        f"{measures.WINDOW}-episode mean return",
+        [(lambda axes: plot_rewards_by_steps(axes, contestants, runs, references), "", False)],
+        "time steps so far (logarithmic)")
+
+
+def _steps_until(of_one, target):
+    """Returns the number of steps after which the 50-episode mean return first reaches `target`, in
+    the median of the runs. Infinity if it never does."""
+    found = []
+    for curve in (run["curve"] for run in of_one):
+        episodes, means = moving_means(curve["return"])
+        reached = episodes[means >= target]
+        found.append(np.cumsum(curve["steps"])[reached[0] - 1] if len(reached) else math.inf)
+    return float(np.median(found))
 
 
 def _learning_times(contestants, runs, references):
-    """Returns the headline of Fig. 12a: after how many steps the first run of each learner reaches
-    _REACHED of the best reference. "" if there is no positive reference."""
+    """Returns the headline of Fig. 12a: after how many steps each learner reaches _REACHED of the
+    best reference, in the median of its runs. "" if there is no positive reference."""
     best = max(references, key=references.get, default=None)
     if best is None or references[best] <= 0.0:
         return ""
-    found = []
-    for one in _learners(contestants):
-        curve = runs[one.name][0]["curve"]
-        episodes, means = moving_means(curve["return"])
-        reached = means >= _REACHED * references[best]
-        steps = np.cumsum(curve["steps"])[episodes[np.argmax(reached)] - 1] if reached.any() else np.inf
-        found.append((steps, one.label))
-    texts = [f"{name}{_NBSP}{float(f'{steps:.2g}'):,.0f}" if steps < np.inf else
-             f"{name}{_NBSP}never" for steps, name in sorted(found)]
-    return (f"Time steps until {100 * _REACHED:.0f} % of the return of the {best}: "
-            f"{', '.join(texts)}")
+    target = _REACHED * references[best]
+    found = sorted((_steps_until(runs[one.name], target), one.label)
+                   for one in _learners(contestants))
+    texts = [f"{name}{_NBSP}{float(f'{steps:.2g}'):,.0f}" if steps < math.inf else
+             f"{name}{_NBSP}never" for steps, name in found]
+    count = most_common_count(contestants, runs)
+    return (f"Time steps to {100 * _REACHED:.0f} % of the return of the {best}"
+            f"{f' (median of {count} runs)' if count > 1 else ''}: {', '.join(texts)}")
 
 
 def draw_average_rewards(path, contestants, runs, references):
     """Draws Fig. 12b: the mean return of all episodes so far, over all runs."""
     _draw_returns(
-        path, contestants,
-        lambda ends: _highest(contestants, ends, "mean return of all episodes"),
-        f"Fig. 12b: mean return of all episodes so far. {describe_shading(contestants, runs)}",
-        "mean return so far",
-        [(lambda axes: plot_average_rewards(axes, contestants, runs, references), "episode", True)])
+        path, contestants, lambda ends: _recovery_times(contestants, runs) or
+        _highest(contestants, ends, "mean return of all episodes"),
+        "Fig. 12b: mean return of all episodes so far; bad early episodes count to the end. "
+        f"{describe_shading(contestants, runs)}", "mean return so far",
+        [(lambda axes: plot_average_rewards(axes, contestants, runs, references), "", True)])
+
+
+def _means_so_far(of_one):
+    """Returns the mean return of all episodes so far, [runs, episodes]."""
+    curves = columns_of_runs(of_one, "return")
+    return np.cumsum(curves, axis=1) / np.arange(1, curves.shape[1] + 1)
+
+
+def _recovery_times(contestants, runs):
+    """Returns the headline of Fig. 12b: the first episode at which the mean return so far is above
+    0, in the median of the runs. "" if this is the first episode or does not happen."""
+    found = []
+    for one in _learners(contestants):
+        is_above = np.median(_means_so_far(runs[one.name]), axis=0) > 0.0
+        found.append((int(np.argmax(is_above)) + 1 if is_above.any() else math.inf, one.label))
+    known = [f"{episode:,} ({name})" for episode, name in sorted(found) if episode < math.inf]
+    never = [name for episode, name in found if episode == math.inf]
+    if not known or min(found)[0] == 1:
+        return ""
+    return (f"The mean return of all episodes so far rises above 0 at episode {joined(known)}"
+            f"{f', and never for {joined(never)}' if never else ''}")
 
 
 def plot_average_rewards(axes, contestants, runs, references):
@@ -268,10 +308,9 @@ def plot_average_rewards(axes, contestants, runs, references):
     lowest and highest value. Returns the ends of the lines."""
     ends = []
     for one in contestants:
-        curves = columns_of_runs(runs[one.name], "return")
-        episodes = np.arange(1, curves.shape[1] + 1)
-        ends.append(_plot_shaded(axes, episodes, np.cumsum(curves, axis=1) / episodes, one, one.label))
-    return ends + _plot_references(axes, references, max(end[0] for end in ends))
+        means = _means_so_far(runs[one.name])
+        ends.append(_plot_shaded(axes, np.arange(1, means.shape[1] + 1), means, one))
+    return ends + _plot_references(axes, references, max(end.x for end in ends))
 
 
 def draw_mean_score(path, contestants, runs, references):
@@ -289,31 +328,31 @@ def draw_mean_score(path, contestants, runs, references):
     figure = plt.figure(figsize=(9, 8.4 if panels else 4.9), layout="constrained")
     places = [[letter for letter, _ in panels], ["c"] * len(panels)] if panels else [["c"]]
     all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)
-    is_shaded = len(contestants) <= _MOST_SHADED
-    note = (f"Fig. 13: means of {measures.WINDOW} episodes. " +
-            (describe_shading(contestants, runs) if is_shaded or panels else
-             f"Median of {most_common_count(contestants, runs)} runs.") +
-            ("" if is_shaded or not panels else " The lower chart shows the medians only."))
+    note = (f"Fig. 13: means of {measures.WINDOW} episodes. {describe_shading(contestants, runs)} "
+            f"{describe_random(contestants)}")
     for letter, panel in [("c", contestants), *panels]:
-        whose = "All" if letter == "c" else panel[0].label
-        label_axes(all_axes[letter], f"{whose} (Fig. 13{letter})", "return per step")
+        axes = all_axes[letter]
         limits = None if letter == "c" else all_axes["c"].get_ylim()
-        ends = plot_mean_score(all_axes[letter], panel, runs, references, limits)
-        all_axes[letter].margins(x=0.0)
-        if letter == "c":  # in the other panels the title names the line
-            explain(figure, _highest(contestants, ends, "return per step at the end", digits=2), note)
-            name_ends(all_axes[letter], _with_values(contestants, ends, digits=2))
+        ends = plot_mean_score(axes, panel, runs, references, limits)
+        axes.margins(x=0.0)
+        if letter == "c":
+            label_axes(axes, "Fig. 13c: all", "return per step")
+            found = _highest(contestants, ends, "return per step at the end", digits=2)
+            explain(figure, found, note)
+            name_ends(axes, _with_values(contestants, ends, digits=2))
+            continue
+        label_axes(axes, "", "return per step" if letter == "a" or len(panels) == 1 else "")
+        axes.set_title(f"Fig. 13{letter}: {panel[0].label} {_with_range(ends[0], 2)}", fontsize=11)
         for name, value in references.items():
-            if letter != "c":
-                all_axes[letter].annotate(name, (0.99, value), xytext=(0, -3), va="top", ha="right",
-                                          xycoords=all_axes[letter].get_yaxis_transform(),
-                                          textcoords="offset points", fontsize=9.5)
+            axes.annotate(name, (0.99, value), xytext=(0, 3), va="bottom", ha="right",
+                          xycoords=axes.get_yaxis_transform(), textcoords="offset points",
+                          fontsize=9.5)
     save(figure, path)
 
 
 def plot_mean_score(axes, contestants, runs, references, limits=None):
-    """Plots the 50-episode mean return per step: the median of the runs. Up to _MOST_SHADED lines
-    are shaded between the lowest and the highest run. Returns the ends of the lines.
+    """Plots the 50-episode mean return per step: the median of the runs, shaded between their
+    lowest and highest value. Returns the ends of the lines.
 
     references: {name: return per step}, drawn for comparison
     limits: limits of the y axis; None: automatic
@@ -326,10 +365,10 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
         scores = np.array([measures.return_per_step(*pair, window)
                            for pair in zip(returns, steps)])
         episodes = np.arange(window, returns.shape[1] + 1)
-        plot = _plot_shaded if len(contestants) <= _MOST_SHADED else _plot_median
-        ends.append(plot(axes, episodes, scores, one, one.label))
+        ends.append(_plot_shaded(axes, episodes, scores, one))
     axes.axhline(0.0, color="black", linewidth=0.5, label="_zero")
-    ends += _plot_references(axes, references, max(end[0] for end in ends), digits=2)
+    ends += _plot_references(axes, references, max(end.x for end in ends), digits=2)
+    axes.margins(y=0.1)  # space for the name of a reference
     if limits:
         axes.set_ylim(limits)
     return ends
@@ -367,35 +406,51 @@ def plot_evaluation(axes, contestants, rows):
 
 
 def draw_repeated(path, contestants, runs, references):
-    """Draws Fig. 14: the 50-episode mean return over all runs."""
+    """Draws Fig. 14: the 50-episode mean return over all runs. If a learner ends above _ENLARGED of
+    the best reference, a second chart enlarges these returns in the second half of the training."""
+    data = (contestants, runs, references)
+    best = max(references, key=references.get, default=None)
+    level = _ENLARGED * references[best] if best else math.inf
+    plots = [(lambda axes: plot_repeated(axes, *data), "", True)]
+    if any(np.median(_repeated(runs[one.name])[1][:, -1]) > level > 0.0 for one in contestants):
+        plots.append((lambda axes: plot_enlarged(axes, *data, level),
+                      f"Enlarged: second half, above {100 * _ENLARGED:.0f} % of the {best}", False))
     _draw_returns(
         path, contestants,
         lambda ends: _highest(contestants, ends, "return at the end of the training"),
         f"Fig. 14: repeated trainings, means of {measures.WINDOW} episodes. "
-        f"{describe_shading(contestants, runs)}", f"{measures.WINDOW}-episode mean return",
-        [(lambda axes: plot_repeated(axes, contestants, runs, references), "episode", True)])
+        f"{describe_shading(contestants, runs)}", f"{measures.WINDOW}-episode mean return", plots)
+
+
+def _repeated(of_one):
+    """Returns (episodes, 50-episode mean returns [runs, episodes])."""
+    smooth = [moving_means(curve) for curve in columns_of_runs(of_one, "return")]
+    return smooth[0][0], np.array([curve for _, curve in smooth])
 
 
 def plot_repeated(axes, contestants, runs, references):
     """Plots the 50-episode mean return: the median of the runs, shaded between their lowest and
     highest value. Returns the ends of the lines."""
-    ends = []
-    for one in contestants:
-        smooth = [moving_means(curve) for curve in columns_of_runs(runs[one.name], "return")]
-        values = np.array([curve for _, curve in smooth])
-        ends.append(_plot_shaded(axes, smooth[0][0], values, one, one.label))
-    return ends + _plot_references(axes, references, max(end[0] for end in ends))
+    ends = [_plot_shaded(axes, *_repeated(runs[one.name]), one) for one in contestants]
+    return ends + _plot_references(axes, references, max(end.x for end in ends))
 
 
-def _plot_median(axes, episodes, values, one, label):
-    """Plots the median of values [runs, episodes]. Returns the end of the line."""
-    median = np.median(values, axis=0)
-    axes.plot(episodes, median, **line_style(one), label=label)
-    return episodes[-1], median[-1], one.colour, label
+def plot_enlarged(axes, contestants, runs, references, level):
+    """Plots the second half of Fig. 14, from the return `level` to the best reference. Returns the
+    ends of the lines that are in the chart."""
+    ends = plot_repeated(axes, contestants, runs, references)
+    best, last = max(references.values()), max(end.x for end in ends)
+    axes.set_xlim(last / 2, last)
+    axes.set_ylim(level, best + 0.06 * (best - level))
+    return [end for end in ends if level <= end.y]
 
 
-def _plot_shaded(axes, episodes, values, one, label):
+def _plot_shaded(axes, episodes, values, one):
     """Plots the median of values [runs, episodes], shaded between their lowest and highest value.
     Returns the end of the line."""
-    shade(axes, episodes, values.min(axis=0), values.max(axis=0), one.colour)
-    return _plot_median(axes, episodes, values, one, label)
+    low, median, high = np.quantile(values, (0.0, 0.5, 1.0), axis=0)
+    if len(values) > 1:
+        shade(axes, episodes, low, high, one.colour)
+    axes.plot(episodes, median, **line_style(one), label=one.label)
+    span = (low[-1], high[-1]) if len(values) > 1 else ()
+    return End(episodes[-1], median[-1], one.colour, one.label, *span)

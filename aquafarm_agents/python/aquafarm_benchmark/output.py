@@ -61,9 +61,11 @@ def draw(folder, everyone, found, rows):
     if any(row["money"] for row in rows):
         loss_figures.draw_losses(pictures / "losses.png", everyone, rows)
     for one in everyone:
-        route = folder / "runs" / one.name / "seed_1" / "route.json"
+        route, best = (folder / "runs" / name / "seed_1" / "route.json"
+                       for name in (one.name, OPTIMUM.name))
         if route.is_file():  # people and learners of --learner NAME=COMMAND have no route
-            route_figure.draw_route(pictures / f"route_{one.name}.png", one.label, route)
+            route_figure.draw_route(pictures / f"route_{one.name}.png", one.label, route,
+                                    None if one is OPTIMUM else best)
 
 
 def _processor():

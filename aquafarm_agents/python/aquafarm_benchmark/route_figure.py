@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws route files as PNG: the preferred action of a policy in each cell and its route (Fig. 11),
 and the routes of episodes that ended with devices at sea."""
+import collections
 import json
 
 import numpy as np
@@ -9,7 +10,7 @@ from matplotlib.patches import Polygon, Rectangle
 from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 
-from aquafarm_benchmark.style import plt, save
+from aquafarm_benchmark.style import legible, plt, save
 
 _DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0),
                "north_west": (-1, 1), "north_east": (1, 1), "south_west": (-1, -1),
@@ -22,12 +23,23 @@ _LANE = 0.14  # offset of a leg (route between two stops) from its cells [cells]
 # Style of a leg by whether a device is aboard; colours of Okabe and Ito (2008).
 _LEGS = {False: ("#0072b2", (0, (4, 1.5)), "route with nothing aboard"),
          True: ("#d55e00", "solid", "route with a device aboard")}
-_REPEATED = 0.35  # opacity of a path that may overlap itself
+_MARGIN = 3  # min number of cells around the last leg that the map of an episode shows
+_RATIO = 1.45  # width of this map, divided by its height
+# Min number of visits of a cell on the last leg, with the colour and label of the cell.
+_VISITS = {2: ("#c6dbef", "cell with 2 to 4 visits"), 5: ("#6baed6", "cell with 5 to 9 visits"),
+           10: ("#2171b5", "cell with 10 or more visits")}
 _DEVICE = "#c2185b"
+# Marker, colour and name of a device by its kind, as in pictures of aquafarm_viz.
+_KINDS = {"temporary_breeding": ("s", "#e8dcc8", "temporary"),
+          "monitoring": ("^", "#a8e6a0", "monitoring"),
+          "breeding_release": ("h", "#c4c4ff", "release"),
+          "deep_water_breeding": ("o", "#7fd4d4", "deep water")}
 _SEA = "#eaf3f9"
 _LAND = "#c9b98a"
-_STOPS = {"pickup": ("P", "pickup"), "drop_off": ("X", "drop-off")}
-_STOP_STYLE = {"s": 130, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 7}
+_EDGE = "#5b6b78"
+# Marker and name of the actions at a stop.
+_STOPS = {"pickup": ("D", "pickup"), "drop_off": ("o", "drop-off")}
+_STOP_STYLE = {"s": 400, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 2.5}
 _RING = "#b22222"
 _LAST_RING = "ring of a disaster in the last step"
 # Steps before the end whose rings are drawn, and their colour and label.
@@ -35,12 +47,16 @@ _BEFORE = {120: ("#f0b4b4", "the same ring 120 steps before"),
            60: ("#dd7d7d", "the same ring 60 steps before")}
 
 
-def draw_route(path, label, route_file):
+def draw_route(path, label, route_file, best_file=None):
     """Draws Fig. 11: the greedy actions at the start and after the first pickup, and the route.
 
     label: name of the policy
+    best_file: route of the clairvoyant; its return is stated if it is of the same episode
     """
     route = json.loads(route_file.read_text())
+    best = json.loads(best_file.read_text()) if best_file and best_file.is_file() else None
+    is_same = best and all(best[key] == route[key]
+                           for key in ("scenario_hash", "farm_seed", "episode"))
     panels = [("best_moves_at_start", "with nothing aboard"),
               ("best_moves_after_pickup", "with a device aboard")]
     panels = [panel for panel in panels if route[panel[0]]]
@@ -62,9 +78,9 @@ def draw_route(path, label, route_file):
     stops = plot_route(axes, route["steps"], names, ports)
     for shown in all_axes[:len(panels) + 1]:
         for cell, name in names.items():
-            shown.annotate(name, cell, xytext=(0, 11) if cell in ports else (10, -7),
-                           textcoords="offset points", fontsize=9.5, ha="center", va="center",
-                           weight="bold", zorder=8,
+            shown.annotate(name, cell, xytext=(0, -0.5) if cell in ports else (11, -9),
+                           textcoords="offset points", fontsize=8.5 if cell in ports else 10,
+                           ha="center", va="center", weight="bold", zorder=8,
                            path_effects=[withStroke(linewidth=2.5, foreground="white")])
     _disasters(axes, route["steps"], sea)
     for shown in all_axes[:len(panels) + 1]:
@@ -72,8 +88,9 @@ def draw_route(path, label, route_file):
         shown.set_ylabel("cells to the north")
     axes.set_title("the route in this episode")
     figure.suptitle(f"{label}: {route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} "
-                    f"steps, return {route['return']:.1f}", fontsize=13.5, weight="bold", x=0.01,
-                    ha="left")
+                    f"steps, return {route['return']:.1f}" +
+                    (f" (clairvoyant: {best['return']:.1f})" if is_same else ""), fontsize=13.5,
+                    weight="bold", x=0.01, ha="left")
     _explain(all_axes[-1], [*all_axes[:len(panels)], axes], stops, bool(panels))
     save(figure, path, dpi=110)  # reports show it at full size; it fits a window of 1280 pixels
 
@@ -87,8 +104,8 @@ def devices_left(route):
 
 
 def draw_unfinished(path, routes, title):
-    """Draws the routes of episodes that ended with devices at sea, and the rings of disasters in
-    the last step and before. All maps have the same scale.
+    """Draws the last legs of episodes that ended with devices at sea, and the rings of disasters in
+    the last step and before.
 
     routes: {name of the ranch: route file}
     title: title of the figure
@@ -96,42 +113,86 @@ def draw_unfinished(path, routes, title):
     columns = 2
     rows = -(-(len(routes) + 1) // columns)  # the last map is followed by the legend
     routes = {name: json.loads(file.read_text()) for name, file in routes.items()}
-    size = [max(route["chart"][side] for route in routes.values()) for side in ("width", "height")]
-    figure, all_axes = plt.subplots(
-        rows, columns, figsize=(5.0 * columns, (0.8 + 5.0 * size[1] / size[0]) * rows),
-        squeeze=False, layout="constrained")
-    figure.get_layout_engine().set(h_pad=0.2)
+    figure, all_axes = plt.subplots(rows, columns, figsize=(5.0 * columns, 4.0 * rows),
+                                    squeeze=False, layout="constrained")
+    figure.get_layout_engine().set(h_pad=0.1)
     all_axes = list(all_axes.flat)
     charts = all_axes[:len(routes)]
     for axes, (name, route) in zip(charts, routes.items()):
-        plot_unfinished(axes, name, route, size)
+        plot_unfinished(axes, name, route)
     for empty in all_axes[len(routes):]:
         empty.axis("off")
     figure.suptitle(title, fontsize=13.5, weight="bold", x=0.01, ha="left")
     symbols = _symbols(charts)
     rings = [label for label in (_LAST_RING, *(label for _, label in reversed(_BEFORE.values())))
              if label in symbols]
-    labels = [*(label for label in symbols if label not in rings), *rings]
-    all_axes[-1].legend([symbols[label] for label in labels], labels, loc="center", frameon=False,
-                        fontsize=11, labelspacing=0.9)
+    visits = [label for _, label in _VISITS.values() if label in symbols]
+    labels = [*(label for label in symbols if label not in (*rings, *visits)), *visits, *rings]
+    all_axes[-1].legend([symbols[label] for label in labels], labels, loc="center left",
+                        frameon=False, fontsize=11, labelspacing=0.55)
     save(figure, path)
 
 
-def plot_unfinished(axes, name, route, size):
-    """Draws the route of an episode that did not succeed. size: numbers of columns and rows of
-    the axes, each the largest of all ranches"""
+def plot_unfinished(axes, name, route):
+    """Draws the last leg of an episode that did not succeed, and the devices that were left. The
+    map shows the cells around them."""
     chart, last = route["chart"], route["steps"][-1]
     left = devices_left(route)
-    sea = _chart(axes, chart, size, left)
+    *before, (loaded, last_leg) = legs(route["steps"])
+    sea = _chart(axes, chart, _window([*last_leg, *left], (chart["width"], chart["height"])), left)
+    axes.set_anchor("NW")
     axes.set_xlabel("cells to the east")
     axes.set_ylabel("cells to the north")
-    at_end = route["steps"][-2]["disasters"]  # in the last state they may have ended
+    _plot_last_rings(axes, route["steps"], left, sea)
+    for _, cells in before:
+        line, = axes.plot(*np.array(cells, dtype=float).T, color=_EDGE, linewidth=0.8, zorder=2,
+                          alpha=0.4, label="route before")
+        line.set_clip_path(sea)
+    counts = _shade_visits(axes, last_leg)
+    colour, kind = _LEGS[loaded][0], f"{'a device' if loaded else 'nothing'} aboard"
+    moves = [np.array(pair, dtype=float) for pair in zip(last_leg, last_leg[1:])]
+    axes.add_collection(LineCollection(
+        moves, color=colour, zorder=5, label="_moves",
+        linewidths=[2.2 if any(counts[tuple(cell)] == 1 for cell in move) else 0.6
+                    for move in moves]))
+    axes.plot([], [], color=colour, linewidth=2.2, label=f"last leg, {kind}")
+    axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black", linewidth=2.2, zorder=8,
+                 clip_on=False, label="device that was not fetched")
+    axes.scatter(*last["cell"], s=190, marker="*", color="#f0e442", edgecolor="black", zorder=9,
+                 label="ship at the end")
+    _measure(axes, last["cell"], left)
+    result = f"{route['return']:.0f}".replace("-", "−")
+    end = len(route["steps"]) - 1
+    # The action of step t is complete in step t + 1, as in plot_route.
+    stop = f", {len(last_leg) - 2} steps after the last stop" if before else ", no stop"
+    axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
+                   f"return {result}\n{route['reason'].replace('_', ' ')} at step {end}{stop}",
+                   fontsize=10.5, loc="left")
+
+
+def _window(cells, size):
+    """Returns the first and last column, and the first and last row, of a map that contains cells.
+    The map has the shape of _RATIO, if the ranch is large enough. size: that of the ranch"""
+    low = np.maximum(np.min(cells, axis=0) - _MARGIN, 0)
+    high = np.minimum(np.max(cells, axis=0) + _MARGIN, np.array(size) - 1)
+    for axis, ratio in ((0, _RATIO), (1, 1.0 / _RATIO)):
+        length = int(ratio * (high - low)[1 - axis])
+        if length > high[axis] - low[axis]:
+            low[axis] = max(0, (low[axis] + high[axis] - length) // 2)
+            high[axis] = min(size[axis] - 1, low[axis] + length)
+            low[axis] = max(0, high[axis] - length)
+    return int(low[0]), int(high[0]), int(low[1]), int(high[1])
+
+
+def _plot_last_rings(axes, steps, left, sea):
+    """Draws the rings in the last step, and earlier rings of those that cover a device in left."""
+    at_end = steps[-2]["disasters"]  # in the last state they may have ended
     for i, disaster in enumerate(at_end):
         rings = list(_rings(disaster))
         covering = [k for k, ring in enumerate(rings) if _covers_any(ring, left)]
-        for steps, (colour, label) in _BEFORE.items() if covering else ():
-            then = len(route["steps"]) - 2 - steps
-            before = route["steps"][then]["disasters"] if then >= 0 else []
+        for count, (colour, label) in _BEFORE.items() if covering else ():
+            then = len(steps) - 2 - count
+            before = steps[then]["disasters"] if then >= 0 else []
             if len(before) == len(at_end):  # if not, their indices differ
                 _plot_ring(axes, list(_rings(before[i]))[covering[-1]], sea, colour, linewidth=2.0,
                            label=label)
@@ -139,26 +200,36 @@ def plot_unfinished(axes, name, route, size):
             inside = axes.add_patch(Polygon(ring, color=_RING, alpha=0.12, zorder=1))
             inside.set_clip_path(sea)
             _plot_ring(axes, ring, sea, linewidth=1.6, label=_LAST_RING)
-    *before, (loaded, last_leg) = legs(route["steps"])
-    for _, cells in before:
-        axes.plot(*np.array(cells, dtype=float).T, color="#5b6b78", linewidth=1.0, zorder=4,
-                  alpha=0.45, label="route before")
-    colour, kind = _LEGS[loaded][0], f"{'a device' if loaded else 'nothing'} aboard"
-    axes.add_collection(LineCollection(  # one segment per step: repeated segments look darker
-        [np.array(pair, dtype=float) for pair in zip(last_leg, last_leg[1:])], color=colour,
-        linewidth=2.0, zorder=5, alpha=_REPEATED, label=f"last leg, {kind}; darker: repeated"))
-    axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black",
-                 linewidth=2.2, zorder=8, label="device that was not fetched")
-    axes.scatter(*last["cell"], s=150, marker="*", color="#f0e442", edgecolor="black", zorder=9,
-                 label="ship at the end")
-    result = f"{route['return']:.0f}".replace("-", "−")
-    end = len(route["steps"]) - 1
-    # The action of step t is complete in step t + 1, as in plot_route.
-    stop = f"last stop at {end - len(last_leg) + 2}" if before else "no stop"
-    axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
-                   f"return {result}\n"
-                   f"{route['reason'].replace('_', ' ')} at step {end}, {stop}",
-                   fontsize=10.5, loc="left")
+
+
+def _shade_visits(axes, cells):
+    """Shades the cells that a route visits more than once. Returns the visits of each cell."""
+    counts = collections.Counter(map(tuple, cells))
+    for i, (low, (colour, label)) in enumerate(_VISITS.items()):
+        high = [*_VISITS, np.inf][i + 1]
+        shown = [cell for cell, count in counts.items() if low <= count < high]
+        if shown:
+            axes.add_collection(PatchCollection(
+                [Rectangle((x - 0.5, y - 0.5), 1.0, 1.0) for x, y in shown], facecolor=colour,
+                edgecolor="none", zorder=4))
+            axes.scatter([], [], color=colour, marker="s", s=150, label=label)
+    return counts
+
+
+def _measure(axes, cell, left):
+    """Connects the ship to the nearest device in `left`. Writes the min number of moves between
+    them."""
+    gaps = np.array(left) - cell
+    moves = np.abs(gaps).max(axis=1)  # a move may be diagonal
+    nearest = int(np.argmin(moves))
+    axes.plot(*zip(cell, left[nearest]), color="black", linestyle=":", linewidth=1.4, zorder=5,
+              label="_moves")
+    across = "left" if cell[0] < np.mean(axes.get_xlim()) else "right"
+    is_below = gaps[nearest][1] > 0  # the line is above
+    axes.annotate(f"≥ {moves[nearest]} moves to go", cell, xytext=(0, -9 if is_below else 9),
+                  textcoords="offset points", ha=across, va="top" if is_below else "bottom",
+                  fontsize=10.5, weight="bold", zorder=10,
+                  path_effects=[withStroke(linewidth=3, foreground="white")])
 
 
 def _symbols(charts):
@@ -169,49 +240,63 @@ def _symbols(charts):
     return symbols
 
 
-def _chart(axes, chart, size=None, left=None):
+def _chart(axes, chart, window=None, left=None):
     """Draws a ranch. Returns the patch of its sea.
 
-    size: columns and rows that fill the axes; None: those of the ranch
+    window: first and last column, first and last row of the part to draw; None: the whole ranch
     left: cells of the devices that were not fetched; the symbols of other devices are hollow. None:
-        all symbols are filled
+        the symbols of all devices show their kind
     """
-    width, height = size or (chart["width"], chart["height"])
+    west, east, south, north = window or (0, chart["width"] - 1, 0, chart["height"] - 1)
+    width, height = east - west + 1, north - south + 1
     axes.set_aspect("equal")
     for spine in axes.spines.values():  # the patch of the sea has an edge
         spine.set_visible(False)
-    for axis, count in ((axes.xaxis, chart["width"]), (axes.yaxis, chart["height"])):
-        axis.set_ticks(range(0, count, 5 if count <= 30 else 10))
-    axes.set_xlim(-_RIM, width - 1 + _RIM)
-    axes.set_ylim(chart["height"] - height - _RIM, chart["height"] - 1 + _RIM)  # ranch at the top
-    axes.spines["bottom"].set_position(("data", -_RIM))
-    sea = axes.add_patch(Rectangle((-0.5, -0.5), chart["width"], chart["height"], facecolor=_SEA,
-                                   edgecolor="#5b6b78", zorder=0))
-    if chart["islands"]:
-        axes.add_collection(PatchCollection(
-            [Rectangle((x - 0.5, y - 0.5), 1.0, 1.0) for x, y in chart["islands"]],
-            facecolor=_LAND, edgecolor=_LAND, zorder=1))
-        axes.scatter([], [], color=_LAND, marker="s", s=200, label="island")
+    for axis, low, count in ((axes.xaxis, west, width), (axes.yaxis, south, height)):
+        step = 5 if count <= 30 else 10
+        axis.set_ticks(range(-(-low // step) * step, low + count, step))
+    axes.set_xlim(west - _RIM, east + _RIM)
+    axes.set_ylim(south - _RIM, north + _RIM)
+    shown = {"xy": (west - 0.5, south - 0.5), "width": width, "height": height}
+    sea = axes.add_patch(Rectangle(**shown, facecolor=_SEA, zorder=0))
+    axes.add_patch(Rectangle(**shown, fill=False, edgecolor=_EDGE, zorder=2))  # above the islands
     area = 4900.0 / max(width, height)  # area of a marker that fills a cell [pt²]
-    devices = [device["cell"] for device in chart["devices"]]
-    fetched = [] if left is None else [cell for cell in devices if cell not in left]
-    for cells, style, share, label in (
-            (chart["rocks"], {"color": "#d3dae0", "marker": "^"}, 0.18, "rock"),
-            (chart["ports"], {"color": "#1a7f37", "marker": "s"}, 0.6, "port"),
-            (fetched, {"facecolor": "white", "edgecolor": _DEVICE, "marker": "D"}, 0.5,
-             "device that was fetched"),
-            ([cell for cell in devices if cell not in fetched], {"color": _DEVICE, "marker": "D"},
-             0.6, "device" if left is None else "_device")):
-        if cells:
-            axes.scatter(*zip(*cells), label=label, zorder=6 if cells is fetched else 3,
-                         s=area * share, **style)
+    groups = [(chart["islands"], {"color": _LAND, "marker": "s", "s": area}, "island"),
+              (chart["rocks"], {"color": "#9aa5ae", "marker": "^", "s": 0.18 * area}, "rock"),
+              (chart["ports"], {"facecolor": "white", "edgecolor": "black", "linewidth": 2.0,
+                                "s": 0.9 * area}, "port")]
+    if left is None:
+        kinds = {device.get("kind") for device in chart["devices"]}
+        for kind in sorted(kinds, key=str):
+            marker, colour, name = _KINDS.get(kind, ("D", _DEVICE, "device"))
+            groups.append(([one["cell"] for one in chart["devices"] if one.get("kind") == kind],
+                           {"facecolor": colour, "edgecolor": "black", "marker": marker,
+                            "s": 0.8 * area}, f"device: {name}" if kind in _KINDS else name))
+    else:
+        cells = [device["cell"] for device in chart["devices"]]
+        groups += [([cell for cell in cells if cell not in left],
+                    {"facecolor": "white", "edgecolor": _DEVICE, "marker": "D", "s": 0.5 * area},
+                    "device that was fetched"),
+                   (left, {"color": _DEVICE, "marker": "D", "s": 0.6 * area}, "_device")]
+    for cells, style, label in groups:
+        cells = [(x, y) for x, y in cells if west <= x <= east and south <= y <= north]
+        if not cells:
+            continue
+        if label == "island":
+            axes.add_collection(PatchCollection(
+                [Rectangle((x - 0.5, y - 0.5), 1.0, 1.0) for x, y in cells], facecolor=_LAND,
+                edgecolor=_LAND, zorder=1))
+            cells = np.empty((0, 2))  # for the legend
+        axes.scatter(*np.transpose(cells), label=label, zorder=3, **style)
     return sea
 
 
 def plot_moves(axes, moves, chart):
     """Draws the preferred actions. A move is an arrow, in every second column and row except at
-    ports and devices. A pickup or drop-off is a mark."""
-    taken = [*chart["ports"], *(device["cell"] for device in chart["devices"])]
+    ports, at devices and below their names. A pickup or drop-off is a mark."""
+    taken = [*chart["ports"], *([device["cell"][0] + right, device["cell"][1] - down]
+                                for device in chart["devices"] for right in range(3)
+                                for down in range(2))]
     pointed = [(x, y, *_DIRECTIONS[action]) for x, y, action in moves
                if action in _DIRECTIONS and x % _EVERY == 0 and y % _EVERY == 0
                and [x, y] not in taken]
@@ -244,7 +329,7 @@ def _plot_legs(axes, steps):
         lane = np.full(len(x), _LANE if i % 2 else -_LANE)
         for end in (cells[0], cells[-1]):  # legs meet in the centre of a cell
             lane[[cell == end for cell in cells]] = 0.0
-        axes.plot(x + lane, y - lane, color=colour, linestyle=dashes, linewidth=2.2, zorder=5,
+        axes.plot(x + lane, y - lane, color=colour, linestyle=dashes, linewidth=2.2, zorder=2.8,
                   label=name if i < len(_LEGS) else "_leg")
         _point_along(axes, x + lane, y - lane, colour)
 
@@ -273,8 +358,8 @@ def plot_route(axes, steps, names, ports):
     ports: cells (x, y) of the ports; the numbers of stops there are below the names of the ports
     """
     _plot_legs(axes, steps)
-    axes.scatter(*steps[0]["cell"], s=170, facecolor="none", edgecolor="black", linewidth=1.8,
-                 zorder=6, label="start")
+    axes.scatter(*steps[0]["cell"], s=340, facecolor="none", edgecolor="black", linewidth=1.6,
+                 linestyle=(0, (2, 1.2)), zorder=6, label="start")
     stops, here = [], {}
     for at, step in enumerate(steps):
         if step.get("action") in _STOPS:
@@ -282,8 +367,8 @@ def plot_route(axes, steps, names, ports):
                           names.get(tuple(step["cell"]), ""), at + 1))
             here.setdefault(tuple(step["cell"]), []).append(len(stops))
     for cell, numbers in here.items():  # a cell may have several stops
-        offset, across, up = ((0, -11), "center", "top") if cell in ports else (
-            (-10, 0), "right", "center")
+        offset, across, up = ((0, -12), "center", "top") if cell in ports else (
+            (-12, 0), "right", "center")
         axes.annotate(", ".join(map(str, numbers)), cell, xytext=offset, zorder=8,
                       textcoords="offset points", ha=across, va=up, fontsize=10,
                       weight="bold", bbox={"boxstyle": "round,pad=0.15,rounding_size=0.5",
@@ -295,14 +380,16 @@ def _explain(empty, charts, stops, has_moves):
     """Writes the legend and the table of stops on empty axes."""
     symbols = _symbols(charts)
     empty.legend(symbols.values(), symbols.keys(), loc="upper left", frameon=False, fontsize=11,
-                 bbox_to_anchor=(0.0, 1.0), labelspacing=0.7, ncols=2)
+                 bbox_to_anchor=(0.0, 1.0), labelspacing=0.7, ncols=2, markerscale=0.8)
     if has_moves:
-        empty.text(0.02, 0.63, f"arrow: the preferred move, in every {_EVERY}nd column and row",
+        empty.text(0.02, 0.56, f"arrow: the preferred move, in every {_EVERY}nd column and row\n"
+                   "yellow: cells where the preferred action is a pickup or drop-off",
                    transform=empty.transAxes, va="top", fontsize=11)
     if stops:
+        height = 0.06 * (len(stops) + 1)
         table = empty.table(stops, colLabels=["stop", "action", "at", "step"], cellLoc="left",
                             colLoc="left", edges="horizontal",
-                            bbox=(0.02, 0.5 - 0.06 * (len(stops) + 1), 0.6, 0.06 * (len(stops) + 1)))
+                            bbox=(0.02, 0.43 - height, 0.6, height))
         table.auto_set_font_size(False)
         table.auto_set_column_width(range(len(stops[0])))
         table.set_fontsize(11)
@@ -331,27 +418,28 @@ def _plot_ring(axes, ring, sea, colour=_RING, **style):
 
 
 def _disasters(axes, steps, sea):
-    """Draws all rings at the start, and in thinner lines the outermost rings in some later
-    steps."""
-    stops = np.array([step["cell"] for step in steps if step.get("action") in _STOPS],
-                     dtype=float).reshape(-1, 2)
+    """Draws all rings at the start, and the outermost rings in some later steps. The colour and a
+    label specify the step."""
+    stops = [step["cell"] for step in steps if step.get("action") in _STOPS]
     inside = axes.viewLim.padded(-0.3)
     west = axes.viewLim.xmin + 2.0  # labels of points west of this x are to the right of the ring
-    axes.plot([], [], color=_RING, linewidth=1.6, label="ring of the disaster")
-    for at in np.linspace(0, len(steps) - 1, _SHOWN_STEPS).astype(int):
-        style = {"linewidth": 1.6, "alpha": 0.9} if at == 0 else {"linewidth": 0.9, "alpha": 0.6}
-        for disaster in steps[at]["disasters"]:
-            *inner, outer = _rings(disaster)
-            for ring in [*inner, outer] if at == 0 else [outer]:
-                axes.add_patch(Polygon(ring, fill=False, color=_RING, zorder=2,
-                                       **style)).set_clip_path(sea)
-            seen = [point for point in outer[::15] if inside.contains(*point)]
-            if not seen:
-                continue
-            # The label is at the point that is farthest from the stops of the route.
-            best = max(seen, key=lambda point: min(np.hypot(*(stops - point).T), default=0.0))
-            axes.annotate(f"step {at}", best, color=_RING, fontsize=9, va="center",
-                          ha="left" if best[0] < west else "center", xytext=(3, 0),
-                          textcoords="offset points",
-                          zorder=7, bbox={"boxstyle": "round,pad=0.1", "facecolor": _SEA,
-                                          "edgecolor": "none"})
+    axes.plot([], [], color=_RING, linewidth=1.8, label="ring of the disaster, by step")
+    shown = np.unique(np.linspace(0, len(steps) - 1, _SHOWN_STEPS).astype(int))
+    rings = [(at, list(_rings(disaster))) for at in shown for disaster in steps[at]["disasters"]]
+    for at, (*inner, outer) in rings:
+        colour = plt.get_cmap("YlOrRd")(0.95 - 0.45 * at / max(1, shown[-1]))
+        for ring in [*inner, outer] if at == 0 else [outer]:
+            axes.add_patch(Polygon(ring, fill=False, color=colour, zorder=2,
+                                   linewidth=1.8 if ring is outer else 1.0)).set_clip_path(sea)
+        seen = [point for point in outer[::10]  # with space for the label's height
+                if all(inside.contains(*(point + (0.0, up))) for up in (-0.5, 0.5))]
+        if not seen:
+            continue
+        # The label is at the point that is farthest from the stops and from the other rings.
+        others = np.array([*stops, *(point for _, other in rings if other[-1] is not outer
+                                     for point in other[-1][::10])], dtype=float).reshape(-1, 2)
+        best = max(seen, key=lambda point: min(np.hypot(*(others - point).T), default=0.0))
+        axes.annotate(f"step {at}", best, color=legible(colour[:3]), fontsize=10, va="center",
+                      ha="left" if best[0] < west else "center", xytext=(3, 0), zorder=7,
+                      textcoords="offset points", weight="bold",
+                      bbox={"boxstyle": "round,pad=0.1", "facecolor": _SEA, "edgecolor": "none"})

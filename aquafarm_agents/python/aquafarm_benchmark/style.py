@@ -11,6 +11,7 @@ from matplotlib import colors, pyplot as plt  # noqa: E402
 _DPI = 150
 _LETTERS = 78  # max length of a line of a headline
 _NOTE = {"fontsize": 9.5, "color": "0.35"}
+_NOTE_LETTERS = 14  # max length of a line of a note, per inch of the figure's width
 _NAME_PT = 15.0  # height of a name [pt]
 # Max distance along x between line ends with names in one column [fraction of the axes' width].
 _NEAR = 0.15
@@ -31,7 +32,8 @@ def explain(figure, finding, note):
     """Writes the finding above a figure, in bold, and the note below it."""
     figure.suptitle("\n".join(_wrap_evenly(finding)), fontsize=12.5, weight="bold", x=0.01,
                     ha="left")
-    figure.supxlabel("\n".join(textwrap.wrap(note, 1.25 * _LETTERS)), x=0.01, ha="left", **_NOTE)
+    width = max(_LETTERS, int(_NOTE_LETTERS * figure.get_figwidth()))
+    figure.supxlabel("\n".join(textwrap.wrap(note, width)), x=0.01, ha="left", **_NOTE)
 
 
 def _wrap_evenly(text):
@@ -44,12 +46,6 @@ def _wrap_evenly(text):
             break
         lines = narrower
     return lines
-
-
-def write_note(axes, note):
-    """Writes a note into axes that have no chart and a third of the figure's width."""
-    axes.text(0.0, 1.0, "\n".join(textwrap.wrap(note, 0.42 * _LETTERS)), va="top",
-              linespacing=1.4, transform=axes.transAxes, **_NOTE)
 
 
 def label_axes(axes, title, ylabel, xlabel="episode"):
@@ -65,6 +61,12 @@ def label_axes(axes, title, ylabel, xlabel="episode"):
 def number(value, digits=0):
     """Formats a number with thousands separators and a minus sign: "−1,571"."""
     return f"{value:,.{digits}f}".replace("-", "−")
+
+
+def joined(words):
+    """Returns a list of words as text: "A, B and C"."""
+    *others, last = words
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def spread(places, gap, low=0.0, high=1.0):
@@ -87,11 +89,11 @@ def name_ends(axes, ends):
     names of lines that end at the right border of the axes do not overlap each other. Neither do
     the names of lines that end further left.
 
-    ends: (x, y, colour, name) of each line's end
+    ends: the line ends, as curves.End
     """
     axes.margins(x=0.0)
     axes.set_ylim(axes.get_ylim())  # fixes the limits
-    ends = sorted(ends, key=lambda end: end[1])
+    ends = sorted(ends, key=lambda end: end.y)
     axes.figure.draw_without_rendering()  # sets the size of the axes
     to_axes = axes.transData + axes.transAxes.inverted()
     height_pt = 72.0 * axes.get_window_extent().height / axes.figure.dpi
@@ -101,13 +103,14 @@ def name_ends(axes, ends):
     for is_inside, high in ((True, _INSIDE), (False, 1.0 + 0.3 * gap)):
         group = [end for end in ends if (at[end][0] < 0.95) == is_inside]
         places.update(zip(group, spread([at[end][1] for end in group], gap, high=high)))
-    for (x, y, colour, name), place in places.items():
+    for end, place in places.items():
         # A name stands to the right of all line ends that are up to _NEAR to the right of its own.
-        end = max(length for length, _ in at.values() if length <= at[x, y, colour, name][0] + _NEAR)
-        axes.annotate(name, (x, y), xytext=(min(end, 1.0) + 0.04, place), textcoords=axes.transAxes,
-                      color=legible(colour), va="center", fontsize=10, annotation_clip=False,
+        right = max(length for length, _ in at.values() if length <= at[end][0] + _NEAR)
+        axes.annotate(end.name, end[:2], xytext=(min(right, 1.0) + 0.04, place), va="center",
+                      textcoords=axes.transAxes, color=legible(end.colour), fontsize=10,
+                      annotation_clip=False,
                       bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
-                      arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8,
+                      arrowprops={"arrowstyle": "-", "color": end.colour, "linewidth": 0.8,
                                   "relpos": (0.0, 0.5), "shrinkA": 1.0, "shrinkB": 0.0})
 
 

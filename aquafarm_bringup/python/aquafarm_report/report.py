@@ -101,8 +101,8 @@ def report_run(run, folder, episodes):
 
 _RUNS = "median of the runs, shaded from the lowest to the highest"
 CAPTIONS = {
-    "rewards": "50-episode mean return of the first run, by time steps and by episodes (Fig. 12a of the "
-               "paper); higher is better",
+    "rewards": "50-episode mean return of each run by time steps (Fig. 12a of the paper); higher is "
+               "better",
     "average_rewards": f"Mean return of all episodes so far (Fig. 12b): {_RUNS}; higher is better",
     "mean_square_error": f"50-episode mean square error of the value estimates (Fig. 12c): {_RUNS}",
     "repeated_trainings": f"50-episode mean return of each learner (Fig. 14): {_RUNS}",

@@ -446,7 +446,7 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
                          "time limit at step 3, 1 steps after the last stop",
                          self.axes.get_title("left"))
-        self.assertEqual({"≥ 3 moves to go"}, self.names_of(self.axes))
+        self.assertEqual({"≥ 3 moves"}, self.names_of(self.axes))
         _, self.axes = style.plt.subplots()
         far = {"x": 30.0, "y": 2.0, "radii": [1.0]}
         waiting = [{**steps[0], "disasters": [{**storm, "x": 2.5}, far]}] * 70

@@ -224,11 +224,11 @@ def _measure(axes, cell, left):
     nearest = int(np.argmin(moves))
     axes.plot(*zip(cell, left[nearest]), color="black", linestyle=":", linewidth=1.4, zorder=5,
               label="_moves")
-    across = "left" if cell[0] < np.mean(axes.get_xlim()) else "right"
-    is_below = gaps[nearest][1] > 0  # the line is above
-    axes.annotate(f"≥ {moves[nearest]} moves to go", cell, xytext=(0, -9 if is_below else 9),
-                  textcoords="offset points", ha=across, va="top" if is_below else "bottom",
-                  fontsize=10.5, weight="bold", zorder=10,
+    east, north = gaps[nearest]
+    is_below = north > 0  # the line is above
+    axes.annotate(f"≥ {moves[nearest]} moves", cell, xytext=(0, -10 if is_below else 10),
+                  textcoords="offset points", ha="left" if east > 0 else "right",
+                  va="top" if is_below else "bottom", fontsize=11, weight="bold", zorder=10,
                   path_effects=[withStroke(linewidth=3, foreground="white")])
 
 

@@ -45,9 +45,10 @@ def draw_square_error(path, contestants, runs):
         axes.axis("off")
     explain(figure, describe_courses(courses),
             f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic. Dots: "
-            "first, highest and last value; ×: last value relative to the first. Grey: when "
-            f"{100 * _SUCCESS:.0f} % of the last {measures.WINDOW} episodes first succeed, from "
-            f"the first run to the last. {describe_shading(contestants, runs)} Each learner has "
+            "first value, last value, and the highest if it is far from both; ×: last value "
+            f"relative to the first. Grey: when {100 * _SUCCESS:.0f} % of the last "
+            f"{measures.WINDOW} episodes first succeed, from the earliest run to the latest. "
+            f"{describe_shading(contestants, runs)} Each learner has "
             "its own targets: a lower error does not mean a better policy.")
     if len(unused):
         label_axes(unused[0], "all medians", "", "episode")
@@ -101,7 +102,8 @@ def _mark_course(axes, colour):
 
 
 def _mark_success(axes, of_one):
-    """Shades the episodes from the first to the last run whose success rate reaches _SUCCESS."""
+    """Shades the episodes at which the success rate of the runs first reaches _SUCCESS, from the
+    earliest run to the latest."""
     found = []
     for successes in columns_of_runs(of_one, "success"):
         episodes, means = moving_means(successes)

@@ -225,8 +225,7 @@ std::string OverFarmText(const FarmSpec& spec, const Course& course) {
   if (!ring) return "";
   const std::string wind = WindOverFarm(spec, course, now);
   return (wind.empty() ? "risk " + Number(now.risks[*ring], 0) : wind) +
-         (CoversFarm(spec, now, now.radii[*ring]) ? " over the ranch"
-                                                  : " over part of the ranch");
+         (CoversFarm(spec, now, now.radii[*ring]) ? " over the ranch" : " over part of the ranch");
 }
 
 double StepsToFarm(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,

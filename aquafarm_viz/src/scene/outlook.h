@@ -82,8 +82,8 @@ const char* WindOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& cour
                          const TrackPoint& at);
 
 /// Returns the worst ring that covers a part of the farm now: "gale over the ranch", or "gale over
-/// part of the ranch" if it does not cover all of it. If its wind is not given, the text begins with
-/// its risk, such as "risk -5". Empty if no ring covers a part of the farm.
+/// part of the ranch" if it does not cover all of it. If its wind is not given, the text begins
+/// with its risk, such as "risk -5". Empty if no ring covers a part of the farm.
 std::string OverFarmText(const aquafarm_msgs::FarmSpec& spec, const Course& course);
 
 /// Returns the risk of the worst ring that covers a device now or reaches it later; 0 if none does.

@@ -66,7 +66,7 @@ TEST(RanchModel, SaysWhatTheStateIs) {
   EXPECT_EQ(model.Devices()[0][3], "deployed");
   EXPECT_EQ(model.Devices()[3][3], "risk -5 now, -12 in 12 min");
   EXPECT_EQ(model.Disasters().at(0),
-            (RanchModel::Row{"typhoon", "3.1 km ESE", "E at 10 km/h now", "", "49 h"}));
+            (RanchModel::Row{"typhoon", "3.1 km ESE", "E at 10 km/h", "", "49 h"}));
   EXPECT_EQ(RanchModel().Headline(), "no ranch yet");
 }
 

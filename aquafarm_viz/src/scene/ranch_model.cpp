@@ -120,7 +120,7 @@ const RanchModel::Row& RanchModel::DeviceColumns() {
 }
 
 const RanchModel::Row& RanchModel::DisasterColumns() {
-  static const Row columns{"disaster", "centre", "motion", "closest", "ends in"};
+  static const Row columns{"disaster", "centre", "motion now", "closest", "ends in"};
   return columns;
 }
 
@@ -134,8 +134,8 @@ std::vector<RanchModel::Row> RanchModel::Disasters() const {
     const auto& disaster = state.disasters[i];
     if (!disaster.known || disaster.steps_left <= 0) continue;
     rows.push_back({NameNow(disaster, courses[i]), WhereText(spec, disaster.x, disaster.y),
-                    MotionNow(spec, disaster), ClosestText(spec, courses[i]),
-                    AheadText(spec, disaster.steps_left)});
+                    MotionText(spec, disaster.heading_deg, double(disaster.speed)),
+                    ClosestText(spec, courses[i]), AheadText(spec, disaster.steps_left)});
   }
   return rows;
 }

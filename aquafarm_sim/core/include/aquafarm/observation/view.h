@@ -98,7 +98,7 @@ float WorstRisk(const ObservableDisaster& disaster);
 /// |worst risk| / (1 + gap / longer side of the map). The gap is the smallest distance from the
 /// ship to the edge of the disaster at its last known position and at its forecast positions; 0
 /// inside. At equal danger the lower id comes first. The paper does not define this order;
-/// docs/scenario.md explains it.
+/// docs/scenario_disasters.md explains it.
 void RankByDanger(View& view);
 
 /// Returns the worst risk of the sea and of the disasters of the view at a cell, 0 or negative.

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Common code of the campaigns: limits, counts, programs and processes."""
 import collections
+import contextlib
 import os
 import pathlib
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -104,6 +106,22 @@ def execute(*command, seconds=60, **options):
     except subprocess.TimeoutExpired as error:
         return None, (error.stdout or b"").decode(errors="replace")
     return done.returncode, done.stdout.decode(errors="replace")
+
+
+@contextlib.contextmanager
+def started(*command, **options):
+    """Starts a program in its own process group; yields the process, with its output in a pipe.
+    Kills the group at the end if the program still runs, for example after Ctrl-C."""
+    process = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               start_new_session=True, **options)
+    try:
+        yield process
+    finally:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+        process.stdout.close()
 
 
 def left_over(folder):

@@ -111,14 +111,12 @@ def read_huge(campaign, name, arguments, content):
         program = campaign.program("aquafarm_scenario")
         words = [program, *arguments[1:], arguments[0], path]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        process = subprocess.Popen([str(word) for word in words], stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                   preexec_fn=limit_memory)
-        try:
-            output = process.communicate(timeout=30 * MOST_S)[0].decode(errors="replace")
-        except subprocess.TimeoutExpired:
-            process.kill()
-            output = process.communicate()[0].decode(errors="replace")
+        with common.started(*words, preexec_fn=limit_memory) as process:
+            try:
+                output = process.communicate(timeout=30 * MOST_S)[0].decode(errors="replace")
+            except subprocess.TimeoutExpired:
+                process.kill()
+                output = process.communicate()[0].decode(errors="replace")
         used = resource.getrusage(resource.RUSAGE_CHILDREN)
         seconds = used.ru_utime + used.ru_stime - before.ru_utime - before.ru_stime
     what = f"{name} of {len(content) >> 20} MiB"

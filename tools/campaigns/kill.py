@@ -69,20 +69,19 @@ def interrupted_run(campaign, what, arguments_of, longest_s, whole_group=False):
     @param whole_group kill the whole process group, not only the process, in half of the cases"""
     most = campaign.kills or MOST_KILLS
     for kills in range(most + 1):
-        process = subprocess.Popen(arguments_of(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                   stderr=subprocess.STDOUT, start_new_session=True)
-        wait_s = campaign.rng.uniform(0.0, longest_s) if kills < most else LIMIT_S
-        try:
-            words = process.communicate(timeout=wait_s)[0].decode(errors="replace")
-            return campaign.check(process.returncode == 0, f"{what}: exit code {process.returncode} "
-                                  f"after {kills} kills: {words[-600:]}")
-        except subprocess.TimeoutExpired:
-            if whole_group and campaign.rng.random() < 0.5:
-                os.killpg(process.pid, signal.SIGKILL)
-            else:
-                process.kill()
-            process.communicate()
-            campaign.attempt(f"kills of {what}")
+        with common.started(*arguments_of()) as process:
+            wait_s = campaign.rng.uniform(0.0, longest_s) if kills < most else LIMIT_S
+            try:
+                words = process.communicate(timeout=wait_s)[0].decode(errors="replace")
+                return campaign.check(process.returncode == 0, f"{what}: exit code "
+                                      f"{process.returncode} after {kills} kills: {words[-600:]}")
+            except subprocess.TimeoutExpired:
+                if whole_group and campaign.rng.random() < 0.5:
+                    os.killpg(process.pid, signal.SIGKILL)
+                else:
+                    process.kill()
+                process.communicate()
+                campaign.attempt(f"kills of {what}")
     return campaign.check(False, f"{what}: did not end within {LIMIT_S} s after {most} kills")
 
 

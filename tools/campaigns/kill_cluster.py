@@ -58,18 +58,17 @@ class Ranks:
         """Starts the training and kills a rank unless this is the last attempt. Returns whether the
         training is complete, or None after a failure."""
         ranks = self.campaign.rng.choice((2, 4, 8))
-        process = subprocess.Popen(self.command(folder, ranks), stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         victim, begin = None, time.monotonic()
-        try:
-            words = process.communicate(
-                timeout=LIMIT_S if is_last else self.campaign.rng.uniform(0.1, 2.0 * self.seconds))[0]
-        except subprocess.TimeoutExpired:
-            found = children(process.pid)
-            if found and not is_last:
-                victim, begin = self.campaign.rng.choice(found), time.monotonic()
-                os.kill(victim, signal.SIGKILL)
-            words = process.communicate(timeout=LIMIT_S)[0]
+        with common.started(*self.command(folder, ranks)) as process:
+            try:
+                words = process.communicate(timeout=LIMIT_S if is_last else
+                                            self.campaign.rng.uniform(0.1, 2.0 * self.seconds))[0]
+            except subprocess.TimeoutExpired:
+                found = children(process.pid)
+                if found and not is_last:
+                    victim, begin = self.campaign.rng.choice(found), time.monotonic()
+                    os.kill(victim, signal.SIGKILL)
+                words = process.communicate(timeout=LIMIT_S)[0]
         took, words = time.monotonic() - begin, words.decode(errors="replace")
         if victim is None:
             good = self.campaign.check(process.returncode == 0,
@@ -156,10 +155,9 @@ class Workers(kill.Benchmark):
 
     def play(self, folder):
         """Starts or resumes the benchmark and disturbs it; returns its exit code and output."""
-        process = subprocess.Popen([*self.command(folder), "--scheduler", f"127.0.0.1:{self.port}"],
-                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                   stderr=subprocess.STDOUT)
-        words = self.disturb(process).decode(errors="replace")
+        with common.started(*self.command(folder), "--scheduler",
+                            f"127.0.0.1:{self.port}") as process:
+            words = self.disturb(process).decode(errors="replace")
         return process.returncode, words
 
     def try_once(self, number):

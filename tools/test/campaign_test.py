@@ -2,7 +2,9 @@
 """Each campaign in a short form. They are skipped unless AQUAFARM_CAMPAIGNS names a workspace."""
 import os
 import pathlib
+import signal
 import subprocess
+import time
 
 import pytest
 
@@ -55,3 +57,41 @@ def test_a_program_that_is_not_built_is_named(tmp_path):
     done = campaign("kill", "--workspace", tmp_path)
     assert done.returncode == 2
     assert f"no program aquafarm_train in {tmp_path}" in done.stderr
+
+
+# A trainer that ends at once in the uninterrupted run. In other runs it writes its process id to
+# a file and runs until it is killed.
+TRAINER = """#!/bin/bash
+while [[ $1 != -d ]]; do shift; done
+mkdir -p "$2"
+touch "$2/policy.ckpt" "$2/metrics.csv"
+[[ $2 == *_whole ]] && exit 0
+echo $$ >>"$PIDS"
+exec sleep 600
+"""
+
+
+def test_ctrl_c_ends_the_program_that_runs(tmp_path):
+    trainer = tmp_path / "core" / "aquafarm_agents" / "aquafarm_train"
+    trainer.parent.mkdir(parents=True)
+    trainer.write_text(TRAINER)
+    trainer.chmod(0o755)
+    pids = tmp_path / "pids"
+    process = subprocess.Popen([CAMPAIGN, "kill", "--only", "tables", "--count", "1",
+                                "--kills", "1", "--workspace", tmp_path],
+                               env=dict(os.environ, PIDS=str(pids)), stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+    try:
+        end = time.monotonic() + 60
+        # The first trainer is killed within milliseconds, the second one is not.
+        while not (pids.exists() and time.time() - pids.stat().st_mtime > 1):
+            assert process.poll() is None and time.monotonic() < end
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(60) == 130
+    finally:
+        process.kill()
+        process.wait()
+    assert pids.read_text().split()
+    for pid in pids.read_text().split():
+        assert not pathlib.Path(f"/proc/{pid}").exists()

@@ -8,7 +8,8 @@ usage: energy_of_learners.py SCENARIO.yaml ALGORITHM OUT.csv [--seeds N] [--weig
 There is one training for each weight and seed. With --from-first, trainings of later weights start
 with the policy of the first weight. The first weight must then be above 0, because the features
 contain the energy only for weights above 0. The return excludes the term of energy. OUT.csv has a
-row per training. The same command resumes an interrupted run.
+row per training, and may have rows of several algorithms. The same command resumes an interrupted
+run.
 
 The printed table has the means over the seeds. It also has the change of return and energy relative
 to the first weight, with 95 % intervals (bootstrap over seeds; each change compares two trainings
@@ -51,11 +52,12 @@ def train(text, weight, seed, arguments):
             "algorithm": arguments.algorithm, "seed": str(seed), "policy": "trained"}
 
 
-def read_rows(path):
+def read_rows(path, algorithm):
+    """Returns the rows of an algorithm. The file may contain rows of several algorithms."""
     if not path.is_file():
         return []
     with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+        return [row for row in csv.DictReader(file) if row["algorithm"] == algorithm]
 
 
 def append(path, row):
@@ -114,14 +116,16 @@ def main():
     arguments = parser.parse_args(words[:end])
     arguments.options = words[end + 1:]
     text = arguments.scenario.read_text(encoding="utf-8")
-    trained = {(row["seed"], float(row["weight"])) for row in read_rows(arguments.output)}
+    trained = {(row["seed"], float(row["weight"]))
+               for row in read_rows(arguments.output, arguments.algorithm)}
     jobs = [(seed, weight) for seed in range(1, arguments.seeds + 1) for weight in arguments.weights]
     for number, (seed, weight) in enumerate(jobs, 1):
         if (str(seed), weight) not in trained:
             print(f"training {number} of {len(jobs)}: seed {seed}, weight {weight:g}",
                   file=sys.stderr, flush=True)
             append(arguments.output, train(text, weight, seed, arguments))
-    print("\n".join(table(read_rows(arguments.output), arguments.weights)))
+    rows = read_rows(arguments.output, arguments.algorithm)
+    print("\n".join(table(rows, arguments.weights)))
 
 
 if __name__ == "__main__":

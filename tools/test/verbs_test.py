@@ -7,6 +7,7 @@ import io
 import os
 import pathlib
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -15,11 +16,12 @@ import time
 import types
 import unittest
 import unittest.mock
+import xmlrpc.server
 from unittest import mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
-from verbs import bench, launch, tests, workspace  # noqa: E402
+from verbs import bench, launch, ranks, tests, workspace  # noqa: E402
 
 
 class TestRun(unittest.TestCase):
@@ -155,6 +157,44 @@ class TestEnd(unittest.TestCase):
     def test_roslaunch_decides_if_no_node_has_left_a_code(self):
         self.assertEqual((1, ""), self.end(None, 1))
         self.assertEqual((137, "its node was killed before it ended"), self.end(None, 0, "sim"))
+
+
+class TestSecondRanch(unittest.TestCase):
+    """A master that has one node, /ours/sim."""
+
+    def setUp(self):
+        self.node = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(self.node.close)
+        uri = f"http://127.0.0.1:{self.node.getsockname()[1]}/"
+        master = xmlrpc.server.SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False)
+        master.register_function(
+            lambda _, name: (1, "", uri) if name == "/ours/sim" else (-1, "unknown node", ""),
+            "lookupNode")
+        threading.Thread(target=master.serve_forever, daemon=True).start()
+        self.addCleanup(master.server_close)
+        self.addCleanup(master.shutdown)
+        address = {"ROS_MASTER_URI": f"http://127.0.0.1:{master.server_address[1]}"}
+        environment = mock.patch.dict(os.environ, address)
+        environment.start()
+        self.addCleanup(environment.stop)
+
+    def test_it_is_refused_while_the_first_one_runs(self):
+        with self.assertRaisesRegex(workspace.Refused, "^/ours/sim already runs on http://127"):
+            launch.refuse_a_second_ranch(["ns:=ours"])
+
+    def test_it_may_start_with_another_name_or_after_the_first_one_was_killed(self):
+        launch.refuse_a_second_ranch([])
+        self.node.close()
+        launch.refuse_a_second_ranch(["ns:=ours"])
+
+
+class TestRanks(unittest.TestCase):
+
+    def test_a_training_in_ranks_creates_a_run_folder_if_it_is_auto(self):
+        self.assertEqual((["paper", "--ranks", "2"], None),
+                         ranks.program_arguments(["ranks:=2", "run_dir:=auto"]))
+        self.assertEqual((["paper", "--run-dir", os.path.realpath("here")], None),
+                         ranks.program_arguments(["run_dir:=here"]))
 
 
 class TestChild(unittest.TestCase):

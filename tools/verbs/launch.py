@@ -3,7 +3,10 @@
 ended the launch."""
 import importlib.util
 import os
+import socket
 import subprocess
+import urllib.parse
+import xmlrpc.client
 
 from . import arguments
 from .workspace import (CHECK_ARGUMENTS, INTERRUPTED, PYTHON, ROOT, WRONG_ARGUMENT, WS, Refused,
@@ -39,16 +42,26 @@ def refuse_unknown(launch, words):
         raise SystemExit(WRONG_ARGUMENT)
 
 
+def is_running(node):
+    """Returns whether a process accepts connections at the address that the master has for a node.
+    The master also keeps the address of a killed node."""
+    try:
+        code, _, uri = xmlrpc.client.ServerProxy(os.environ["ROS_MASTER_URI"]).lookupNode(
+            "/aquafarm", node)
+        if code != 1:
+            return False
+        address = urllib.parse.urlparse(uri)
+        socket.create_connection((address.hostname, address.port), timeout=5).close()
+        return True
+    except (OSError, xmlrpc.client.Error):
+        return False
+
+
 def refuse_a_second_ranch(words):
     """Raises Refused if a ranch with the same namespace runs on a shared master, because starting a
     second one would end the first."""
     ns = dict(map(arguments.split, words)).get("ns", "aquafarm")
-    try:
-        listed = subprocess.run(["rosnode", "list"], stdout=subprocess.PIPE, text=True,
-                                stderr=subprocess.DEVNULL, timeout=10, check=False).stdout
-    except (OSError, subprocess.TimeoutExpired):
-        return
-    if f"/{ns}/sim" in listed.splitlines():
+    if is_running(f"/{ns}/sim"):
         raise Refused(f"/{ns}/sim already runs on {os.environ['ROS_MASTER_URI']}; give "
                       "ns:=another_name or another master")
 

@@ -42,12 +42,21 @@ def refuse_unknown(launch, words):
         raise SystemExit(WRONG_ARGUMENT)
 
 
+class _Transport(xmlrpc.client.Transport):
+    """Requests to a master that does not answer end after 10 s."""
+
+    def make_connection(self, host):
+        connection = super().make_connection(host)
+        connection.timeout = 10
+        return connection
+
+
 def is_running(node):
     """Returns whether a process accepts connections at the address that the master has for a node.
     The master also keeps the address of a killed node."""
     try:
-        code, _, uri = xmlrpc.client.ServerProxy(os.environ["ROS_MASTER_URI"]).lookupNode(
-            "/aquafarm", node)
+        master = xmlrpc.client.ServerProxy(os.environ["ROS_MASTER_URI"], transport=_Transport())
+        code, _, uri = master.lookupNode("/aquafarm", node)
         if code != 1:
             return False
         address = urllib.parse.urlparse(uri)

@@ -169,6 +169,22 @@ TEST(OutlookText, NamesTheDevicesThatTheSameRingReachesLater) {
       << "another disaster reaches F2";
 }
 
+TEST(OutlookText, SaysFromWhenARingReachesSeveralDevices) {
+  Outlooks scene;
+  scene.spec.has_start_time = true;
+  scene.spec.step_duration_s = 180.0;
+  Outlook outlook;
+  outlook.is_known = true;
+  outlook.names = {"typhoon"};
+  outlook.devices = {{1, 0.0, 0U, 0, {{240.0, -5.0, 0U, 34}}},
+                     {2, 0.0, 0U, 0, {{240.0, -5.0, 0U, 34}}}};
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
+            "typhoon: gale reaches F1 and F2 in 12 h (Thu 12:51 UTC)");
+  outlook.devices[1].arrivals[0].steps = 245.0;  // a quarter of an hour later, also "12 h"
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
+            "typhoon: gale reaches F1 and F2 in 12 h (from Thu 12:51 UTC)");
+}
+
 TEST(OutlookText, NamesTheNearestRingIfNoDeviceIsInDanger) {
   Outlooks scene;
   scene.state.disasters[0].y = 24.0F;  // passes 2 cells north of the device in 30 steps
@@ -184,6 +200,9 @@ TEST(OutlookText, NamesTheNearestRingIfNoDeviceIsInDanger) {
   scene.state.disasters[0].x = 10.0F;  // moves away
   EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()),
             "risk -5 is 2.0 km from F3 now; no known danger to devices for the next 3.0 h");
+  scene.state.disasters[0].y = 24.96F;
+  EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()).substr(0, 17), "risk -5 is 2.9 km")
+      << "rounded down";
 }
 
 TEST(OutlookText, SaysThatARingComesNearerWhereTheOutlookEnds) {

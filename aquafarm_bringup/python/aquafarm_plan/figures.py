@@ -48,7 +48,8 @@ def region(plan):
 
     drawn = [{
         "xy": px(*p["at"]), "source": p["source"], "time": clock.day_time(p["time"]),
-        "wind": p["wind_mps"], "is_now": abs(clock.seconds(p["time"])) < 60.0
+        "wind": p["wind_mps"], "is_now": abs(clock.seconds(p["time"])) < 60.0,
+        "is_future": clock.seconds(p["time"]) > 0.0
     } for p in points]
     rings, caption = _region_rings(plan, points, middle, px, scale / cell_km, clock)
     bar = [{"px": n * km / cell_km * scale, "text": f"{n:g} {unit}"}
@@ -87,12 +88,13 @@ def _apart(drawn, least):
 
 
 def _region_labels(plan, drawn, rings, box):
-    """Returns the placed labels: the ranch; time and wind at some positions of the storm; the names
-    of the rings."""
+    """Returns the placed labels: the ranch; time and wind of the storm now and at some future
+    positions; the names of the rings."""
     centre = (box["x"] + box["w"] / 2, box["y"] + box["h"] / 2)
     labels = [Label(["ranch"], centre, box["w"] / 2 + 2, 14, name="ranch-name")]
     now = [one for one in drawn if one["is_now"]][:1]  # empty if no point is at the plan's start
-    others = [one for one in drawn[::math.ceil(len(drawn) / (REGION_LABELS - 1))]
+    ahead = [one for one in drawn if one["is_future"]] or drawn[-1:]
+    others = [one for one in ahead[::math.ceil(len(ahead) / (REGION_LABELS - 1))]
               if all(math.dist(one["xy"], at["xy"]) > 40.0 for at in now)]
     for one in now + others:
         words = one["time"].split(" ", 1)[1]

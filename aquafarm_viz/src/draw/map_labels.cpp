@@ -385,10 +385,15 @@ void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     const std::string text = DeviceLabel(device.id);
     const cv::Size size = TextSize(fonts.bold, text, layout);
     const double radius = layout.device_radius_px();
-    // Takes the free place that is nearest to the right side of the symbol.
-    const cv::Point2d east = layout.view.ToPixel(device.x, device.y) + cv::Point2d(radius, 0.0);
-    const double farthest = 3.0 * radius + 20.0 * layout.unit;
-    const auto place = space.Take(size, east, farthest);
+    const cv::Point2d at = layout.view.ToPixel(device.x, device.y);
+    const cv::Point2d aside(1.3 * radius + size.width / 2.0 + 4.0 * layout.unit, 0.0);
+    std::optional<cv::Rect>
+        place;  // next to the symbol, else as near to its right side as possible
+    for (const cv::Point2d& offset : {aside, -aside}) {
+      if (!place) place = space.Take(Cover::kNothing, size, at + offset, 6.0 * layout.unit);
+    }
+    const cv::Point2d east = at + cv::Point2d(radius, 0.0);
+    if (!place) place = space.Take(size, east, 3.0 * radius + 20.0 * layout.unit);
     if (!place) continue;
     DrawLabel(map, fonts.bold, text, TextAt(*place, layout), layout);
   }

@@ -150,6 +150,13 @@ void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const
   std::string text = kReasons[state.reason < kReasons.size() ? state.reason : 0U];
   const bool success = state.reason == FarmState::ALL_RETRIEVED;
   if (!layout.top.empty()) {
+    const auto delivered = std::count_if(
+        state.devices.begin(), state.devices.end(),
+        [](const auto& device) { return device.status == aquafarm_msgs::DeviceState::DELIVERED; });
+    if (!success) {
+      text += ": " + std::to_string(delivered) + " of " + std::to_string(state.devices.size()) +
+              " devices in port";
+    }
     text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
     fonts.title.Draw(image, text, {layout.Px(10), layout.Px(18)},
                      Bgr(success ? layout.style->good : layout.style->words));

@@ -68,14 +68,18 @@ const RingArrival* Extreme(
   return best;
 }
 
-// Returns the labels of the devices that have the same arrival as `ring`, that is, the same ring at
-// the same time: "F0 and F1". Times are the same if AheadText returns the same text for them.
+// Returns whether two arrivals are of the same ring at the same time, that is, a time for which
+// AheadText returns the same text.
+bool IsSameArrival(const FarmSpec& spec, const RingArrival& a, const RingArrival& b) {
+  return a.disaster == b.disaster && a.risk == b.risk &&
+         AheadText(spec, a.steps) == AheadText(spec, b.steps);
+}
+
+// Returns the labels of the devices that have the same arrival as `ring`: "F0 and F1".
 std::string WhomText(const FarmSpec& spec, const Outlook& outlook, const RingArrival& ring) {
   return Names(outlook, [&](const DeviceOutlook& one) {
-    return std::any_of(one.arrivals.begin(), one.arrivals.end(), [&](const RingArrival& other) {
-      return other.disaster == ring.disaster && other.risk == ring.risk &&
-             AheadText(spec, other.steps) == AheadText(spec, ring.steps);
-    });
+    return std::any_of(one.arrivals.begin(), one.arrivals.end(),
+                       [&](const RingArrival& other) { return IsSameArrival(spec, other, ring); });
   });
 }
 
@@ -84,14 +88,26 @@ std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
   return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
 }
 
-// Returns the local time `steps` steps from now: " (Sun 06:24 UTC+8)", or " (Sun 06:24)" if
-// `has_zone` is false. Empty if this time is less than an hour away, or if the scenario has no
-// start time.
-std::string ClockAhead(const FarmSpec& spec, const FarmState& state, double steps, bool has_zone) {
-  if (!spec.has_start_time || steps * spec.step_duration_s < 3600.0) return "";
+// Returns the local time `steps` steps from now, such as "Sun 06:24".
+std::string ClockText(const FarmSpec& spec, const FarmState& state, double steps) {
   const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
-  const std::string time = LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
-  return " (" + time + (has_zone ? " " + ZoneText(spec) : "") + ")";
+  return LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
+}
+
+// Returns the local time of an arrival: " (Sun 06:24 UTC+8)", or " (Sun 06:24)" if `has_zone` is
+// false. If WhomText contains devices that the ring reaches later, the text is " (from Sun 06:24)".
+// Empty if the time is less than an hour away, or if the scenario has no start time.
+std::string ClockAhead(const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
+                       const RingArrival& ring, bool has_zone) {
+  if (!spec.has_start_time || ring.steps * spec.step_duration_s < 3600.0) return "";
+  const std::string clock = ClockText(spec, state, ring.steps);
+  const bool is_first =
+      std::any_of(outlook.devices.begin(), outlook.devices.end(), [&](const DeviceOutlook& one) {
+        return std::any_of(one.arrivals.begin(), one.arrivals.end(), [&](const auto& other) {
+          return IsSameArrival(spec, other, ring) && ClockText(spec, state, other.steps) != clock;
+        });
+      });
+  return (is_first ? " (from " : " (") + clock + (has_zone ? " " + ZoneText(spec) : "") + ")";
 }
 
 // Shortens "hurricane force in 9.0 h" to "hurricane in 9.0 h".
@@ -112,9 +128,11 @@ std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
 // "gale passes 12 km from F2 in 9.0 h".
 std::string MissText(const FarmSpec& spec, const Outlook& outlook) {
   const RingMiss& miss = outlook.miss;
+  // Rounded down, because the place of a device is only known as a cell.
+  const double cells = std::floor(10.0 * miss.cells + 1e-6) / 10.0;
   const std::string ring = RingText(miss.risk, miss.wind_kt);
   const std::string where =
-      DistanceText(miss.cells * double(spec.cell_size_m)) + " from " + DeviceLabel(miss.device);
+      DistanceText(cells * double(spec.cell_size_m)) + " from " + DeviceLabel(miss.device);
   if (!(miss.steps > 0.0)) return ring + " is " + where + " now";
   const std::string about = outlook.is_extrapolated ? "about " : "";
   const std::string when = " in " + about + AheadText(spec, miss.steps);
@@ -150,10 +168,10 @@ class Sentence {
     const RingArrival* worst = Extreme(outlook_, [](const auto& a, const auto& b) {
       return a.risk < b.risk || (a.risk == b.risk && a.steps < b.steps);
     });
-    const std::string clock = ClockAhead(spec_, state_, next->steps, /*has_zone=*/true);
+    const std::string clock = ClockAhead(spec_, state_, outlook_, *next, /*has_zone=*/true);
     Add(*next, clock);
     if (worst->risk < next->risk) {
-      Add(*worst, ClockAhead(spec_, state_, worst->steps, /*has_zone=*/clock.empty()));
+      Add(*worst, ClockAhead(spec_, state_, outlook_, *worst, /*has_zone=*/clock.empty()));
     } else {
       AddOthers(*next);
     }

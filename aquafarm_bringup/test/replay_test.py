@@ -113,6 +113,17 @@ class ReplayTest(unittest.TestCase):
         self.assertEqual({5}, {state.episode for state in states})
         self.assertGreaterEqual(9, max(state.step for state in states))
 
+    def test_it_can_be_stepped_before_it_starts(self):
+        _, states = self.play(f"_bag:={self.moved_bag()}", "_start_step:=9", "_delay_s:=3600")
+        space = f"/alone_{len(self.players) - 1}"
+        rospy.wait_for_service(space + "/pause", LIMIT_S)
+        subscriber = rospy.Subscriber(space + "/state", FarmState)
+        self.ranch.wait_for(subscriber.get_num_connections, LIMIT_S)
+        pause = rospy.ServiceProxy(space + "/pause", Pause)
+        for steps, step in ((1, 10), (2, 12)):
+            pause(paused=True, steps=steps)
+            self.ranch.wait_for(lambda: states and states[-1].step == step, LIMIT_S)
+
     def test_in_a_loop_it_restarts_at_the_end(self):
         _, states = self.play(f"_bag:={self.moved_bag()}", "_loop:=true", "_speed:=1000",
                               "_delay_s:=2")

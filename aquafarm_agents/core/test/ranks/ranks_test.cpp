@@ -8,6 +8,7 @@
 
 #include "agents_fixture.h"
 #include "aquafarm/agents/environment/family_environment.h"
+#include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/agents/training/run_folder.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "process.h"
@@ -121,6 +122,23 @@ TEST_F(Ranks, RecurrentNetworksToo) {
   RunToTheEnd("one", one);
   RunToTheEnd("two", two);
   ExpectSameRuns("one", "two");
+}
+
+TEST_F(Ranks, OneRankTrainsEveryLearner) {
+  for (const Algorithm& algorithm : Algorithms()) {
+    if (algorithm.make == nullptr) continue;
+    const std::string name = algorithm.name;
+    const Words words{AQUAFARM_TRAIN, folder_ + "/tiny.yaml",
+                      "-a",           name,
+                      "--ranks",      "1",
+                      "-f",           "8",
+                      "-n",           "16",
+                      "--random",     "0",
+                      "--evaluate",   "0",
+                      "-d",           folder_ + "/" + name};
+    Process process(words, OutputPath(name));
+    EXPECT_EQ(process.Wait(kEnded), 0) << name << ": " << Output(name);
+  }
 }
 
 TEST_F(Ranks, AKilledRankEndsTheOthersAndTheRunResumesWithAnyNumber) {

@@ -294,9 +294,11 @@ class PlanProgram(unittest.TestCase):
     def test_a_device_off_the_chart_or_on_land_is_refused_by_name(self):
         path = self.write("bulletin.json", bulletin())
         head = "name,latitude,longitude,kind,value\n"
-        for row, words in (("F1,35.0,122.7,monitoring,5", "F1: got 35.0000 N 122.7000 E, expected a "
-                                                          "place on the chart of the ranch"),
-                           ("F1,30.13,122.69,whale,5", "kind: got 'whale', expected one of: ")):
+        off = "expected a place on the chart of the ranch"
+        for row, words in (
+                ("F1,35.0,122.7,monitoring,5", f"F1: got 35.0000 N 122.7000 E, {off}"),
+                ("F1,-35.0,-122.7,monitoring,5", f"F1: got 35.0000 S 122.7000 W, {off}"),
+                ("F1,30.13,122.69,whale,5", "kind: got 'whale', expected one of: ")):
             devices = self.write("devices.csv", head + row + "\n")
             said = self.refused("--bulletin", path, "--at", START, "--devices", devices)
             self.assertIn(f"{devices}:2: {words}", said)
@@ -338,6 +340,14 @@ class PlanProgram(unittest.TestCase):
         moved = self.write("moved.csv", head + f"F2,{water[1]},{water[2]},monitoring,5\n")
         code, words, _ = self.run_plan(*given, "--devices", moved, ranch=())
         self.assertEqual(0, code, words)
+
+    def test_a_ranch_with_a_coast_a_place_or_ports_is_refused(self):
+        path = self.write("bulletin.json", bulletin())
+        for given in (("--coast", path), ("--place", "30.2,122.7"), ("--ports", "30.15,122.65")):
+            self.assertEqual(
+                f"ranch: got {SCENARIO} with --coast, --place or --ports, expected either a ranch "
+                "or a chart: the ranch has its own coast and ports; leave out one of them",
+                self.refused("--bulletin", path, "--at", START, *given))
 
     def test_bad_arguments_are_refused_in_one_line(self):
         path = self.write("bulletin.json", bulletin())

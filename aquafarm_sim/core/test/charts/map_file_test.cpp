@@ -131,6 +131,16 @@ TEST_F(MapFiles, AreUnknownWhereAScaledPictureIsSeenThrough) {
   EXPECT_EQ(Values(Load("mode: raw\n").occupancy), (std::vector<int>{0, -1, -1, -1}));
 }
 
+TEST_F(MapFiles, ReadPngOfOneBitPerPixel) {
+  // The upper half of 1024 x 1024 pixels is black. The file has 404 bytes: 2595 pixels per byte.
+  Write("m.pgm", Sample("one_bit.png"));
+  const MapFile map = Load();
+  ASSERT_EQ(map.occupancy.rows(), 1024);
+  ASSERT_EQ(map.occupancy.cols(), 1024);
+  EXPECT_TRUE((map.occupancy.topRows(512) == 0).all()) << "row 0 is south";
+  EXPECT_TRUE((map.occupancy.bottomRows(512) == 100).all());
+}
+
 TEST_F(MapFiles, ReadPlainAndDeepPgm) {
   Write("m.pgm", "P2 2 2 # words\n15\n0 8 15\n6\n");
   EXPECT_EQ(Values(Load().occupancy), (std::vector<int>{0, -1, 100, -1}));

@@ -310,6 +310,25 @@ TEST(FarmServerServices, ResetOutOfRangeChangesNothing) {
   EXPECT_EQ(hash, StateOf(*ranch).hash);
 }
 
+TEST(FarmServerServices, TooManyNewLayoutsAreRefusedAtTheStartAndByReset) {
+  aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.layout = aquafarm::LayoutMode::kPerEpisode;
+  scenario.width = scenario.height = 128;
+  const std::string refusal =
+      "farms: 4096 layouts would have 67108864 cells and routes, expected at most 64000000; use "
+      "fewer farms";
+  try {
+    MakeRanch(scenario, kMaxFarms);
+    ADD_FAILURE() << "they were accepted";
+  } catch (const aquafarm::InputError& error) {
+    EXPECT_EQ(refusal, error.what());
+  }
+  aquafarm_msgs::Reset call;
+  call.request.farms = kMaxFarms;
+  MakeRanch(scenario)->Reset(call.request, call.response);
+  EXPECT_EQ(refusal, call.response.message);
+}
+
 TEST(FarmServerServices, FarmsOfSeveralNodesPlayEpisodesAStrideApart) {
   aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = 1;

@@ -226,16 +226,8 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
     if (const auto refusal = CheckAnswerSize(farms, request.observation_types)) {
       return Answer(refusal->code, refusal->message, response);
     }
-    const aquafarm::Layout& layout = batch_->farm(0).layout();
-    const std::int64_t cells =
-        farms * (layout.cells.size() + static_cast<std::int64_t>(layout.routes.size()));
-    if (scenario_->layout == aquafarm::LayoutMode::kPerEpisode && cells > kMaxDrawnCells) {
-      return Answer(Outcome::BAD_VALUE,
-                    "farms: " + std::to_string(farms) + " layouts would have " +
-                        std::to_string(cells) + " cells and routes, expected at most " +
-                        std::to_string(kMaxDrawnCells),
-                    response);
-    }
+    const std::string too_many = DescribeTooManyLayouts(farms, batch_->farm(0));
+    if (!too_many.empty()) return Answer(Outcome::BAD_VALUE, too_many, response);
     const std::uint64_t seed = request.has_seed ? request.seed : batch_->farm(0).seed();
     const std::uint64_t first = request.has_episode ? request.episode
                                 : request.has_seed  ? 0
@@ -252,6 +244,29 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
   if (!key.IsIdentified()) return resets_.Forget();
   resets_.Begin() = response;
   resets_.Complete(key);
+}
+
+// Makes one farm first, because too many farms would need too much memory.
+std::unique_ptr<aquafarm::FarmBatch> FarmServer::MakeBatch(
+    const std::shared_ptr<const aquafarm::Scenario>& scenario, const ServerOptions& options) {
+  const aquafarm::FarmBatch one(scenario, 1);
+  const std::string too_many = DescribeTooManyLayouts(options.farms, one.farm(0));
+  if (!too_many.empty()) throw aquafarm::InputError(too_many);
+  return std::make_unique<aquafarm::FarmBatch>(scenario, options.farms, options.threads);
+}
+
+// Returns an error if new layouts of `farms` farms like `farm` would need too much memory. Returns
+// an empty text if they would not, or if all farms share one layout.
+std::string FarmServer::DescribeTooManyLayouts(std::int32_t farms, const aquafarm::Farm& farm) {
+  const aquafarm::Layout& layout = farm.layout();
+  const std::int64_t cells =
+      farms * (layout.cells.size() + static_cast<std::int64_t>(layout.routes.size()));
+  if (farm.scenario().layout != aquafarm::LayoutMode::kPerEpisode || cells <= kMaxDrawnCells) {
+    return "";
+  }
+  return "farms: " + std::to_string(farms) + " layouts would have " + std::to_string(cells) +
+         " cells and routes, expected at most " + std::to_string(kMaxDrawnCells) +
+         "; use fewer farms";
 }
 
 // Generates new layouts in a new batch: if one cannot be generated, the current episodes stay

@@ -292,9 +292,10 @@ Passage ClosestApproach(const StormRings& storm, GeoPoint place, double margin_k
       passage.over_at_start = passage.over_at_start || time == start;
       passage.over_at_end = time == end;
       passage.worst_wind_kt = std::max(passage.worst_wind_kt, storm.wind_kt[k]);
-      if (passage.first == 0) passage.first = time;
+      if (passage.first == 0) passage.first = passage.last = time;
+      const std::int64_t since_last_s = time - passage.last;
+      if (since_last_s <= kStep_s) passage.widest_h += static_cast<double>(since_last_s) / 3600.0;
       passage.last = time;
-      passage.widest_h += static_cast<double>(kStep_s) / 3600.0;
       break;
     }
   }

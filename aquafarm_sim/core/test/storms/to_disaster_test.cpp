@@ -243,7 +243,8 @@ TEST(ClosestApproach, HasTheTimeOfTheNearestPointAndTheDurationOfTheWind) {
   EXPECT_LT(passage.nearest_km, 0.01);
   EXPECT_EQ(passage.worst_wind_kt, 64);
   EXPECT_EQ(passage.first, kStart) << "193 km away, within 200";
-  EXPECT_NEAR(passage.widest_h, 20.0, 0.2);
+  EXPECT_EQ(passage.last, kStart + 20 * kHour_s);
+  EXPECT_NEAR(passage.widest_h, 20.0, 1.0e-6) << "from the first to the last time";
   const Passage far =
       ClosestApproach(ToRings(WestGoing(), RingReduction::kLargest), {36.0, 122.0}, 0.0);
   EXPECT_EQ(far.worst_wind_kt, 0);

@@ -48,8 +48,7 @@ inline constexpr double kMinRate_hz = 0.001;
 inline constexpr double kMaxRate_hz = 1000.0;
 /// Reason of a STALE answer to a client that waited for other ships.
 inline constexpr const char* kSteppedByAnother = "another client has stepped the farm";
-/// Max number of cells and routes of all farms together that Reset accepts if every episode has a
-/// new layout.
+/// Max number of cells and routes of all farms together if every episode has a new layout.
 inline constexpr std::int64_t kMaxDrawnCells = 64'000'000;
 /// Max size of the features and planes in one response [bytes].
 inline constexpr std::size_t kMaxAnswerBytes = std::size_t{256} << 20U;
@@ -137,7 +136,8 @@ class FarmRecorder {
 /// 0 only.
 class FarmServer {
  public:
-  /// @throws InputError if the scenario is a family of ranches, or its layout cannot be generated
+  /// @throws InputError if the scenario is a family of ranches, its layout cannot be generated, or
+  ///   new layouts of so many farms in every episode need too much memory
   FarmServer(std::shared_ptr<const aquafarm::Scenario> scenario, const ServerOptions& options);
 
   /// Sets the listener and calls its OnChange; exceptions of this call are not caught.
@@ -245,6 +245,9 @@ class FarmServer {
   void IssueForecast(const aquafarm_msgs::SetDisaster::Request& request, std::int32_t first,
                      std::int32_t end, aquafarm_msgs::SetDisaster::Response& response)
       AQUAFARM_REQUIRES(mutex_);
+  static std::unique_ptr<aquafarm::FarmBatch> MakeBatch(
+      const std::shared_ptr<const aquafarm::Scenario>& scenario, const ServerOptions& options);
+  static std::string DescribeTooManyLayouts(std::int32_t farms, const aquafarm::Farm& farm);
   void FillSpec(std::int32_t farm, aquafarm_msgs::FarmSpec& spec) const AQUAFARM_REQUIRES(mutex_);
   void ForgetAnswers() AQUAFARM_REQUIRES(mutex_);
 

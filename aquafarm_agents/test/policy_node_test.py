@@ -8,11 +8,12 @@ import pathlib
 import signal
 import sys
 import tempfile
+import time
 import unittest
 
 import rospy
 import rostest
-from aquafarm_msgs.srv import Pause
+from aquafarm_msgs.srv import Pause, Reset
 from nav_msgs.msg import OccupancyGrid
 from sensor_msgs.msg import PointCloud2
 
@@ -129,6 +130,30 @@ class PolicyNodeTest(unittest.TestCase):
         other = self.drive("_policy:=random", "_ship:=0", "_episodes:=2")
         self.assertEqual(0, one.code(), one.words())
         self.assertEqual(0, other.code(), other.words())
+
+    def test_a_driver_continues_after_a_reset_to_the_step_of_its_waiting_command(self):
+        start_sim(self, self.namespace, PAIR, "_barrier_timeout_s:=5")
+        one = self.drive("_policy:=planner", "_ship:=1", "_episodes:=1")
+        one.wait_for(lambda: "no command from other ships within" in one.words(), "a timeout")
+        time.sleep(1)  # its next command waits for the other ship
+        reset = rospy.ServiceProxy(f"{self.namespace}/reset", Reset)
+        self.assertTrue(reset(has_seed=True, seed=5).ok)
+        other = self.drive("_policy:=planner", "_ship:=0", "_episodes:=1")
+        self.assertEqual(0, one.code(), one.words())
+        self.assertEqual(0, other.code(), other.words())
+
+    def test_interrupted_while_a_call_has_no_response_it_ends_well(self):
+        space = self.namespace
+        for ship in (-1, 0):  # ShipDriver, AgentDriver
+            with self.subTest(ship=ship):
+                self.namespace = f"{space}_{ship + 1}"
+                sim = start_sim(self, self.namespace, TINY)
+                run = self.play("_mode:=act", "_policy:=random", f"_ship:={ship}", wait_s=60)
+                run.wait_for(lambda: "episode 1" in run.words(), "an episode")
+                sim.kill()
+                time.sleep(4)  # AgentDriver repeats its command after 2 s without an observation
+                run.send(signal.SIGINT)
+                self.assertEqual(0, run.code(), run.words())
 
     def test_interrupted_while_driving_it_ends_well(self):
         start_sim(self, self.namespace, PAIR)

@@ -73,6 +73,19 @@ class AgentDriver::Impl {
 
   std::vector<bool> Drive(Policy& policy, std::uint64_t seed, std::int32_t episodes) {
     std::vector<bool> ended;
+    try {
+      DriveEpisodes(policy, seed, episodes, ended);
+    } catch (const EnvironmentLost&) {
+      if (!Stopped()) throw;  // else a call was stopped
+    }
+    return ended;
+  }
+
+ private:
+  bool Stopped() const { return !ros::ok() || (options_.stop != nullptr && *options_.stop); }
+
+  void DriveEpisodes(Policy& policy, std::uint64_t seed, std::int32_t episodes,
+                     std::vector<bool>& ended) {
     Board();
     policy.Begin(seed, 1);
     while (!Stopped() && (episodes == 0 || ended.size() < static_cast<std::size_t>(episodes))) {
@@ -95,11 +108,7 @@ class AgentDriver::Impl {
       }
       Send(*now, actions_[static_cast<std::size_t>(options_.ship)]);
     }
-    return ended;
   }
-
- private:
-  bool Stopped() const { return !ros::ok() || (options_.stop != nullptr && *options_.stop); }
 
   void SizeResults() {
     const auto agents = static_cast<std::size_t>(spec_.agents);

@@ -69,6 +69,20 @@ class ShipDriver::Impl {
 
   std::vector<EpisodeSummary> Drive(Policy& policy, std::uint64_t seed, std::int32_t episodes) {
     std::vector<EpisodeSummary> ended;
+    try {
+      DriveEpisodes(policy, seed, episodes, ended);
+    } catch (const EnvironmentLost&) {
+      if (!Stopped()) throw;  // else a call was stopped
+    }
+    claim_.reset();
+    return ended;
+  }
+
+ private:
+  bool Stopped() const { return !ros::ok() || (options_.stop != nullptr && *options_.stop); }
+
+  void DriveEpisodes(Policy& policy, std::uint64_t seed, std::int32_t episodes,
+                     std::vector<EpisodeSummary>& ended) {
     if (options_.ship >= 0) {
       claim_.emplace(node_, options_.ship, options_.wait_limit_s, options_.stop);
     }
@@ -96,12 +110,7 @@ class ShipDriver::Impl {
       seen_.reset();
       ros::WallDuration(kRetryPeriod_s).sleep();
     }
-    claim_.reset();
-    return ended;
   }
-
- private:
-  bool Stopped() const { return !ros::ok() || (options_.stop != nullptr && *options_.stop); }
 
   const StepResults& Look() {
     aquafarm_msgs::SaveState save;

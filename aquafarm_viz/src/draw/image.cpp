@@ -182,7 +182,9 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   Forecasts forecasts;
   forecasts.courses = p.courses.Read(spec, state);
   forecasts.outlook = ComputeOutlook(spec, state, forecasts.courses);
-  FreeSpace space = BlockSymbols(spec, state, forecasts.outlook, p.layout);
+  // Without the layer, no circles are drawn around devices in danger.
+  FreeSpace space =
+      BlockSymbols(spec, state, layers.risk ? forecasts.outlook : Outlook(), p.layout);
   const bool has_route = layers.route && overlays.route != nullptr;  // the route contains the trail
   if (layers.trail && overlays.trail != nullptr && !has_route) {
     DrawPaths(map, state, *overlays.trail, p.layout);

@@ -115,6 +115,24 @@ TEST(DeviceLabels, AreMarkersOfDeployedDevicesOnlyIfTheLayerIsOn) {
   for (const std::size_t id : {1U, 2U}) EXPECT_EQ(markers[id].action, Marker::DELETE);
 }
 
+TEST(DeviceLabels, AreAtACornerOfTheDeviceWhereNoShipIs) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeEmptyState();
+  state.devices.push_back(test::MakeDevice(0, 0, 10, 10, 1.0F));
+  const auto place = [&] {
+    const auto marker =
+        In(StateMarkers(spec, state, nullptr, ParseLayers("labels")), "device_label").at(0);
+    return cv::Point2d(marker.pose.position.x, marker.pose.position.y) / spec.cell_size_m;
+  };
+  const cv::Point2d first = place();
+  EXPECT_GT(first.x, 10.0);
+  EXPECT_LT(first.y, 10.0);
+  state.ships.push_back(test::MakeShip(0, int(std::lround(first.x)), int(std::lround(first.y))));
+  EXPECT_LT(place().x, 10.0) << "south-west";
+  state.ships[0].visible = false;
+  EXPECT_EQ(place(), first) << "a ship that is not visible does not matter";
+}
+
 // Returns the number of pixels that a layer changes near a cell, by octant: the bearing of its
 // middle, seen from the centre of the cell [degrees].
 std::map<int, int> ChangedAround(const aquafarm_msgs::FarmSpec& spec, const std::string& layer,

@@ -31,5 +31,17 @@ TEST(DescribeResult, OfAPacedCommandIsNotYetKnown) {
   EXPECT_EQ(Line(Outcome::ACCEPTED, 0.0F), "accepted for step 5");
 }
 
+TEST(EndText, CountsTheDevicesInPortUnlessAllAre) {
+  aquafarm_msgs::FarmState state;
+  state.devices.resize(3);
+  state.devices[1].status = aquafarm_msgs::DeviceState::DELIVERED;
+  state.reason = aquafarm_msgs::FarmState::DISASTER_ENDED;
+  EXPECT_EQ(EndText(state), "The disaster has ended: 1 of 3 devices in port");
+  state.reason = 200;
+  EXPECT_EQ(EndText(state), "Episode over: 1 of 3 devices in port");
+  state.reason = aquafarm_msgs::FarmState::ALL_RETRIEVED;
+  EXPECT_EQ(EndText(state), "All devices retrieved");
+}
+
 }  // namespace
 }  // namespace aquafarm_viz

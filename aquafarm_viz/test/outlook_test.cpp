@@ -367,6 +367,10 @@ TEST(Outlook, GivesTheMotionAndTheClosestApproach) {
   Outlooks scene;
   EXPECT_EQ(ApproachText(scene.spec, scene.state.disasters[0], scene.course()), "W at 20 km/h now")
       << "the present motion does not say when a storm is closest";
+  scene.state.disasters[0].visible = false;
+  EXPECT_EQ(MotionNow(scene.spec, scene.state.disasters[0]), "W at 20 km/h")
+      << "the last known one";
+  scene.state.disasters[0].visible = true;
   scene.storms = ReadStormTracks(kRecorded, 1000.0);
   EXPECT_EQ(ApproachText(scene.spec, scene.state.disasters[0], scene.course()),
             "W at 20 km/h now, closest 8.0 km E in 30 min");

@@ -203,6 +203,11 @@ TEST(OutlookText, NamesTheNearestRingIfNoDeviceIsInDanger) {
   scene.state.disasters[0].y = 24.96F;
   EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()).substr(0, 17), "risk -5 is 2.9 km")
       << "rounded down";
+  scene.state.disasters[0].y = 34.96F;
+  EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()).substr(0, 16), "risk -5 is 12 km");
+  scene.state.disasters[0].y = 22.05F;
+  EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()).substr(0, 31),
+            "risk -5 is less than 100 m from");
 }
 
 TEST(OutlookText, SaysThatARingComesNearerWhereTheOutlookEnds) {

@@ -101,7 +101,7 @@ TEST(RiskSample, DiffersByKindAndRiskAndStaysInItsBox) {
   for (const double risk : {-5.0, -20.0}) {
     for (std::size_t kind = 0; kind < DisasterKindCount(); ++kind) {
       cv::Mat image(30, 40, CV_8UC3, cv::Scalar::all(7));
-      DrawRiskSample(image, box, static_cast<std::uint8_t>(kind), risk, layout);
+      DrawRiskSample(image, box, static_cast<std::uint8_t>(kind), risk, true, layout);
       samples.push_back(image(box).clone());
       image(box).setTo(cv::Scalar::all(7));
       EXPECT_EQ(cv::norm(image - cv::Scalar::all(7)), 0.0) << kind;
@@ -113,7 +113,7 @@ TEST(RiskSample, DiffersByKindAndRiskAndStaysInItsBox) {
     }
   }
   cv::Mat small(4, 4, CV_8UC3, cv::Scalar::all(7));
-  DrawRiskSample(small, box, 0, -5.0, layout);  // outside the picture
+  DrawRiskSample(small, box, 0, -5.0, true, layout);  // outside the picture
   EXPECT_EQ(cv::norm(small - cv::Scalar::all(7)), 0.0);
 }
 
@@ -308,6 +308,37 @@ TEST(Signs, OfRingsAreLabelledOnTheirOwnLineAndOffTheLand) {
       }
     }
   }
+}
+
+TEST(Signs, OfRingsOfSeveralDisastersAreOnlyTheirRisks) {
+  const auto spec = test::MakeSpec();
+  const Layout layout = MakeLayout(spec.width, spec.height, kSignsSize);
+  const Fonts fonts(layout.unit);
+  auto state = test::MakeEmptyState();
+  const auto written = [&](Rgb color) {
+    std::vector<Course> courses;
+    for (std::size_t i = 0; i < state.disasters.size(); ++i) {
+      courses.push_back(CourseOf(spec, state, i, {}));
+    }
+    LabelSpace space(BlockSymbols(spec, state, {}, layout), spec, layout);
+    cv::Mat map(layout.map.size(), CV_8UC3, cv::Scalar::all(90));
+    LabelRings(map, state, courses, space, layout, fonts);
+    cv::Mat1b found;
+    cv::inRange(map, Bgr(color), Bgr(color), found);
+    return cv::countNonZero(found);
+  };
+  const Style& style = *layout.style;
+  const Rgb number = Mix(style.Risk(Severity(-5.0)), style.label, 0.3);
+  state.disasters = {test::MakeDisaster(0, 6.0F, 18.0F)};
+  state.disasters[0].radii = {3.0F};
+  state.disasters[0].risks = {-5.0F};
+  const int alone = written(style.words);
+  EXPECT_GT(alone, 0) << "on a plate";
+  EXPECT_EQ(written(number), 0);
+  state.disasters.push_back(state.disasters[0]);
+  state.disasters[1].x = 19.0F;
+  EXPECT_EQ(written(style.words), 0);
+  EXPECT_GT(written(number), 0);
 }
 
 TEST(Signs, OfDevicesStandNextToTheirDeviceAndNotNearerToARock) {

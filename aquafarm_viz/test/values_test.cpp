@@ -62,6 +62,29 @@ TEST(Values, LeaveRocksGrey) {
   EXPECT_GT(int(grey[2]), 60);
 }
 
+TEST(Values, AreVisibleInsideRings) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeEmptyState();
+  const Values values = ReadValues(test::MakeCloud(), spec);
+  const auto at_centre = [&](const char* layers) {
+    Overlays overlays;
+    overlays.values = &values;
+    overlays.layers = ParseLayers(layers);
+    const ImageSize size{640, 640};
+    const Layout layout = MakeLayout(spec.width, spec.height, size);
+    const cv::Mat map = DrawFarm(spec, state, size, overlays)(layout.map);
+    const cv::Point at(layout.view.ToPixel(11, 15));
+    return map(cv::Rect(at.x - 6, at.y - 6, 12, 12)).clone();
+  };
+  const cv::Mat values_alone = at_centre("risk,values");
+  const cv::Mat sea_alone = at_centre("risk");
+  state.disasters = {test::MakeDisaster(0, 11.0F, 12.0F)};
+  state.disasters[0].radii = {8.0F};
+  state.disasters[0].risks = {-5.0F};
+  EXPECT_EQ(cv::norm(at_centre("risk,values"), values_alone, cv::NORM_INF), 0.0);
+  EXPECT_GT(cv::norm(at_centre("risk"), sea_alone, cv::NORM_INF), 0.0) << "a pattern and a tint";
+}
+
 TEST(Values, LeavesOutInvalidCellsActionsAndNumbers) {
   auto cloud = test::MakeCloud();
   sensor_msgs::PointCloud2Iterator<float> at(cloud, "x");

@@ -246,12 +246,15 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
   resets_.Complete(key);
 }
 
-// Makes one farm first, because too many farms would need too much memory.
+// If every episode has a new layout, makes one farm first, because too many farms would need too
+// much memory.
 std::unique_ptr<aquafarm::FarmBatch> FarmServer::MakeBatch(
     const std::shared_ptr<const aquafarm::Scenario>& scenario, const ServerOptions& options) {
-  const aquafarm::FarmBatch one(scenario, 1);
-  const std::string too_many = DescribeTooManyLayouts(options.farms, one.farm(0));
-  if (!too_many.empty()) throw aquafarm::InputError(too_many);
+  if (scenario->layout == aquafarm::LayoutMode::kPerEpisode) {
+    const aquafarm::FarmBatch one(scenario, 1);
+    const std::string too_many = DescribeTooManyLayouts(options.farms, one.farm(0));
+    if (!too_many.empty()) throw aquafarm::InputError(too_many);
+  }
   return std::make_unique<aquafarm::FarmBatch>(scenario, options.farms, options.threads);
 }
 

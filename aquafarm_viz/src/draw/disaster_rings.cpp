@@ -200,14 +200,14 @@ void PaintRow(std::uint8_t* pixel, const std::uint8_t* land, int row, const Ring
 
 }  // namespace
 
-void DrawRiskSample(cv::Mat& image, cv::Rect box, std::uint8_t kind, double risk,
+void DrawRiskSample(cv::Mat& image, cv::Rect box, std::uint8_t kind, double risk, bool is_filled,
                     const Layout& layout) {
   box &= cv::Rect({0, 0}, image.size());
   if (box.empty()) return;
   cv::rectangle(image, box, Bgr(layout.style->sea_south), cv::FILLED);
   Patterns patterns(DisasterKindCount());
   patterns[KindIndex(kind)].emplace(kind, std::max(4, layout.Px(6)));
-  const ShadeTable table = MakeShadeTable(*layout.style, /*is_filled=*/true);
+  const ShadeTable table = MakeShadeTable(*layout.style, is_filled);
   const std::vector<std::uint8_t> land(std::size_t(box.width), 0);
   RingRow line(std::size_t(box.width), kind);
   line.Clear();

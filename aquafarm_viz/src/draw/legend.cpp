@@ -269,7 +269,7 @@ void DrawRiskSamples(cv::Mat& image, cv::Point2d at, const FarmState& state, con
   const int width = layout.Px(15) / std::max(1, static_cast<int>(kinds.size()));
   cv::Rect box(cvRound(at.x) - layout.Px(7), cvRound(at.y) - layout.Px(6), width, layout.Px(12));
   for (const std::uint8_t kind : kinds) {
-    DrawRiskSample(image, box, kind, kMildRisk, layout);
+    DrawRiskSample(image, box, kind, kMildRisk, /*is_filled=*/true, layout);
     box.x += width;
   }
 }
@@ -368,15 +368,15 @@ void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs, const FarmState& 
 namespace {
 
 // Draws a sample of each ring, and the risk next to it.
-void DrawRisks(cv::Mat& image, const RiskKey& rings, cv::Rect row, const Layout& layout,
-               const Fonts& fonts) {
+void DrawRisks(cv::Mat& image, const RiskKey& rings, bool is_filled, cv::Rect row,
+               const Layout& layout, const Fonts& fonts) {
   const int base = row.y + (row.height + fonts.small.cap_height()) / 2;
   int x = row.x;
   x += fonts.small.Draw(image, "risk", {x, base}, Bgr(layout.style->words)) + layout.Px(10);
   const int step = (row.br().x - x) / std::max(1, static_cast<int>(rings.size()));
   for (const KeyRing& ring : rings) {
     const cv::Rect box(x, row.y + layout.Px(1.5), layout.Px(17), row.height - layout.Px(3));
-    DrawRiskSample(image, box, ring.kind, ring.risk, layout);
+    DrawRiskSample(image, box, ring.kind, ring.risk, is_filled, layout);
     fonts.small.Draw(image, Number(ring.risk, 0), {box.br().x + layout.Px(4), base},
                      Bgr(layout.style->words));
     x += step;
@@ -385,7 +385,7 @@ void DrawRisks(cv::Mat& image, const RiskKey& rings, cv::Rect row, const Layout&
 
 }  // namespace
 
-void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
+void DrawRiskKey(cv::Mat& image, const RiskKey& key, bool is_filled, const std::vector<Sign>& signs,
                  const Layout& layout, const Fonts& fonts) {
   const int left = layout.panel.x + layout.Px(10);
   const int right = layout.panel.x + layout.panel.width - layout.Px(10);
@@ -397,12 +397,13 @@ void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& si
     fonts.small.Draw(image, text, {right - fonts.small.Width(text), base}, Bgr(color));
   };
   if (!key.empty() && !HasNames(key)) {
-    return DrawRisks(image, key, {left, y, right - left, layout.Px(kKeyRow)}, layout, fonts);
+    return DrawRisks(image, key, is_filled, {left, y, right - left, layout.Px(kKeyRow)}, layout,
+                     fonts);
   }
   for (const KeyRing& ring : key) {
     const int base = y + (layout.Px(kKeyRow) + fonts.small.cap_height()) / 2;
     const cv::Rect box(left, y + layout.Px(1.5), layout.Px(15), layout.Px(12));
-    DrawRiskSample(image, box, ring.kind, ring.risk, layout);
+    DrawRiskSample(image, box, ring.kind, ring.risk, is_filled, layout);
     const std::string risk = "risk " + Number(ring.risk, 0);
     const int words = left + layout.Px(22);
     const int space = right - fonts.small.Width(risk) - layout.Px(4) - words;

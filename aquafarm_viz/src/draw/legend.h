@@ -87,7 +87,8 @@ void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs,
 
 /// Draws the key of risks and its heading above the key of signs. Rings with winds have a row each,
 /// others are in one row. An empty key: draws the colour scale of all risks.
-void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
+/// @param is_filled  see DrawRiskSample
+void DrawRiskKey(cv::Mat& image, const RiskKey& key, bool is_filled, const std::vector<Sign>& signs,
                  const Layout& layout, const Fonts& fonts);
 
 }  // namespace aquafarm_viz

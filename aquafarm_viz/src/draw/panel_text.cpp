@@ -408,7 +408,8 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   const RiskKey key = MakeRiskKey(state, forecasts.courses);
   const std::vector<Sign> signs = SignsOf(spec, state, overlays, forecasts.outlook, key, layout);
   DrawSigns(image, signs, state, layout, fonts);
-  DrawRiskKey(image, key, signs, layout, fonts);
+  const bool has_values = overlays.layers.values && values != nullptr;
+  DrawRiskKey(image, key, /*is_filled=*/!has_values, signs, layout, fonts);
   Panel panel(image, LegendPx(key, signs, layout), layout, fonts);
   const Trail* trail = overlays.trail != nullptr ? overlays.trail : overlays.route;
   ListDevices(panel, spec, state, trail, forecasts.outlook, layout);

@@ -93,7 +93,8 @@ void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const c
 
 /// Fills a box of the legend like a ring on the map: with the pattern of a kind of disaster and the
 /// colour of a risk.
-void DrawRiskSample(cv::Mat& image, cv::Rect box, std::uint8_t kind, double risk,
+/// @param is_filled  false: draws only the outline, as ShadeDisasters
+void DrawRiskSample(cv::Mat& image, cv::Rect box, std::uint8_t kind, double risk, bool is_filled,
                     const Layout& layout);
 
 /// Draws the outline that marks the cell from which a ship has fetched a device.

@@ -2,7 +2,6 @@
 // Draws the texts above and below the map.
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -60,8 +59,8 @@ bool DrawDanger(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
 }
 
 // Draws two rows. The first row contains the danger or, if there is none, the scenario. After the
-// end of an episode it is left to DrawEnd. The second row contains the scenario (if
-// the first row does not), the episode, step, return and time. Its texts end before the time.
+// end of an episode it is left to DrawEnd. The second row contains the scenario (if the first row
+// does not), the episode, step, return and time. Its texts end before the time.
 void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
              const Layout& layout, const Fonts& fonts) {
   const int left = layout.Px(10);
@@ -145,20 +144,12 @@ void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layo
 // Writes why the episode ended: in the first row, or on a plate on the map if there are no rows.
 void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const Fonts& fonts) {
   if (!state.terminated && !state.truncated) return;
-  static constexpr std::array<const char*, 4> kReasons{"episode over", "all devices retrieved",
-                                                       "the disaster has ended", "step limit"};
-  std::string text = kReasons[state.reason < kReasons.size() ? state.reason : 0U];
+  const std::string text = EndText(state);
   const bool success = state.reason == FarmState::ALL_RETRIEVED;
   if (!layout.top.empty()) {
-    const auto delivered = std::count_if(
-        state.devices.begin(), state.devices.end(),
-        [](const auto& device) { return device.status == aquafarm_msgs::DeviceState::DELIVERED; });
-    if (!success) {
-      text += ": " + std::to_string(delivered) + " of " + std::to_string(state.devices.size()) +
-              " devices in port";
-    }
-    text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
-    fonts.title.Draw(image, text, {layout.Px(10), layout.Px(18)},
+    const int left = layout.Px(10);
+    fonts.title.Draw(image, fonts.title.Fit(text, layout.top.width - 2 * left),
+                     {left, layout.Px(18)},
                      Bgr(success ? layout.style->good : layout.style->words));
     return;
   }

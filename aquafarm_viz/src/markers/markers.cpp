@@ -152,11 +152,14 @@ void AddLabels(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                const FarmState& state) {
   const double thing = maker.thing_m() / maker.cell_m();
   const double aside = 0.75 * thing;
+  std::vector<cv::Point2d> ships;
+  for (const auto& ship : state.ships) {
+    if (!ship.visible || !ship.active) continue;
+    ships.push_back(ShipPlace(spec, state, ship.x, ship.y, kShipAside * thing));
+  }
   const auto is_free = [&](cv::Point2d at) {
-    return std::none_of(state.ships.begin(), state.ships.end(), [&](const auto& ship) {
-      const cv::Point2d place = ShipPlace(spec, state, ship.x, ship.y, kShipAside * thing);
-      return ship.visible && ship.active && cv::norm(place - at) < thing;
-    });
+    return std::none_of(ships.begin(), ships.end(),
+                        [&](cv::Point2d ship) { return cv::norm(ship - at) < thing; });
   };
   for (const auto& device : state.devices) {
     if (!IsLabelled(spec, device)) {
@@ -167,8 +170,8 @@ void AddLabels(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     const std::array<cv::Point2d, 4> corners{
         here + cv::Point2d(aside, -aside), here + cv::Point2d(-aside, -aside),
         here + cv::Point2d(-aside, aside), here + cv::Point2d(aside, aside)};
-    const auto* free = std::find_if(corners.begin(), corners.end(), is_free);
-    const cv::Point2d at = free == corners.end() ? corners.front() : *free;
+    const auto* found = std::find_if(corners.begin(), corners.end(), is_free);
+    const cv::Point2d at = found == corners.end() ? corners.front() : *found;
     array.markers.push_back(maker.Text("device_label", device.id, at.x, at.y,
                                        DeviceLabel(device.id), maker.word_m(), kDirectionColor));
   }

@@ -4,6 +4,7 @@
 #include <aquafarm_msgs/Outcome.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -103,6 +104,18 @@ std::string DeviceLabel(std::int32_t id) { return "F" + std::to_string(id); }
 
 bool IsLabelled(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::DeviceState& device) {
   return device.status == aquafarm_msgs::DeviceState::DEPLOYED && InGrid(spec, device.x, device.y);
+}
+
+std::string EndText(const aquafarm_msgs::FarmState& state) {
+  static constexpr std::array<const char*, 4> kReasons{"Episode over", "All devices retrieved",
+                                                       "The disaster has ended", "Step limit"};
+  const std::string reason = kReasons[state.reason < kReasons.size() ? state.reason : 0U];
+  if (state.reason == aquafarm_msgs::FarmState::ALL_RETRIEVED) return reason;
+  const auto delivered = std::count_if(
+      state.devices.begin(), state.devices.end(),
+      [](const auto& device) { return device.status == aquafarm_msgs::DeviceState::DELIVERED; });
+  return reason + ": " + std::to_string(delivered) + " of " + std::to_string(state.devices.size()) +
+         " devices in port";
 }
 
 std::string PhaseName(std::uint8_t phase) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "aquafarm/farm/disaster.h"
 #include "aquafarm/tracks/wind_name.h"
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/text.h"
@@ -36,9 +37,9 @@ struct RingRisk {
   std::size_t ring{};
 };
 
-// Returns the quadrant of a point that is seen from the centre: 0: NE, 1: SE, 2: SW, 3: NW.
+// Returns the quadrant of a point that is seen from the centre, as in the farm.
 std::size_t QuadrantOf(double east, double north) {
-  return north >= 0.0 ? (east >= 0.0 ? 0U : 3U) : (east >= 0.0 ? 1U : 2U);
+  return aquafarm::QuadrantOf(float(-east), float(-north));
 }
 
 RingRisk RiskAt(const TrackPoint& storm, double x, double y) {
@@ -176,7 +177,8 @@ bool CoversFarm(const FarmSpec& spec, const TrackPoint& storm, const std::array<
   const auto covers = [&](int x, int y) {
     const double east = x - storm.x;
     const double north = y - storm.y;
-    return std::hypot(east, north) <= ring[QuadrantOf(east, north)];
+    const double radius = ring[QuadrantOf(east, north)];
+    return radius > 0.0 && std::hypot(east, north) <= radius;
   };
   for (int x = 0; x < spec.width; ++x) {
     if (!covers(x, 0) || !covers(x, spec.height - 1)) return false;

@@ -89,7 +89,7 @@ std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
 }
 
 // Returns the local time `steps` steps from now, such as "Sun 06:24".
-std::string ClockText(const FarmSpec& spec, const FarmState& state, double steps) {
+std::string DayAndClock(const FarmSpec& spec, const FarmState& state, double steps) {
   const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
   return LocalTimeText(spec, static_cast<std::time_t>(then_s), "%a %H:%M");
 }
@@ -100,14 +100,15 @@ std::string ClockText(const FarmSpec& spec, const FarmState& state, double steps
 std::string ClockAhead(const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
                        const RingArrival& ring, bool has_zone) {
   if (!spec.has_start_time || ring.steps * spec.step_duration_s < 3600.0) return "";
-  const std::string clock = ClockText(spec, state, ring.steps);
-  const bool is_first =
+  const std::string clock = DayAndClock(spec, state, ring.steps);
+  const bool are_others_later =
       std::any_of(outlook.devices.begin(), outlook.devices.end(), [&](const DeviceOutlook& one) {
         return std::any_of(one.arrivals.begin(), one.arrivals.end(), [&](const auto& other) {
-          return IsSameArrival(spec, other, ring) && ClockText(spec, state, other.steps) != clock;
+          return IsSameArrival(spec, other, ring) && DayAndClock(spec, state, other.steps) != clock;
         });
       });
-  return (is_first ? " (from " : " (") + clock + (has_zone ? " " + ZoneText(spec) : "") + ")";
+  return (are_others_later ? " (from " : " (") + clock + (has_zone ? " " + ZoneText(spec) : "") +
+         ")";
 }
 
 // Shortens "hurricane force in 9.0 h" to "hurricane in 9.0 h".
@@ -124,15 +125,21 @@ std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
   return "no known danger to devices for the next " + AheadText(spec, outlook.known_until);
 }
 
+// Returns a distance rounded down, so that no danger seems farther away than it is: "12 km", "2.9
+// km", "900 m" or "less than 100 m".
+std::string RoundedDown(double metres) {
+  const double unit = metres >= 10000.0 ? 1000.0 : 100.0;
+  if (metres < unit) return "less than 100 m";
+  return DistanceText(unit * std::floor(metres / unit + 1e-6));
+}
+
 // Returns a text about the ring that comes nearest to a device: "risk -5 is 900 m from F2 now" or
 // "gale passes 12 km from F2 in 9.0 h".
 std::string MissText(const FarmSpec& spec, const Outlook& outlook) {
   const RingMiss& miss = outlook.miss;
-  // Rounded down, because the place of a device is only known as a cell.
-  const double cells = std::floor(10.0 * miss.cells + 1e-6) / 10.0;
   const std::string ring = RingText(miss.risk, miss.wind_kt);
   const std::string where =
-      DistanceText(cells * double(spec.cell_size_m)) + " from " + DeviceLabel(miss.device);
+      RoundedDown(miss.cells * double(spec.cell_size_m)) + " from " + DeviceLabel(miss.device);
   if (!(miss.steps > 0.0)) return ring + " is " + where + " now";
   const std::string about = outlook.is_extrapolated ? "about " : "";
   const std::string when = " in " + about + AheadText(spec, miss.steps);
@@ -369,7 +376,8 @@ std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState&
 
 std::string MotionNow(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster) {
   const std::string motion = MotionText(spec, disaster.heading_deg, double(disaster.speed));
-  return disaster.speed > 0.0F ? motion + " now" : motion;
+  const bool is_present = disaster.visible && disaster.steps_left > 0;
+  return disaster.speed > 0.0F && is_present ? motion + " now" : motion;
 }
 
 std::string ClosestText(const FarmSpec& spec, const Course& course) {

@@ -90,7 +90,8 @@ std::pair<std::string, std::string> NameAndDanger(
 std::string CentreText(const aquafarm_msgs::FarmSpec& spec,
                        const aquafarm_msgs::DisasterState& disaster, const Course& course);
 
-/// Returns the present motion of a disaster: "NW at 13 km/h now", or "stands still".
+/// Returns the motion of a disaster: "NW at 13 km/h now", or "stands still". The text has no "now"
+/// if the disaster has ended or is out of sight, because the motion is then the last known one.
 std::string MotionNow(const aquafarm_msgs::FarmSpec& spec,
                       const aquafarm_msgs::DisasterState& disaster);
 

@@ -20,7 +20,8 @@ import numpy as np
 import rosbag
 import rostest
 
-from aquafarm_benchmark import cli, cluster, error_figure, figures, human, measures, protocol, runs
+from aquafarm_benchmark import (cli, cluster, error_figure, evaluation_figure, figures, human,
+                                measures, protocol, runs)
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import DATA, Program, program  # noqa: E402
@@ -159,7 +160,7 @@ class BenchmarkTest(unittest.TestCase):
             math.nan if bound is None else bound for bound in rows[one.name]["return_interval"]])
             for one in shown]
         _, axes = figures.plt.subplots()
-        figures.plot_evaluation(axes, shown, drawn)
+        evaluation_figure.plot_evaluation(axes, shown, drawn)
         self.assertEqual([row["return_iqm"] for row in drawn],
                          [bar.get_height() for bar in axes.patches])
         played = [run["return_per_episode"] for run in everything["runs"]["q_learning"]]

@@ -8,11 +8,9 @@ import unittest.mock
 
 import numpy as np
 import rosunit
-from matplotlib.collections import LineCollection
-from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
-from aquafarm_benchmark import error_figure, figures, route_figure, style
+from aquafarm_benchmark import error_figure, evaluation_figure, figures, style
 from aquafarm_benchmark.curves import End
 from aquafarm_benchmark.protocol import CONTESTANTS, PROFILES
 
@@ -253,6 +251,24 @@ class FiguresTest(unittest.TestCase):
             if has_random:
                 self.assertLessEqual(lines["RANDOM"][0].max(), 1500, "SARSA ends there")
 
+    def test_the_thick_line_of_fig_12a_is_the_run_nearest_to_the_median(self):
+        self.assertEqual([1, 2, 0, 1], [figures._nearest_to_median(values) for values in (
+            [9.0, 4.0, 1.0], [np.inf, 1.0, 5.0, 4.0], [np.inf, np.inf], [2.0, np.inf, np.inf])])
+        rising = np.array([-100.0] * 50 + [100.0] * 100)  # reaches 90 % at episode 98
+        runs = [{"curve": {"return": rising, "steps": np.full(150, steps)}}
+                for steps in (40, 10, 20)]
+        figures.plot_rewards_by_steps(self.axes, [by_name("sarsa")], {"sarsa": runs},
+                                      {"clairvoyant": 100.0})
+        self.assertEqual(20 * 150, self.lines()["SARSA"][0][-1])
+        self.assertEqual(["SARSA 2k (980 to 3.9k)"], [text.get_text() for text in self.axes.texts])
+        dots = [line.get_xdata() for line in self.axes.lines if line.get_marker() == "o"]
+        self.assertEqual([[980, 1960], [1960]], [list(x) for x in dots],
+                         "the chart ends with the thick line")
+        figure = self.drawn(figures.draw_rewards, [by_name("sarsa")], {"sarsa": runs},
+                            {"clairvoyant": 100.0})
+        self.assertIn("thick: the run whose time to 90 % is nearest to the median",
+                      " ".join(figure._supxlabel.get_text().split()))
+
     def test_names_above_fig_12a_do_not_overlap(self):
         dqn = next(one for one in CONTESTANTS if one.name == "dqn")
         for name, steps in (("sarsa", 10), ("lstm_dqn", 12), ("dqn", 11)):  # close to each other
@@ -300,7 +316,7 @@ class FiguresTest(unittest.TestCase):
         self.runs["sarsa"] = [{"curve": {"return": rising}}]
         self.runs["lstm_dqn"] = [{"curve": {"return": -np.ones(120)}}]
         self.assertEqual("The mean return of all episodes so far rises above 0 at episode "
-                         "54 (SARSA), and never for LSTM-DQN",
+                         "54 (SARSA); LSTM-DQN: not within 120 episodes",
                          figures._recovery_times(self.contestants, self.runs))
         self.assertEqual("", figures._recovery_times(self.contestants[1:], self.runs))
 
@@ -322,7 +338,7 @@ class FiguresTest(unittest.TestCase):
         self.runs["lstm_dqn"] = [{"curve": {**learnt, "return": np.zeros(150)}}]
         found = figures._learning_times(self.contestants, self.runs, {"clairvoyant": 100.0})
         self.assertEqual("Time steps to 90 % of the return of the clairvoyant: SARSA 980, "
-                         "LSTM-DQN never", found.replace(figures._NBSP, " "))
+                         "LSTM-DQN not within 150 episodes", found.replace(figures._NBSP, " "))
         slow = {"curve": {**learnt, "steps": np.full(150, 30)}}  # 2,940 steps
         self.runs["sarsa"] = self.runs["lstm_dqn"] = [{"curve": learnt}, slow]
         found = figures._learning_times(self.contestants, self.runs, {"clairvoyant": 100.0})
@@ -372,106 +388,11 @@ class FiguresTest(unittest.TestCase):
     def test_bars_show_the_interquartile_mean_and_its_interval(self):
         rows = [{"name": "sarsa", "return_iqm": 230.0, "return_interval": [200.0, 250.0]},
                 {"name": "lstm_dqn", "return_iqm": -5.0, "return_interval": [np.nan, np.nan]}]
-        figures.plot_evaluation(self.axes, self.contestants, rows)
+        evaluation_figure.plot_evaluation(self.axes, self.contestants, rows)
         self.assertEqual([230.0, -5.0], [bar.get_height() for bar in self.axes.patches])
         _, _, bars = self.axes.containers[0].lines
         segment = bars[0].get_segments()[0]
         self.assertEqual([200.0, 250.0], [segment[0][1], segment[1][1]])
-
-    def test_every_second_cell_has_an_arrow_in_the_direction_of_its_move(self):
-        moves = [[0, 0, "north"], [1, 0, "east"], [2, 2, "south_west"], [3, 3, "pickup"],
-                 [4, 0, "drop_off"], [6, 6, "north"], [8, 8, "north"]]
-        route_figure.plot_moves(self.axes, moves, {"ports": [[6, 6]], "devices": [{"cell": [8, 8]}]})
-        arrows, pickups, drop_offs = self.axes.collections
-        np.testing.assert_array_equal([[0, 0], [2, 2]], arrows.get_offsets())
-        np.testing.assert_allclose([0.0, -arrows.V[0] / np.sqrt(2.0)], arrows.U, atol=1e-12)
-        self.assertGreater(arrows.V[0], 0.0)
-        self.assertAlmostEqual(arrows.U[1], arrows.V[1])
-        np.testing.assert_array_equal([[3, 3]], pickups.get_offsets())
-        np.testing.assert_array_equal([[4, 0]], drop_offs.get_offsets())
-
-    def test_a_route_is_split_and_numbered_at_its_stops(self):
-        steps = [{"cell": [0, 0], "action": "east", "aboard": 0},
-                 {"cell": [1, 0], "action": "pickup", "aboard": 0},
-                 {"cell": [1, 0], "action": "west", "aboard": 1},
-                 {"cell": [0, 0], "action": "drop_off", "aboard": 1},
-                 {"cell": [0, 0], "aboard": 0}]
-        self.assertEqual([(False, [[0, 0], [1, 0]]), (True, [[1, 0], [1, 0], [0, 0]]),
-                          (False, [[0, 0], [0, 0]])], route_figure.legs(steps))
-        names = route_figure.place_names({"devices": [{"cell": [1, 0]}], "ports": [[5, 5], [0, 0]]})
-        self.assertEqual([(1, "pickup", "F0", 2), (2, "drop-off", "B", 4)],
-                         route_figure.plot_route(self.axes, steps, names, {(5, 5), (0, 0)}))
-        for line, cells in zip(self.axes.lines, ([(0, 0), (1, 0)], [(1, 0), (0, 0)])):
-            np.testing.assert_array_equal(cells, line.get_xydata()[[0, -1]])
-        self.assertEqual({"1": (1, 0), "2": (0, 0)},
-                         {text.get_text(): text.xy for text in self.axes.texts})
-
-    def test_rings_are_labelled_away_from_the_stops_also_if_there_are_none(self):
-        self.axes.set_xlim(-1.0, 10.0)
-        self.axes.set_ylim(-1.0, 10.0)
-        step = {"cell": [2, 5], "aboard": 0, "disasters": [{"x": 5.0, "y": 5.0, "radii": [3.0]}]}
-        sea = self.axes.add_patch(Rectangle((0.0, 0.0), 9.0, 9.0))
-        route_figure._disasters(self.axes, [{**step, "action": "east"}], sea)
-        route_figure._disasters(self.axes, [{**step, "action": "pickup"}], sea)
-        alone, away = (text.xy for text in self.axes.texts[:1] + self.axes.texts[-1:])
-        self.assertAlmostEqual(3.0, float(np.hypot(alone[0] - 5.0, alone[1] - 5.0)))
-        np.testing.assert_allclose([8.0, 5.0], away, atol=1e-9)
-
-    def test_devices_that_were_not_fetched_are_marked(self):
-        chart = {"width": 4, "height": 3, "islands": [], "rocks": [], "ports": [[0, 0]],
-                 "devices": [{"cell": [1, 0]}, {"cell": [3, 2]}]}
-        storm = {"x": 3.0, "y": 2.0, "radii": [1.0]}
-        steps = [{"cell": [0, 0], "action": "east", "aboard": 0, "delivered": 0},
-                 {"cell": [1, 0], "action": "pickup", "aboard": 0, "delivered": 0},
-                 {"cell": [1, 0], "action": "west", "aboard": 1, "delivered": 0},
-                 {"cell": [0, 0], "aboard": 1, "delivered": 0}]
-        steps = [{**step, "disasters": [storm]} for step in steps[:3]] + [
-            {**steps[3], "disasters": []}]
-        route = {"chart": chart, "steps": steps, "reason": "time_limit", "return": -12.4}
-        self.assertEqual([[3, 2]], route_figure.devices_left(route))
-        route_figure.plot_unfinished(self.axes, "ranch 7", route)
-        marks = {marks.get_label(): marks.get_offsets().tolist()
-                 for marks in self.axes.collections}
-        self.assertEqual([[1, 0]], marks["device that was fetched"])
-        self.assertEqual([[3, 2]], marks["device that was not fetched"])
-        self.assertEqual([[0, 0]], marks["ship at the end"])
-        lines = self.lines()
-        self.assertIn("ring of a disaster in the last step", lines)
-        self.assertNotIn("the same ring 60 steps before", lines, "the episode has 3 steps")
-        last, = (one for one in self.axes.collections if isinstance(one, LineCollection))
-        self.assertIn("last leg, a device aboard", lines)
-        np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
-        np.testing.assert_array_equal([0.6, 2.2], last.get_linewidths(), "thin: repeated cells")
-        np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
-        self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
-                         "time limit at step 3, 1 steps after the last stop",
-                         self.axes.get_title("left"))
-        self.assertEqual({"≥ 3 moves"}, self.names_of(self.axes))
-        _, self.axes = style.plt.subplots()
-        far = {"x": 30.0, "y": 2.0, "radii": [1.0]}
-        waiting = [{**steps[0], "disasters": [{**storm, "x": 2.5}, far]}] * 70
-        ended = [{**step, "disasters": [storm, far]} for step in steps[:3]]
-        route_figure.plot_unfinished(self.axes, "ranch 7", {**route, "steps": [
-            *waiting, *ended, steps[3]]})
-        labels = [line.get_label() for line in self.axes.lines]
-        self.assertEqual(1, labels.count("the same ring 60 steps before"), "not of the far disaster")
-        self.assertAlmostEqual(2.5, self.lines()["the same ring 60 steps before"][0].mean(), 1)
-
-    def test_the_map_of_a_failure_shows_the_part_around_the_last_leg(self):
-        chart = {"width": 50, "height": 40, "islands": [], "rocks": [[40, 30]], "ports": [[20, 20]],
-                 "devices": [{"cell": [22, 20]}]}
-        cells = [[20, 20], [21, 20]] * 5 + [[20, 20]]
-        steps = [{"cell": cell, "action": "east", "aboard": 0, "delivered": 0, "disasters": []}
-                 for cell in cells]
-        route_figure.plot_unfinished(self.axes, "ranch 7", {
-            "chart": chart, "steps": steps, "reason": "time_limit", "return": 0.0})
-        self.assertEqual((17 - 0.7, 25 + 0.7), self.axes.get_xlim())
-        self.assertEqual((17 - 0.7, 23 + 0.7), self.axes.get_ylim())
-        labels = self.axes.get_legend_handles_labels()[1]
-        self.assertIn("cell with 5 to 9 visits", labels)
-        self.assertNotIn("cell with 10 or more visits", labels)
-        self.assertNotIn("rock", labels, "outside the map")
-        self.assertIn("no stop", self.axes.get_title("left"))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,9 @@ losses        money losses of evaluated episodes
 human         episodes that people played, as a row of the benchmark
 results       the tables and result files of a benchmark
 output        writes the tables and draws the figures of a complete benchmark
-figures       Figs. 12 to 14 of the paper, and the returns of evaluations
+figures       Figs. 12a, 12b, 13 and 14 of the paper
+error_figure  Fig. 12c of the paper
+evaluation_figure  the returns of evaluations
 loss_figures  charts of money losses
 style         headlines, names of lines and colours of the figures
 route_figure  Fig. 11 of the paper, and other charts of routes

@@ -146,35 +146,50 @@ def _plot_one_run(axes, one, curve, **style):
     return End(steps[-1], means[-1], one.colour, one.label)
 
 
+def _target(references):
+    """Returns the return to which the headline of Fig. 12a refers: _REACHED of the best reference,
+    or infinity if there is no positive reference."""
+    best = max(references.values(), default=0.0)
+    return _REACHED * best if best > 0.0 else math.inf
+
+
 def _mark_reached(axes, references):
-    """Draws a dotted line at the return to which the headline of Fig. 12a refers. Returns this
-    return, and the end of the line in a list. Without a positive reference, returns infinity and an
-    empty list."""
-    target = _REACHED * max(references.values(), default=0.0)
-    if target <= 0.0:
-        return np.inf, []
+    """Draws a dotted line at the value of _target. Returns the end of the line in a list, or an
+    empty list if the value is infinite."""
+    target = _target(references)
+    if target == math.inf:
+        return []
     axes.axhline(target, color="black", linestyle=":", linewidth=1.2, label="_reached")
-    return target, [End(axes.get_xlim()[1], target, "black",
-                        f"{100 * _REACHED:.0f} % of {target / _REACHED:.0f}")]
+    return [End(axes.get_xlim()[1], target, "black",
+                f"{100 * _REACHED:.0f} % of {target / _REACHED:.0f}")]
 
 
 def _name_reached(axes, ends, target, steps_of):
-    """Marks the numbers of steps at which learners reach the return `target`. Writes these numbers
-    and the names of the learners above the axes, in several rows if they are close. Returns the
-    ends of all other lines.
+    """Marks the numbers of steps at which learners reach the return `target`: a large dot for the
+    median, small dots for the runs. Writes the medians, the ranges of the runs and the names of the
+    learners above the axes, in several rows if they are close. Returns the ends of all other lines.
 
-    steps_of: {name of a line: number of steps}
+    steps_of: {name of a line: numbers of steps of the runs}
     """
-    others = [end for end in ends if steps_of[end.name] > axes.get_xlim()[1]]
-    reached = [(steps_of[end.name], end.colour, end.name) for end in ends if end not in others]
+    last = axes.get_xlim()[1]
+    others = [end for end in ends if np.median(steps_of[end.name]) > last]
+    reached = [(np.median(steps_of[end.name]), end.colour, end.name) for end in ends
+               if end not in others]
     to_axes = axes.transData + axes.transAxes.inverted()
     row_ends = [-np.inf] * len(reached)  # where the last names of the rows end [widths of the axes]
     for steps, colour, name in sorted(reached):
-        words = f"{name} {_steps_text(float(f'{steps:.2g}'))}"
+        words = f"{name} {_rounded_steps(steps)}"
+        of_runs = sorted(steps_of[name])
+        if of_runs[0] < of_runs[-1]:
+            words += f" ({_rounded_steps(of_runs[0])} to {_rounded_steps(of_runs[-1])})"
+        shown = [one for one in of_runs if one <= last]
+        axes.plot(shown, [target] * len(shown), "o", color=colour, markersize=3, zorder=5,
+                  label="_reached")
         place = float(to_axes.transform((steps, target))[0])
         row = next(i for i, end in enumerate(row_ends) if place - _LETTER * len(words) > end)
         row_ends[row] = place
-        axes.plot(steps, target, "o", color=colour, markersize=5, zorder=5, label="_reached")
+        axes.plot(steps, target, "o", color=colour, markersize=7, markeredgecolor="white", zorder=6,
+                  label="_reached")
         axes.annotate(words, (steps, target), xytext=(place, 1.025 + 0.05 * row),
                       textcoords=axes.transAxes, ha="right", va="bottom", color=legible(colour),
                       fontsize=10, annotation_clip=False,
@@ -184,9 +199,14 @@ def _name_reached(axes, ends, target, steps_of):
 
 
 def plot_rewards_by_steps(axes, contestants, runs, references):
-    """Plots Fig. 12a: the 50-episode mean return by time steps taken so far. The lines of runs
-    after the first are thin. Returns the ends of the lines that have no name yet."""
-    ends = [_plot_one_run(axes, one, runs[one.name][0]["curve"]) for one in contestants]
+    """Plots Fig. 12a: the 50-episode mean return by time steps taken so far. The line of the run
+    nearest to the median is thick, see _nearest_to_median. Returns the ends of the lines that have
+    no name yet."""
+    target = _target(references)
+    steps_of = {one.label: _steps_until(runs[one.name], target) for one in contestants}
+    main = {one.name: _nearest_to_median(steps_of[one.label]) for one in contestants}
+    ends = [_plot_one_run(axes, one, runs[one.name][main[one.name]]["curve"])
+            for one in contestants]
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter(lambda value, _: _steps_text(value))
@@ -200,11 +220,10 @@ def plot_rewards_by_steps(axes, contestants, runs, references):
     axes.autoscale_view()
     axes.set_xlim(axes.get_xlim())  # the other runs do not change the limits
     for one in _learners(contestants):
-        for run in runs[one.name][1:]:
+        for run in runs[one.name][:main[one.name]] + runs[one.name][main[one.name] + 1:]:
             _plot_one_run(axes, one, run["curve"], label="_run", linewidth=0.8, alpha=0.5)
-    target, reference = _mark_reached(axes, references)
-    ends = _name_reached(axes, ends, target,
-                         {one.label: _steps_until(runs[one.name], target) for one in contestants})
+    reference = _mark_reached(axes, references)
+    ends = _name_reached(axes, ends, target, steps_of)
     return ends + reference + _plot_references(axes, references, axes.get_xlim()[1])
 
 
@@ -228,48 +247,73 @@ def _steps_text(value):
     return f"{value / 1e6:g}M" if value >= 1e6 else f"{value / 1e3:g}k" if value >= 1e3 else f"{value:g}"
 
 
+def _rounded_steps(value):
+    """Returns a number of steps with two digits as text; infinity is "never"."""
+    return _steps_text(float(f"{value:.2g}")) if value < math.inf else "never"
+
+
 def draw_rewards(path, contestants, runs, references):
     """Draws Fig. 12a."""
     count = most_common_count(contestants, runs)
-    shown = ("one run of each learner" if count == 1 else
-             f"{count} runs of each learner (thick: the first)")
+    has_target = _target(references) < math.inf
+    shown = ("one run of each learner" if count == 1 else f"{count} runs of each learner; thick: "
+             + (f"the run whose time to {100 * _REACHED:.0f} % is nearest to the median"
+                if has_target else "the first"))
+    dots = (f"Dots: {100 * _REACHED:.0f} % is reached for the first time"
+            f"{' (large: median; above: its value and the range)' if count > 1 else ''}. ")
     _draw_returns(
         path, contestants, lambda ends: _learning_times(contestants, runs, references) or
         _highest(contestants, ends, "return at the end of the training"),
         f"Fig. 12a: {shown}. Means of {measures.WINDOW} episodes: a line begins after episode "
-        f"{measures.WINDOW}. Dots: {100 * _REACHED:.0f} % is reached for the first time"
-        f"{', median' if count > 1 else ''}. The chart ends with the last learner; RANDOM takes "
-        "more steps.",
+        f"{measures.WINDOW}. {dots if has_target else ''}The chart ends with the last learner; "
+        "RANDOM takes more steps.",
         f"{measures.WINDOW}-episode mean return",
         [(lambda axes: plot_rewards_by_steps(axes, contestants, runs, references), "", False)],
         "time steps so far (logarithmic)")
 
 
 def _steps_until(of_one, target):
-    """Returns the number of steps after which the 50-episode mean return first reaches `target`, in
-    the median of the runs. Infinity if it never does."""
+    """Returns the number of steps after which the 50-episode mean return first reaches `target`,
+    for each run. Infinity if it never does."""
     found = []
     for curve in (run["curve"] for run in of_one):
         episodes, means = moving_means(curve["return"])
         reached = episodes[means >= target]
         found.append(np.cumsum(curve["steps"])[reached[0] - 1] if len(reached) else math.inf)
-    return float(np.median(found))
+    return found
+
+
+def _nearest_to_median(values):
+    """Returns the index of the value that is nearest to the median. All infinite values are
+    equally near to an infinite median."""
+    median = np.median(values)
+    return min(range(len(values)),
+               key=lambda i: 0.0 if values[i] == median else abs(values[i] - median))
 
 
 def _learning_times(contestants, runs, references):
     """Returns the headline of Fig. 12a: after how many steps each learner reaches _REACHED of the
     best reference, in the median of its runs. "" if there is no positive reference."""
-    best = max(references, key=references.get, default=None)
-    if best is None or references[best] <= 0.0:
+    target = _target(references)
+    if target == math.inf:
         return ""
-    target = _REACHED * references[best]
-    found = sorted((_steps_until(runs[one.name], target), one.label)
+    found = sorted((float(np.median(_steps_until(runs[one.name], target))), one.label)
                    for one in _learners(contestants))
-    texts = [f"{name}{_NBSP}{float(f'{steps:.2g}'):,.0f}" if steps < math.inf else
-             f"{name}{_NBSP}never" for steps, name in found]
+    texts = [f"{name}{_NBSP}{float(f'{steps:.2g}'):,.0f}" for steps, name in found
+             if steps < math.inf]
+    late = [name for steps, name in found if steps == math.inf]
+    if late:
+        texts.append(f"{joined(late)} {_not_within(contestants, runs)}")
     count = most_common_count(contestants, runs)
-    return (f"Time steps to {100 * _REACHED:.0f} % of the return of the {best}"
+    return (f"Time steps to {100 * _REACHED:.0f} % of the return of the "
+            f"{max(references, key=references.get)}"
             f"{f' (median of {count} runs)' if count > 1 else ''}: {', '.join(texts)}")
+
+
+def _not_within(contestants, runs):
+    """Returns a text such as "not within 2,000 episodes", with the length of the longest run."""
+    longest = max(len(run["curve"]["return"]) for one in contestants for run in runs[one.name])
+    return f"not within {longest:,} episodes"
 
 
 def draw_average_rewards(path, contestants, runs, references):
@@ -300,7 +344,7 @@ def _recovery_times(contestants, runs):
     if not known or min(found)[0] == 1:
         return ""
     return (f"The mean return of all episodes so far rises above 0 at episode {joined(known)}"
-            f"{f', and never for {joined(never)}' if never else ''}")
+            f"{f'; {joined(never)}: {_not_within(contestants, runs)}' if never else ''}")
 
 
 def plot_average_rewards(axes, contestants, runs, references):
@@ -372,37 +416,6 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
     if limits:
         axes.set_ylim(limits)
     return ends
-
-
-def draw_evaluation(path, contestants, rows):
-    """Draws the return of greedy episodes that are not used for training, with 95 % intervals.
-    The upper chart shows only the part above 0, the lower chart the whole range."""
-    figure, (zoom, whole) = plt.subplots(2, 1, figsize=(8, 6), sharex=True, layout="constrained",
-                                         height_ratios=[3, 2])
-    label_axes(zoom, "Return on episodes never trained on", "return of an episode\nenlarged: above 0",
-           "")
-    label_axes(whole, "", "whole range", "")
-    for axes in (zoom, whole):
-        plot_evaluation(axes, contestants, rows)
-    if zoom.get_ylim()[1] > 0.0:
-        zoom.set_ylim(bottom=0.0)
-    save(figure, path)
-
-
-def plot_evaluation(axes, contestants, rows):
-    """Plots a bar for each contestant: interquartile mean of its runs, with the 95 % interval."""
-    by_name = {row["name"]: row for row in rows}
-    for place, one in enumerate(contestants):
-        row = by_name[one.name]
-        value = row["return_iqm"]
-        low, high = row["return_interval"]
-        error = None if np.isnan(low) else [[value - low], [high - value]]
-        axes.bar(place, value, color=one.colour, yerr=error, capsize=4)
-        axes.annotate(f"{value:.0f}", (place, max(value, 0.0)), xytext=(0, 8),
-                      textcoords="offset points", ha="center")
-    axes.axhline(0.0, color="black", linewidth=0.5)
-    axes.margins(y=0.15)
-    axes.set_xticks(range(len(contestants)), [one.label for one in contestants], rotation=15)
 
 
 def draw_repeated(path, contestants, runs, references):

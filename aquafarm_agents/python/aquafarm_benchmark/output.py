@@ -42,7 +42,8 @@ def tabulate(folder, contestants, found, settings, people):
 def draw(folder, everyone, found, rows):
     """Writes the figures of the results."""
     # Imported here, because matplotlib takes a second to load, which would delay --help.
-    from aquafarm_benchmark import error_figure, figures, loss_figures, route_figure
+    from aquafarm_benchmark import (error_figure, evaluation_figure, figures, loss_figures,
+                                    route_figure)
 
     pictures = folder / "figures"
     pictures.mkdir(exist_ok=True)
@@ -57,7 +58,7 @@ def draw(folder, everyone, found, rows):
         per_step = {one.label: row["return_per_step"] for one, row in zip(everyone, rows)
                     if one.name == OPTIMUM.name}
         figures.draw_mean_score(pictures / "mean_score.png", trained, found, per_step)
-    figures.draw_evaluation(pictures / "evaluation.png", everyone, rows)
+    evaluation_figure.draw_evaluation(pictures / "evaluation.png", everyone, rows)
     if any(row["money"] for row in rows):
         loss_figures.draw_losses(pictures / "losses.png", everyone, rows)
     for one in everyone:

@@ -6,11 +6,12 @@ import json
 
 import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
+from matplotlib.legend_handler import HandlerTuple
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 
-from aquafarm_benchmark.style import legible, plt, save
+from aquafarm_benchmark.style import joined, legible, plt, save, wrap_evenly
 
 _DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0),
                "north_west": (-1, 1), "north_east": (1, 1), "south_west": (-1, -1),
@@ -41,6 +42,7 @@ _EDGE = "#5b6b78"
 _STOPS = {"pickup": ("D", "pickup"), "drop_off": ("o", "drop-off")}
 _STOP_STYLE = {"s": 400, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 2.5}
 _RING = "#b22222"
+_LEFT = "device that was not fetched"
 _LAST_RING = "ring of a disaster in the last step"
 # Steps before the end whose rings are drawn, and their colour and label.
 _BEFORE = {120: ("#f0b4b4", "the same ring 120 steps before"),
@@ -108,7 +110,7 @@ def draw_unfinished(path, routes, title):
     the last step and before.
 
     routes: {name of the ranch: route file}
-    title: title of the figure
+    title: title of the figure, which is followed by the causes of the failures
     """
     columns = 2
     rows = -(-(len(routes) + 1) // columns)  # the last map is followed by the legend
@@ -122,15 +124,54 @@ def draw_unfinished(path, routes, title):
         plot_unfinished(axes, name, route)
     for empty in all_axes[len(routes):]:
         empty.axis("off")
-    figure.suptitle(title, fontsize=13.5, weight="bold", x=0.01, ha="left")
+    figure.suptitle("\n".join(wrap_evenly(f"{title}: {describe_failures(routes)}")),
+                    fontsize=13.5, weight="bold", x=0.01, ha="left")
     symbols = _symbols(charts)
+    diamonds, = (one for one in charts[0].collections if one.get_label() == "_device")
+    symbols[_LEFT] = (symbols[_LEFT], diamonds)  # drawn on top of each other
     rings = [label for label in (_LAST_RING, *(label for _, label in reversed(_BEFORE.values())))
              if label in symbols]
     visits = [label for _, label in _VISITS.values() if label in symbols]
     labels = [*(label for label in symbols if label not in (*rings, *visits)), *visits, *rings]
     all_axes[-1].legend([symbols[label] for label in labels], labels, loc="center left",
-                        frameon=False, fontsize=11, labelspacing=0.55)
+                        frameon=False, fontsize=11, labelspacing=0.5,
+                        handler_map={tuple: HandlerTuple(ndivide=1)}, alignment="left",
+                        title="Needed: min number of moves from the last stop to the\n"
+                        "nearest device that was left. Left: steps after this stop.\n"
+                        "A map contains the last leg; other devices may be outside.",
+                        title_fontproperties={"size": 10})
     save(figure, path)
+
+
+def describe_failures(routes):
+    """Returns a text on the causes of failed episodes. routes: {name, such as "ranch 7": route}"""
+    causes = {"time runs out": [], "a device stays inside a ring": []}
+    for name, route in routes.items():
+        needed, had, is_covered = shortage(route)
+        cause = "time runs out" if needed > had else "a device stays inside a ring"
+        if needed > had or is_covered:
+            causes[cause].append(name.replace("ranch ", ""))
+    return "; ".join(f"{cause} in {'ranches' if len(names) > 1 else 'ranch'} {joined(names)}"
+                     for cause, names in causes.items() if names)
+
+
+def shortage(route):
+    """Returns (needed, had, is_covered) of an episode that did not succeed: the min number of moves
+    from the last stop to the nearest device that was left, the number of steps after this stop, and
+    whether a ring covers a device that was left in the last step."""
+    left, (*before, (_, last_leg)) = devices_left(route), legs(route["steps"])
+    needed, _ = _nearest(last_leg[0], left)
+    rings = [ring for one in route["steps"][-2]["disasters"] for ring in _rings(one)]
+    # The action of step t is complete in step t + 1, as in plot_route.
+    had = len(last_leg) - (2 if before else 1)
+    return needed, had, any(_covers_any(ring, left) for ring in rings)
+
+
+def _nearest(cell, others):
+    """Returns the min number of moves from a cell to the nearest of other cells, and the index of
+    this cell. A move may be diagonal."""
+    moves = np.abs(np.array(others) - cell).max(axis=1)
+    return int(moves.min()), int(moves.argmin())
 
 
 def plot_unfinished(axes, name, route):
@@ -146,7 +187,7 @@ def plot_unfinished(axes, name, route):
     _plot_last_rings(axes, route["steps"], left, sea)
     for _, cells in before:
         line, = axes.plot(*np.array(cells, dtype=float).T, color=_EDGE, linewidth=0.8, zorder=2,
-                          alpha=0.4, label="route before")
+                          alpha=0.25, label="route before")
         line.set_clip_path(sea)
     counts = _shade_visits(axes, last_leg)
     colour, kind = _LEGS[loaded][0], f"{'a device' if loaded else 'nothing'} aboard"
@@ -157,17 +198,15 @@ def plot_unfinished(axes, name, route):
                     for move in moves]))
     axes.plot([], [], color=colour, linewidth=2.2, label=f"last leg, {kind}")
     axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black", linewidth=2.2, zorder=8,
-                 clip_on=False, label="device that was not fetched")
+                 clip_on=False, label=_LEFT)
     axes.scatter(*last["cell"], s=190, marker="*", color="#f0e442", edgecolor="black", zorder=9,
                  label="ship at the end")
     _measure(axes, last["cell"], left)
     result = f"{route['return']:.0f}".replace("-", "−")
-    end = len(route["steps"]) - 1
-    # The action of step t is complete in step t + 1, as in plot_route.
-    stop = f", {len(last_leg) - 2} steps after the last stop" if before else ", no stop"
+    needed, had, is_covered = shortage(route)
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
-                   f"return {result}\n{route['reason'].replace('_', ' ')} at step {end}{stop}",
-                   fontsize=10.5, loc="left")
+                   f"return {result}\n{needed} moves needed, {had} steps left"
+                   f"{'; device inside a ring' if is_covered else ''}", fontsize=10.5, loc="left")
 
 
 def _window(cells, size):
@@ -219,14 +258,12 @@ def _shade_visits(axes, cells):
 def _measure(axes, cell, left):
     """Connects the ship to the nearest device in `left`. Writes the min number of moves between
     them."""
-    gaps = np.array(left) - cell
-    moves = np.abs(gaps).max(axis=1)  # a move may be diagonal
-    nearest = int(np.argmin(moves))
+    moves, nearest = _nearest(cell, left)
     axes.plot(*zip(cell, left[nearest]), color="black", linestyle=":", linewidth=1.4, zorder=5,
-              label="_moves")
-    east, north = gaps[nearest]
+              label="min number of moves at the end")
+    east, north = np.array(left[nearest]) - cell
     is_below = north > 0  # the line is above
-    axes.annotate(f"≥ {moves[nearest]} moves", cell, xytext=(0, -10 if is_below else 10),
+    axes.annotate(f"≥ {moves} moves", cell, xytext=(0, -10 if is_below else 10),
                   textcoords="offset points", ha="left" if east > 0 else "right",
                   va="top" if is_below else "bottom", fontsize=11, weight="bold", zorder=10,
                   path_effects=[withStroke(linewidth=3, foreground="white")])
@@ -262,7 +299,7 @@ def _chart(axes, chart, window=None, left=None):
     axes.add_patch(Rectangle(**shown, fill=False, edgecolor=_EDGE, zorder=2))  # above the islands
     area = 4900.0 / max(width, height)  # area of a marker that fills a cell [pt²]
     groups = [(chart["islands"], {"color": _LAND, "marker": "s", "s": area}, "island"),
-              (chart["rocks"], {"color": "#9aa5ae", "marker": "^", "s": 0.18 * area}, "rock"),
+              (chart["rocks"], {"color": "#9aa5ae" if left is None else "#cfd6db", "marker": "^", "s": 0.18 * area}, "rock"),
               (chart["ports"], {"facecolor": "white", "edgecolor": "black", "linewidth": 2.0,
                                 "s": 0.9 * area}, "port")]
     if left is None:

@@ -30,13 +30,13 @@ def save(figure, path, dpi=_DPI):
 
 def explain(figure, finding, note):
     """Writes the finding above a figure, in bold, and the note below it."""
-    figure.suptitle("\n".join(_wrap_evenly(finding)), fontsize=12.5, weight="bold", x=0.01,
+    figure.suptitle("\n".join(wrap_evenly(finding)), fontsize=12.5, weight="bold", x=0.01,
                     ha="left")
     width = max(_LETTERS, int(_NOTE_LETTERS * figure.get_figwidth()))
     figure.supxlabel("\n".join(textwrap.wrap(note, width)), x=0.01, ha="left", **_NOTE)
 
 
-def _wrap_evenly(text):
+def wrap_evenly(text):
     """Wraps a text into as few lines as possible, of about the same length."""
     width, lines = _LETTERS, textwrap.wrap(text, _LETTERS, break_on_hyphens=False)
     while len(lines) > 1:

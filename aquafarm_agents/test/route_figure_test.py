@@ -1,0 +1,133 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Compares the maps of routes with the steps of these routes."""
+import sys
+import unittest
+
+import numpy as np
+import rosunit
+from matplotlib.collections import LineCollection
+from matplotlib.patches import Rectangle
+
+from aquafarm_benchmark import route_figure, style
+
+
+class RouteFigureTest(unittest.TestCase):
+
+    def setUp(self):
+        _, self.axes = style.plt.subplots()
+        self.addCleanup(style.plt.close, "all")
+
+    def lines(self):
+        """Returns {label: (x, y)} of the lines with a label."""
+        return {line.get_label(): (np.asarray(line.get_xdata()), np.asarray(line.get_ydata()))
+                for line in self.axes.lines if not line.get_label().startswith("_")}
+
+    def names_of(self, axes):
+        return {text.get_text() for text in axes.texts}
+
+    def test_every_second_cell_has_an_arrow_in_the_direction_of_its_move(self):
+        moves = [[0, 0, "north"], [1, 0, "east"], [2, 2, "south_west"], [3, 3, "pickup"],
+                 [4, 0, "drop_off"], [6, 6, "north"], [8, 8, "north"]]
+        route_figure.plot_moves(self.axes, moves, {"ports": [[6, 6]], "devices": [{"cell": [8, 8]}]})
+        arrows, pickups, drop_offs = self.axes.collections
+        np.testing.assert_array_equal([[0, 0], [2, 2]], arrows.get_offsets())
+        np.testing.assert_allclose([0.0, -arrows.V[0] / np.sqrt(2.0)], arrows.U, atol=1e-12)
+        self.assertGreater(arrows.V[0], 0.0)
+        self.assertAlmostEqual(arrows.U[1], arrows.V[1])
+        np.testing.assert_array_equal([[3, 3]], pickups.get_offsets())
+        np.testing.assert_array_equal([[4, 0]], drop_offs.get_offsets())
+
+    def test_a_route_is_split_and_numbered_at_its_stops(self):
+        steps = [{"cell": [0, 0], "action": "east", "aboard": 0},
+                 {"cell": [1, 0], "action": "pickup", "aboard": 0},
+                 {"cell": [1, 0], "action": "west", "aboard": 1},
+                 {"cell": [0, 0], "action": "drop_off", "aboard": 1},
+                 {"cell": [0, 0], "aboard": 0}]
+        self.assertEqual([(False, [[0, 0], [1, 0]]), (True, [[1, 0], [1, 0], [0, 0]]),
+                          (False, [[0, 0], [0, 0]])], route_figure.legs(steps))
+        names = route_figure.place_names({"devices": [{"cell": [1, 0]}], "ports": [[5, 5], [0, 0]]})
+        self.assertEqual([(1, "pickup", "F0", 2), (2, "drop-off", "B", 4)],
+                         route_figure.plot_route(self.axes, steps, names, {(5, 5), (0, 0)}))
+        for line, cells in zip(self.axes.lines, ([(0, 0), (1, 0)], [(1, 0), (0, 0)])):
+            np.testing.assert_array_equal(cells, line.get_xydata()[[0, -1]])
+        self.assertEqual({"1": (1, 0), "2": (0, 0)},
+                         {text.get_text(): text.xy for text in self.axes.texts})
+
+    def test_rings_are_labelled_away_from_the_stops_also_if_there_are_none(self):
+        self.axes.set_xlim(-1.0, 10.0)
+        self.axes.set_ylim(-1.0, 10.0)
+        step = {"cell": [2, 5], "aboard": 0, "disasters": [{"x": 5.0, "y": 5.0, "radii": [3.0]}]}
+        sea = self.axes.add_patch(Rectangle((0.0, 0.0), 9.0, 9.0))
+        route_figure._disasters(self.axes, [{**step, "action": "east"}], sea)
+        route_figure._disasters(self.axes, [{**step, "action": "pickup"}], sea)
+        alone, away = (text.xy for text in self.axes.texts[:1] + self.axes.texts[-1:])
+        self.assertAlmostEqual(3.0, float(np.hypot(alone[0] - 5.0, alone[1] - 5.0)))
+        np.testing.assert_allclose([8.0, 5.0], away, atol=1e-9)
+
+    def test_devices_that_were_not_fetched_are_marked(self):
+        chart = {"width": 4, "height": 3, "islands": [], "rocks": [], "ports": [[0, 0]],
+                 "devices": [{"cell": [1, 0]}, {"cell": [3, 2]}]}
+        storm = {"x": 3.0, "y": 2.0, "radii": [1.0]}
+        steps = [{"cell": [0, 0], "action": "east", "aboard": 0, "delivered": 0},
+                 {"cell": [1, 0], "action": "pickup", "aboard": 0, "delivered": 0},
+                 {"cell": [1, 0], "action": "west", "aboard": 1, "delivered": 0},
+                 {"cell": [0, 0], "aboard": 1, "delivered": 0}]
+        steps = [{**step, "disasters": [storm]} for step in steps[:3]] + [
+            {**steps[3], "disasters": []}]
+        route = {"chart": chart, "steps": steps, "reason": "time_limit", "return": -12.4}
+        self.assertEqual([[3, 2]], route_figure.devices_left(route))
+        route_figure.plot_unfinished(self.axes, "ranch 7", route)
+        marks = {marks.get_label(): marks.get_offsets().tolist()
+                 for marks in self.axes.collections}
+        self.assertEqual([[1, 0]], marks["device that was fetched"])
+        self.assertEqual([[3, 2]], marks["device that was not fetched"])
+        self.assertEqual([[0, 0]], marks["ship at the end"])
+        lines = self.lines()
+        self.assertIn("ring of a disaster in the last step", lines)
+        self.assertNotIn("the same ring 60 steps before", lines, "the episode has 3 steps")
+        last, = (one for one in self.axes.collections if isinstance(one, LineCollection))
+        self.assertIn("last leg, a device aboard", lines)
+        np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
+        np.testing.assert_array_equal([0.6, 2.2], last.get_linewidths(), "thin: repeated cells")
+        np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
+        # From the pickup at (1, 0), (3, 2) is 2 moves away; one step is left.
+        self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
+                         "2 moves needed, 1 steps left; device inside a ring",
+                         self.axes.get_title("left"))
+        self.assertEqual((2, 1, True), route_figure.shortage(route))
+        long = {**route, "steps": [*steps[:2], *[steps[2]] * 3, steps[3]]}
+        self.assertEqual((2, 3, True), route_figure.shortage(long))
+        self.assertEqual("time runs out in ranch 7; a device stays inside a ring in ranches 8 and 9",
+                         route_figure.describe_failures({"ranch 7": route, "ranch 8": long,
+                                                         "ranch 9": long}))
+        self.assertEqual({"≥ 3 moves"}, self.names_of(self.axes))
+        _, self.axes = style.plt.subplots()
+        far = {"x": 30.0, "y": 2.0, "radii": [1.0]}
+        waiting = [{**steps[0], "disasters": [{**storm, "x": 2.5}, far]}] * 70
+        ended = [{**step, "disasters": [storm, far]} for step in steps[:3]]
+        route_figure.plot_unfinished(self.axes, "ranch 7", {**route, "steps": [
+            *waiting, *ended, steps[3]]})
+        labels = [line.get_label() for line in self.axes.lines]
+        self.assertEqual(1, labels.count("the same ring 60 steps before"), "not of the far disaster")
+        self.assertAlmostEqual(2.5, self.lines()["the same ring 60 steps before"][0].mean(), 1)
+
+    def test_the_map_of_a_failure_shows_the_part_around_the_last_leg(self):
+        chart = {"width": 50, "height": 40, "islands": [], "rocks": [[40, 30]], "ports": [[20, 20]],
+                 "devices": [{"cell": [22, 20]}]}
+        cells = [[20, 20], [21, 20]] * 5 + [[20, 20]]
+        steps = [{"cell": cell, "action": "east", "aboard": 0, "delivered": 0, "disasters": []}
+                 for cell in cells]
+        route_figure.plot_unfinished(self.axes, "ranch 7", {
+            "chart": chart, "steps": steps, "reason": "time_limit", "return": 0.0})
+        self.assertEqual((17 - 0.7, 25 + 0.7), self.axes.get_xlim())
+        self.assertEqual((17 - 0.7, 23 + 0.7), self.axes.get_ylim())
+        labels = self.axes.get_legend_handles_labels()[1]
+        self.assertIn("cell with 5 to 9 visits", labels)
+        self.assertNotIn("cell with 10 or more visits", labels)
+        self.assertNotIn("rock", labels, "outside the map")
+        self.assertIn("2 moves needed, 10 steps left", self.axes.get_title("left"))
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("aquafarm_agents", "route_figure", RouteFigureTest, sys.argv)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compares the data in the figures of §4 with numbers computed from each episode."""
 import itertools
+import re
 import sys
 import unittest
 import unittest.mock
@@ -217,19 +218,26 @@ class FiguresTest(unittest.TestCase):
                               sum(run["curve"]["steps"][part]))
             self.assertAlmostEqual(sum(scores) / 2.0, y[place])
 
-    def test_fig_13_has_a_panel_of_lstm_dqn_one_of_sarsa_and_one_of_all(self):
-        figure = self.drawn(figures.draw_mean_score, self.contestants, self.runs,
-                            {"clairvoyant": 5.1})
-        self.assertEqual(1, len({axes.get_ylim() for axes in figure.axes}), "one scale")
-        first, second, both = [self.names_of(axes) for axes in figure.axes]
-        self.assertEqual([{"clairvoyant"}, {"clairvoyant"}], [first, second])
-        both = {name.replace(figures._NBSP, " ") for name in both}
-        self.assertIn("clairvoyant 5.10", both)
-        self.assertEqual({"SARSA", "LSTM-DQN", "clairvoyant"}, {name.split()[0] for name in both})
-        for name in both:
-            self.assertRegex(name, r"^\S+ −?\d\.\d\d( \(−?\d\.\d\d to −?\d\.\d\d\))?$")
-        panels = [set(self.lines(axes)) for axes in figure.axes]
-        self.assertEqual([{"LSTM-DQN"}, {"SARSA"}, {"SARSA", "LSTM-DQN"}], panels)
+    def test_fig_13_has_a_panel_of_each_learner_and_one_of_all(self):
+        self.runs["random"] = self.runs["dqn"] = [make_run(1, 120), make_run(2, 120)]
+        contestants = [*self.contestants, by_name("dqn"), by_name("random")]
+        figure = self.drawn(figures.draw_mean_score, contestants, self.runs, {"clairvoyant": 5.1})
+        shown, hidden = figure.axes[:4], figure.axes[4:]
+        self.assertFalse(any(axes.axison for axes in hidden))
+        self.assertEqual(1, len({axes.get_ylim() for axes in shown}), "one scale")
+        self.assertEqual([{"LSTM-DQN"}, {"SARSA"}, {"DQN"}, {"LSTM-DQN", "SARSA", "DQN", "RANDOM"}],
+                         [set(self.lines(axes)) for axes in shown])
+        self.assertEqual([1, 1, 1, 0], [len(axes.collections) for axes in shown], "shades")
+        names = {name.replace(figures._NBSP, " ") for name in self.names_of(shown[3])}
+        self.assertEqual({"SARSA", "LSTM-DQN", "DQN", "clairvoyant"},
+                         {name.split()[0] for name in names} - {"RANDOM"})
+        self.assertTrue(any(re.match(r"RANDOM \d\.\d\d$", name) for name in names), names)
+        titles = [axes.get_title("left").split("\n") for axes in shown]
+        self.assertEqual(["Fig. 13a: LSTM-DQN", "Fig. 13b: SARSA", "DQN", "Fig. 13c: all medians"],
+                         [title[0] for title in titles])
+        for _, values in titles[:2]:
+            self.assertRegex(values, r"^\d\.\d\d \(\d\.\d\d to \d\.\d\d\) at the end$")
+        self.assertIn("Dashed: clairvoyant.", figure._supxlabel.get_text())
 
     def test_fig_12a_marks_where_a_learner_reaches_90_percent_and_ends_with_the_last_learner(self):
         rising = np.array([-100.0] * 50 + [100.0] * 100)
@@ -356,6 +364,26 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(["SARSA: ends at ×3.0", "LSTM-DQN: ends at ×0.5"],
                          [axes.get_title("left") for axes in figure.axes])
         self.assertEqual([{"10", "30"}, {"10", "5"}], [self.names_of(axes) for axes in figure.axes])
+        self.assertIn("SARSA and LSTM-DQN (no mark): by episode 50",
+                      " ".join(figure._supxlabel.get_text().split()))
+
+    def test_numbers_of_fig_12c_are_above_the_shade_and_the_first_mark_is_explained(self):
+        for run in self.runs["sarsa"]:
+            run["curve"]["success"] = np.array([0.0] * 60 + [1.0] * 60)
+            run["curve"]["success"] = run["curve"]["success"][:len(run["curve"]["loss"])]
+            run["curve"]["loss"] = run["curve"]["loss"][:120]
+        for run in self.runs["lstm_dqn"]:
+            run["curve"]["success"] = np.zeros(120)
+        figure = self.drawn(error_figure.draw_square_error, self.contestants, self.runs)
+        axes = figure.axes[0]
+        edge = axes.collections[0].get_paths()[0].vertices
+        numbers = [text for text in axes.texts if text.get_text() != "50 % succeed"]
+        for text in numbers:
+            self.assertGreaterEqual(text.xy[1], edge[edge[:, 0] == text.xy[0], 1].max())
+        self.assertEqual([85.0], [text.xy[0] for text in axes.texts if text not in numbers])
+        self.assertIn("LSTM-DQN (no mark): not in this training",
+                      " ".join(figure._supxlabel.get_text().split()))
+        self.assertFalse(any(dot.get_clip_on() for dot in axes.lines if dot.get_marker() == "o"))
 
     def test_the_headline_of_fig_12c_has_the_peak_of_an_error_that_ends_lower(self):
         courses = {"A": (10.0, 100.0, 5.0), "B": (10.0, 12.0, 6.0), "C": (10.0, 10.1, 10.1)}

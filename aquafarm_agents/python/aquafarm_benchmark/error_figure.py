@@ -6,54 +6,61 @@ from matplotlib.patheffects import withStroke
 
 from aquafarm_benchmark import measures
 from aquafarm_benchmark.curves import End, columns_of_runs, describe_shading, moving_means
-from aquafarm_benchmark.style import (explain, joined, label_axes, legible, line_style, name_ends,
-                                      plt, save, shade)
+from aquafarm_benchmark.style import (chart_grid, explain, joined, label_axes, legible, line_style,
+                                      name_ends, save, shade)
 
 _PEAK = 2.0  # a peak is at least this multiple of the first and of the last value
 _SAME = 0.05  # relative change below which an error ends where it begins
 _HEADROOM = 1.5  # factor of the upper limit, for the numbers at the highest values
+_FOOTROOM = 1.3  # factor of the lower limit, for the name of the grey mark
+_LETTER = 0.045  # width of a letter of a number [widths of a chart]
+_EDGE = 0.02  # a mark of success that is nearer to the left edge is not seen [widths of a chart]
 _SUCCESS = 0.5  # the success rate that the charts mark
 
 
 def draw_square_error(path, contestants, runs):
     """Draws Fig. 12c: the mean square error of the value estimates, a chart for each learner, over
-    all runs. An unused place has a chart of all medians. Omits contestants without updates, such as
-    RANDOM."""
+    all runs. With more than three learners, a last chart shows all medians. Omits contestants
+    without updates, such as RANDOM."""
     learners = [one for one in contestants
                 if np.isfinite(columns_of_runs(runs[one.name], "loss")).any()]
-    columns = min(3, max(1, len(learners)))
-    rows = max(1, -(-len(learners) // columns))
-    figure, all_axes = plt.subplots(rows, columns, figsize=(3.1 * columns, 1.2 + 2.5 * rows),
-                                    squeeze=False, sharex=True, sharey=True, layout="constrained")
-    courses = {}
-    for axes, one in zip(all_axes.flat, learners):
-        label_axes(axes, "", "", "episode")
-        if plot_square_error(axes, [one], runs):
+    has_all = len(learners) > 3
+    figure, charts = chart_grid(max(1, len(learners) + has_all))
+    courses, found = {}, {}
+    for i, axes in enumerate(charts):
+        label_axes(axes, "", "error [reward²]" if axes.get_subplotspec().is_first_col() else "",
+                   "episode")
+        if i < len(learners) and plot_square_error(axes, [learners[i]], runs):
+            one = learners[i]
             courses[one.label] = _mark_course(axes, one.colour)
             first, _, last = courses[one.label]
             axes.set_title(f"{one.label}: ends at ×{last / first:.1f}", fontsize=12,
                            color=legible(one.colour))
-            _mark_success(axes, runs[one.name])
-    for axes in all_axes.flat:
-        axes.tick_params(labelbottom=True, labelleft=axes in all_axes[:, 0])
-    for axes in all_axes[:, 0]:
-        axes.set_ylabel("error [reward²]")
-    low, high = all_axes[0, 0].get_ylim()
-    all_axes[0, 0].set_ylim(low, _HEADROOM * high)  # the charts share their scale
-    unused = all_axes.flat[len(learners):]
-    for axes in unused[1:]:
-        axes.axis("off")
+            found[one.label] = _mark_success(axes, runs[one.name])
+    low, high = charts[0].get_ylim()
+    charts[0].set_ylim(low / _FOOTROOM, _HEADROOM * high)  # the charts share their scale
+    _name_success(charts, found)
     explain(figure, describe_courses(courses),
             f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic. Dots: "
-            "first value, last value, and the highest if it is far from both; ×: last value "
-            f"relative to the first. Grey: when {100 * _SUCCESS:.0f} % of the last "
-            f"{measures.WINDOW} episodes first succeed, from the earliest run to the latest. "
+            "first, last and, if it is far from both, highest value; ×: last value relative to the "
+            f"first. Grey: {100 * _SUCCESS:.0f} % of the last {measures.WINDOW} episodes succeed "
+            f"for the first time, from the earliest run to the latest{_describe_success(found)}. "
             f"{describe_shading(contestants, runs)} Each learner has "
             "its own targets: a lower error does not mean a better policy.")
-    if len(unused):
-        label_axes(unused[0], "all medians", "", "episode")
-        name_ends(unused[0], plot_square_error(unused[0], learners, runs, is_shaded=False))
+    if has_all:
+        charts[-1].set_title("all medians", fontsize=12)
+        name_ends(charts[-1], plot_square_error(charts[-1], learners, runs, is_shaded=False))
     save(figure, path)
+
+
+def _describe_success(found):
+    """Returns an addition to the note for learners without a grey mark. found: see _mark_success,
+    {name of a learner: episodes}"""
+    early = {name: episodes for name, (episodes, is_shown) in found.items()
+             if episodes and not is_shown}
+    never = [name for name, (episodes, _) in found.items() if not episodes]
+    said = f"; {joined(list(early))} (no mark): by episode {max(map(max, early.values()))}" if early else ""
+    return said + (f"; {joined(never)} (no mark): not in this training" if never else "")
 
 
 def describe_courses(courses):
@@ -85,32 +92,55 @@ def _significant(value):
 
 
 def _mark_course(axes, colour):
-    """Marks the first, the highest and the last value of the line on the axes. Returns them."""
+    """Marks the first, the highest and the last value of the line on the axes. Returns them. The
+    numbers are above the line and its shade."""
     x, y = axes.lines[0].get_data()
     top = int(np.argmax(y))
     # A highest value near the first or the last one has no mark of its own.
     near = 0.12 * (x[-1] - x[0])
     marks = {0: "left", **({top: "center"} if near < x[top] - x[0] < x[-1] - x[0] - near else {}),
              len(x) - 1: "right"}
+    edge = (axes.collections[0].get_paths()[0].vertices if axes.collections else
+            np.column_stack([x, y]))
     for i, across in marks.items():
-        offset = (3 if across == "left" else 0, 8)
-        axes.plot(x[i], y[i], "o", color=colour, markersize=5, zorder=5, label="_value")
-        axes.annotate(_significant(y[i]), (x[i], y[i]), xytext=offset, textcoords="offset points",
-                      ha=across, color=legible(colour), fontsize=11, weight="bold", zorder=6,
+        text = _significant(y[i])
+        width = _LETTER * len(text) * (x[-1] - x[0])
+        axes.plot(x[i], y[i], "o", color=colour, markersize=5, zorder=5, label="_value",
+                  clip_on=False)
+        covered = np.abs(edge[:, 0] - x[i]) <= (0.5 if across == "center" else 1.0) * width
+        axes.annotate(text, (x[i], edge[covered, 1].max()), textcoords="offset points",
+                      xytext=(3 if across == "left" else 0, 4), ha=across, color=legible(colour), fontsize=11,
+                      weight="bold", zorder=6,
                       path_effects=[withStroke(linewidth=3, foreground="white")])
     return y[0], y[top], y[-1]
 
 
 def _mark_success(axes, of_one):
     """Shades the episodes at which the success rate of the runs first reaches _SUCCESS, from the
-    earliest run to the latest."""
+    earliest run to the latest. Returns (episodes, is_shown). is_shown is False if there are no such
+    episodes, or if all are at the left edge."""
     found = []
     for successes in columns_of_runs(of_one, "success"):
         episodes, means = moving_means(successes)
         found += list(episodes[means >= _SUCCESS][:1])
-    if found:
+    is_shown = bool(found) and max(found) - episodes[0] > _EDGE * (episodes[-1] - episodes[0])
+    if is_shown:
         axes.axvspan(min(found), max(found), facecolor="0.88", edgecolor="0.6", linewidth=1.0,
                      zorder=0)
+    return found, is_shown
+
+
+def _name_success(charts, found):
+    """Writes what the grey area means next to the first one, at the bottom of its chart."""
+    for axes, (episodes, is_shown) in zip(charts, found.values()):
+        if is_shown:
+            is_left = max(episodes) < sum(axes.get_xlim()) / 2
+            axes.annotate(f"{100 * _SUCCESS:.0f} % succeed",
+                          (max(episodes) if is_left else min(episodes), 0.03),
+                          xycoords=axes.get_xaxis_transform(), xytext=(4 if is_left else -4, 0),
+                          textcoords="offset points", ha="left" if is_left else "right",
+                          fontsize=10, color="0.35")
+            return
 
 
 def plot_square_error(axes, contestants, runs, is_shaded=True):

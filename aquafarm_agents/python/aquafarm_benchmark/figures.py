@@ -12,8 +12,8 @@ from aquafarm_benchmark import measures
 from aquafarm_benchmark.curves import (End, columns_of_runs, describe_random, describe_shading,
                                        most_common_count, moving_means)
 from aquafarm_benchmark.protocol import PRINTED
-from aquafarm_benchmark.style import (explain, joined, label_axes, legible, line_style, name_ends,
-                                      number, plt, save, shade)
+from aquafarm_benchmark.style import (chart_grid, explain, joined, label_axes, legible, line_style,
+                                      name_ends, number, plt, save, shade)
 
 _NBSP = "\N{NO-BREAK SPACE}"
 _REACHED = 0.9  # a learner has learnt once it reaches this fraction of the best reference
@@ -358,9 +358,9 @@ def plot_average_rewards(axes, contestants, runs, references):
 
 
 def draw_mean_score(path, contestants, runs, references):
-    """Draws Fig. 13: the mean return per step by episode: (a) LSTM-DQN, (b) SARSA, (c) all
-    contestants. If several contestants have the algorithm of (a) or (b), the one with its name is
-    shown, or the first.
+    """Draws Fig. 13: the mean return per step by episode: a chart for each learner with the range
+    of its runs, first (a) LSTM-DQN and (b) SARSA, and (c) the medians of all contestants. If several
+    contestants have the algorithm of (a) or (b), the one with its name is shown there, or the first.
 
     references: {name: return per step}, drawn for comparison
     """
@@ -368,38 +368,36 @@ def draw_mean_score(path, contestants, runs, references):
     for letter, algorithm in (("a", "lstm_dqn"), ("b", "sarsa")):
         rows = [one for one in contestants if one.algorithm_name == algorithm]
         rows.sort(key=lambda one: one.name != algorithm)
-        panels += [(letter, [one]) for one in rows[:1]]
-    figure = plt.figure(figsize=(9, 8.4 if panels else 4.9), layout="constrained")
-    places = [[letter for letter, _ in panels], ["c"] * len(panels)] if panels else [["c"]]
-    all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)
-    note = (f"Fig. 13: means of {measures.WINDOW} episodes. {describe_shading(contestants, runs)} "
+        panels += [(f"Fig. 13{letter}: ", one) for one in rows[:1]]
+    lettered = [one for _, one in panels]
+    panels += [("", one) for one in _learners(contestants) if one not in lettered]
+    figure, charts = chart_grid(len(panels) + 1)
+    for axes in charts:
+        label_axes(axes, "", "return per step" if axes.get_subplotspec().is_first_col() else "")
+    every = []
+    for axes, (letter, one) in zip(charts, panels):
+        every += [end for end in plot_mean_score(axes, [one], runs, references)
+                  if end.name == one.label]
+        axes.set_title(f"{letter}{one.label}\n{_with_range(every[-1], 2)} at the end", fontsize=11,
+                       color=legible(one.colour))
+    axes = charts[-1]
+    axes.set_title("Fig. 13c: all medians" if most_common_count(contestants, runs) > 1 else
+                   "Fig. 13c: all", fontsize=11)
+    ends = plot_mean_score(axes, contestants, runs, references, is_shaded=False)
+    explain(figure, _highest(contestants, every, "return per step at the end", digits=2),
+            f"Fig. 13: means of {measures.WINDOW} episodes. {describe_shading(contestants, runs)} "
+            f"{f'Dashed: {joined(list(references))}. ' if references else ''}"
             f"{describe_random(contestants)}")
-    for letter, panel in [("c", contestants), *panels]:
-        axes = all_axes[letter]
-        limits = None if letter == "c" else all_axes["c"].get_ylim()
-        ends = plot_mean_score(axes, panel, runs, references, limits)
-        axes.margins(x=0.0)
-        if letter == "c":
-            label_axes(axes, "Fig. 13c: all", "return per step")
-            found = _highest(contestants, ends, "return per step at the end", digits=2)
-            explain(figure, found, note)
-            name_ends(axes, _with_values(contestants, ends, digits=2))
-            continue
-        label_axes(axes, "", "return per step" if letter == "a" or len(panels) == 1 else "")
-        axes.set_title(f"Fig. 13{letter}: {panel[0].label} {_with_range(ends[0], 2)}", fontsize=11)
-        for name, value in references.items():
-            axes.annotate(name, (0.99, value), xytext=(0, 3), va="bottom", ha="right",
-                          xycoords=axes.get_yaxis_transform(), textcoords="offset points",
-                          fontsize=9.5)
+    others = [one for one in contestants if one not in _learners(contestants)]
+    name_ends(axes, _with_values(others, ends, digits=2))
     save(figure, path)
 
 
-def plot_mean_score(axes, contestants, runs, references, limits=None):
+def plot_mean_score(axes, contestants, runs, references, is_shaded=True):
     """Plots the 50-episode mean return per step: the median of the runs, shaded between their
     lowest and highest value. Returns the ends of the lines.
 
     references: {name: return per step}, drawn for comparison
-    limits: limits of the y axis; None: automatic
     """
     ends = []
     for one in contestants:
@@ -409,12 +407,10 @@ def plot_mean_score(axes, contestants, runs, references, limits=None):
         scores = np.array([measures.return_per_step(*pair, window)
                            for pair in zip(returns, steps)])
         episodes = np.arange(window, returns.shape[1] + 1)
-        ends.append(_plot_shaded(axes, episodes, scores, one))
+        ends.append(_plot_shaded(axes, episodes, scores, one, is_shaded))
     axes.axhline(0.0, color="black", linewidth=0.5, label="_zero")
     ends += _plot_references(axes, references, max(end.x for end in ends), digits=2)
-    axes.margins(y=0.1)  # space for the name of a reference
-    if limits:
-        axes.set_ylim(limits)
+    axes.margins(x=0.0, y=0.1)
     return ends
 
 
@@ -458,11 +454,11 @@ def plot_enlarged(axes, contestants, runs, references, level):
     return [end for end in ends if level <= end.y]
 
 
-def _plot_shaded(axes, episodes, values, one):
-    """Plots the median of values [runs, episodes], shaded between their lowest and highest value.
-    Returns the end of the line."""
+def _plot_shaded(axes, episodes, values, one, is_shaded=True):
+    """Plots the median of values [runs, episodes], shaded between their lowest and highest value
+    unless is_shaded is False. Returns the end of the line."""
     low, median, high = np.quantile(values, (0.0, 0.5, 1.0), axis=0)
-    if len(values) > 1:
+    if is_shaded and len(values) > 1:
         shade(axes, episodes, low, high, one.colour)
     axes.plot(episodes, median, **line_style(one), label=one.label)
     span = (low[-1], high[-1]) if len(values) > 1 else ()

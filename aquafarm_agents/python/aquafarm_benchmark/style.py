@@ -12,6 +12,7 @@ _DPI = 150
 _LETTERS = 78  # max length of a line of a headline
 _NOTE = {"fontsize": 9.5, "color": "0.35"}
 _NOTE_LETTERS = 14  # max length of a line of a note, per inch of the figure's width
+_COLUMNS = 3  # max number of small charts in a row
 _NAME_PT = 15.0  # height of a name [pt]
 # Max distance along x between line ends with names in one column [fraction of the axes' width].
 _NEAR = 0.15
@@ -56,6 +57,19 @@ def label_axes(axes, title, ylabel, xlabel="episode"):
     if xlabel == "episode":
         axes.xaxis.set_major_formatter(lambda value, _: number(value))
     axes.grid(alpha=0.3)
+
+
+def chart_grid(count):
+    """Creates `count` charts with one scale, up to _COLUMNS in a row. Returns (figure, charts)."""
+    columns = min(_COLUMNS, count)
+    rows = -(-count // columns)
+    figure, grid = plt.subplots(rows, columns, figsize=(max(3.1 * columns, 6.2), 1.2 + 2.5 * rows),
+                                squeeze=False, sharex=True, sharey=True, layout="constrained")
+    for i, axes in enumerate(grid.flat):
+        axes.tick_params(labelbottom=True, labelleft=i % columns == 0)
+        if i >= count:
+            axes.axis("off")
+    return figure, list(grid.flat)[:count]
 
 
 def number(value, digits=0):

@@ -14,7 +14,9 @@ matplotlib.use("Agg")  # needs no display
 from matplotlib import pyplot as plt  # noqa: E402
 
 DPI = 160
+NAMED = 3  # max number of storms that a title names
 MARGIN = 5  # the figure marks groups of promises that are kept this many points more or less often
+RIM = 3  # space around chances of 0 and 100 %, so that their marks are whole [points]
 KINDS = {"home": "The device comes home", "gales": "Gales reach the device"}
 
 
@@ -28,12 +30,17 @@ def is_far(group):
     return abs(100 * (group["kept"]["mean"] - group["promised"])) > MARGIN
 
 
+def is_missed(group):
+    """Returns whether the 95 % interval of a group does not contain the promise."""
+    return not group["kept"]["low"] <= group["promised"] <= group["kept"]["high"]
+
+
 def reliability(data):
     """Returns a sentence about how well the promises hold in simulated storms."""
     bins = [one for key in KINDS for one in bins_of(data, key)]
     far = [one for one in bins if is_far(one)]
     most = max(abs(100 * (one["kept"]["mean"] - one["promised"])) for one in bins)
-    missed = sum(not one["kept"]["low"] <= one["promised"] <= one["kept"]["high"] for one in bins)
+    missed = sum(map(is_missed, bins))
     return (f"Promised chances hold within {MARGIN} points in {len(bins) - len(far)} of "
             f"{len(bins)} groups, at worst {most:.0f} points off.\nThe 95 % intervals of "
             f"{len(bins) - missed} groups contain the promise ({data['storms']:,} simulated "
@@ -60,12 +67,16 @@ def draw_reliability(data, path):
         one.fill_between([0, 100], [-MARGIN, 100 - MARGIN], [MARGIN, 100 + MARGIN], color="0.85",
                          label=f"within {MARGIN} points")
         draw_groups(one, [group for group in bins if not is_far(group)], "#0b5394",
-                    "group of promises,\n95 % interval")
+                    "group, 95 % interval")
         draw_groups(one, [group for group in bins if is_far(group)], "#d55e00",
                     f"group beyond {MARGIN} points")
+        missed = [group for group in bins if is_missed(group)]
+        one.scatter([100 * group["promised"] for group in missed],
+                    [100 * group["kept"]["mean"] for group in missed], s=190, facecolor="none",
+                    edgecolor="black", linewidth=1.8, zorder=4)
         one.set_title(f"{title} (n = {sum(b['count'] for b in bins):,})", fontsize=12)
-        one.set_xlim(0, 100)
-        one.set_ylim(0, 100)
+        one.set_xlim(-RIM, 100 + RIM)
+        one.set_ylim(-RIM, 100 + RIM)
         one.set_aspect("equal")
         one.grid(alpha=0.3)
         sizes.bar([100 * group["promised"] for group in bins], [group["count"] for group in bins],
@@ -78,7 +89,13 @@ def draw_reliability(data, path):
         sizes.set_xlabel("promised chance [%]", fontsize=11)
     axes[0][0].set_ylabel("share of cases\nin which it happened [%]", fontsize=11)
     axes[1][0].set_ylabel("cases per\ngroup (log)", fontsize=11)
-    axes[0][0].legend(loc="upper left", fontsize=10)
+    if any(is_missed(group) for key in KINDS for group in bins_of(data, key)):
+        axes[0][0].scatter([], [], s=190, facecolor="none", edgecolor="black", linewidth=1.8,
+                           label="misses the promise")
+    handles, words = axes[0][0].get_legend_handles_labels()
+    order = sorted(range(len(words)), key=lambda i: words[i].startswith("misses"))
+    axes[0][0].legend([handles[i] for i in order], [words[i] for i in order], loc="upper left",
+                      fontsize=10)
     for words, x, y in (("more often", 20, 60), ("less often", 80, 30)):
         axes[0][1].text(x, y, f"{words}\nthan promised", ha="center", fontsize=11, color="0.3")
     figure.suptitle(reliability(data), fontsize=12.5, weight="bold", x=0.01, ha="left")
@@ -89,12 +106,18 @@ def draw_reliability(data, path):
 def finding(storms):
     """Returns a sentence about the results of the back-test."""
     staked = [s for s in storms if s["at_risk"] > 0.5]  # in others, no plan loses value
-    as_good = sum(s["saved"] > s["clairvoyant"] - 0.5 for s in staked)
+    worse = [name_of(s) for s in staked if is_worse(s)]
+    but = f"(not in {' and '.join(worse)}), and " if 0 < len(worse) <= NAMED else "and "
     share = sum(s["saved"] for s in storms) / sum(s["clairvoyant"] for s in storms)
-    less = sum(s["promised"] < s["saved"] for s in storms)
-    return (f"In {as_good} of {len(staked)} storms with something at stake the plan saves what a "
-            f"clairvoyant saves.\nOver all {len(storms)}, it saves {100 * share:.0f} % of the "
-            f"clairvoyant's value; in {less}, more than promised.")
+    return (f"The plan saves what a clairvoyant saves in {len(staked) - len(worse)} of "
+            f"{len(staked)} storms with something at stake"
+            f"\n{but}{100 * share:.0f} % of the "
+            f"clairvoyant's value over all {len(storms)}.")
+
+
+def is_worse(storm):
+    """Returns whether the plan saves less than a clairvoyant."""
+    return storm["saved"] <= storm["clairvoyant"] - 0.5
 
 
 def name_of(storm):
@@ -133,6 +156,9 @@ def draw_back_test(data, path):
         if storm["at_risk"] <= 0.5:
             axes.text(max(storm["promised"], storm["saved"]) + 6, place, "nothing at stake",
                       va="center", fontsize=10, color="0.35")
+        elif storm is not rows[-1] and is_worse(storm):
+            axes.text(storm["clairvoyant"] + 4, place, va="center", fontsize=10,
+                      s=f"saves {storm['saved']:.0f} of {storm['clairvoyant']:.0f}")
     mean = rows[-1]
     axes.text(mean["at_risk"] + 6, places[-1], va="center", fontsize=10.5,
               s=f"promised {mean['promised']:.1f}, saved {mean['saved']:.1f}, "

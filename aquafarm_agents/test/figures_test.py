@@ -336,8 +336,13 @@ class FiguresTest(unittest.TestCase):
         self.assertAlmostEqual(63.0, half.get_ylim()[0], msg="70 % of the clairvoyant")
         self.assertEqual({"LSTM-DQN", "clairvoyant 90"}, self.names_of(half))
         self.assertEqual(3, len(self.names_of(full)))
-        self.assertEqual("Enlarged: second half, above 70 % of the clairvoyant",
-                         half.get_title("left"))
+        self.assertEqual("Enlarged: second half, above 70 % of the clairvoyant (SARSA is mostly "
+                         "below)", half.get_title("left"))
+        for run in self.runs["sarsa"]:
+            run["curve"]["return"][:] = 70.0
+        _, half = self.drawn(figures.draw_repeated, self.contestants, self.runs, OPTIMUM).axes
+        self.assertEqual({"LSTM-DQN", "SARSA"}, set(self.lines(half)))
+        self.assertTrue(half.get_title("left").endswith("of the clairvoyant"))
 
     def test_the_headline_of_fig_12a_has_the_steps_until_90_percent_of_the_reference(self):
         learnt = {"return": np.array([-100.0] * 50 + [100.0] * 100), "steps": np.full(150, 10)}

@@ -244,7 +244,9 @@ class ReportTest(unittest.TestCase):
                          [tuple(line.values()) for line in found["lines"]])
         self.assertEqual([[100.0, 80.4, 119.6]], found["marks"])
         self.assertAlmostEqual(np.mean(columns["return"][-50:]) / 3.0, found["bend"], delta=0.01)
-        self.assertIn("logarithmic below 0", found["title"])
+        self.assertEqual("return per episode (curves: means of 50 training episodes; right: greedy "
+                         "play with 95 % intervals)", found["title"])
+        self.assertIn("means of 30 training", chart({"return": columns["return"][:30]})["title"])
         self.assertIsNone(chart({"return": columns["return"] - 1000.0})["bend"], "below 0")
 
     def test_one_sentence_says_how_good_a_run_is(self):
@@ -254,14 +256,19 @@ class ReportTest(unittest.TestCase):
 
         others = [player("planner", 98, 98, 98, 98), player("clairvoyant", 100, 100, 100, 100)]
         two = [player("a", 88, 92, 88, 92, is_run=True), player("b", 80, 80, 80, 80, is_run=True)]
-        share = "it reaches 90.0 % of clairvoyant"
-        self.assertEqual(f"a: {share}, 8.0 points [5.7, 10.3] below planner.",
-                         references.verdict([two[0], *others]))
-        self.assertIn(f"a has the highest return of the 2 runs: {share}, 10 points [8, 12] above b, "
-                      "8.0 points [5.7, 10.3] below planner. One training each does not rank their ",
-                      references.verdict([*two, *others]))
-        self.assertEqual("a: its returns sum up to less than 0, 103 points below planner.",
-                         references.verdict([player("a", -5, is_run=True), *others]))
+
+        def verdict(players):
+            return references.verdict(players).replace("\N{NO-BREAK SPACE}", " ")
+
+        share = "reaches 90.0 % of the clairvoyant's return"
+        self.assertEqual(f"a {share}, 8.0 points [5.7, 10.3] below the planner.",
+                         verdict([two[0], *others]))
+        self.assertIn(f"a has the highest return of the 2 runs: it {share}, 10 points [8, 12] above "
+                      "b, 8.0 points [5.7, 10.3] below the planner. One training each does not rank ",
+                      verdict([*two, *others]))
+        self.assertEqual("a: its returns sum up to less than 0, 103 points below the planner.",
+                         verdict([player("a", -5, is_run=True), *others]))
+        self.assertEqual("a: 8.0 points [5.7, 10.3] below the planner.", verdict([two[0], others[0]]))
         two[1] = player("b", 92, 84, 92, 84, is_run=True)
         self.assertIn("not distinct from b", references.verdict(two))
         self.assertEqual("", references.verdict(others))

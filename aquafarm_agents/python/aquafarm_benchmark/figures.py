@@ -186,7 +186,9 @@ def _name_reached(axes, ends, target, steps_of):
         axes.plot(shown, [target] * len(shown), "o", color=colour, markersize=3, zorder=5,
                   label="_reached")
         place = float(to_axes.transform((steps, target))[0])
-        row = next(i for i, end in enumerate(row_ends) if place - _LETTER * len(words) > end)
+        # A name also leaves space for the leaders of the names above it.
+        row = next(i for i in range(len(row_ends))
+                   if place - _LETTER * len(words) > max(row_ends[i:]))
         row_ends[row] = place
         axes.plot(steps, target, "o", color=colour, markersize=7, markeredgecolor="white", zorder=6,
                   label="_reached")
@@ -415,20 +417,31 @@ def plot_mean_score(axes, contestants, runs, references, is_shaded=True):
 
 
 def draw_repeated(path, contestants, runs, references):
-    """Draws Fig. 14: the 50-episode mean return over all runs. If a learner ends above _ENLARGED of
-    the best reference, a second chart enlarges these returns in the second half of the training."""
-    data = (contestants, runs, references)
+    """Draws Fig. 14: the 50-episode mean return over all runs. A second chart enlarges the returns
+    above _ENLARGED of the best reference in the second half of the training. It shows the learners
+    whose median is there at least half of the time. If there are none, it is left out."""
     best = max(references, key=references.get, default=None)
-    level = _ENLARGED * references[best] if best else math.inf
-    plots = [(lambda axes: plot_repeated(axes, *data), "", True)]
-    if any(np.median(_repeated(runs[one.name])[1][:, -1]) > level > 0.0 for one in contestants):
-        plots.append((lambda axes: plot_enlarged(axes, *data, level),
-                      f"Enlarged: second half, above {100 * _ENLARGED:.0f} % of the {best}", False))
+    level = _ENLARGED * references[best] if best else 0.0
+    plots = [(lambda axes: plot_repeated(axes, contestants, runs, references), "", True)]
+    high = [one for one in contestants if _is_mostly_above(runs[one.name], level)]
+    if level > 0.0 and high:
+        title = f"Enlarged: second half, above {100 * _ENLARGED:.0f} % of the {best}"
+        low = [one.label for one in _learners(contestants) if one not in high]
+        if low:
+            title += f" ({joined(low)} {'is' if len(low) == 1 else 'are'} mostly below)"
+        plots.append((lambda axes: plot_enlarged(axes, high, runs, references, level), title, False))
     _draw_returns(
         path, contestants,
         lambda ends: _highest(contestants, ends, "return at the end of the training"),
         f"Fig. 14: repeated trainings, means of {measures.WINDOW} episodes. "
         f"{describe_shading(contestants, runs)}", f"{measures.WINDOW}-episode mean return", plots)
+
+
+def _is_mostly_above(of_one, level):
+    """Returns whether the median of the runs is above a level at least half of the time, in the
+    second half of the training."""
+    median = np.median(_repeated(of_one)[1], axis=0)
+    return np.mean(median[len(median) // 2:] > level) >= 0.5
 
 
 def _repeated(of_one):

@@ -126,6 +126,9 @@ def name_ends(axes, ends):
                       bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
                       arrowprops={"arrowstyle": "-", "color": end.colour, "linewidth": 0.8,
                                   "relpos": (0.0, 0.5), "shrinkA": 1.0, "shrinkB": 0.0})
+    if axes.get_subplotspec() and not axes.get_subplotspec().is_last_col():
+        for text in axes.texts:  # next to a free place of the grid
+            text.set_in_layout(False)
 
 
 def line_style(one):

@@ -96,6 +96,8 @@ def show(labels, columns, notes=(), players=()):
     marks = [[round(value, 1) if math.isfinite(value) else None for value in
               references.mean_interval(references.column(one, "return"), one.distinct)]
              if one.rows else [None] * 3 for one in players if one.is_run]
+    lengths = [len(one["return"]) for one in columns if "return" in one]
+    window = min(WINDOW, max(lengths, default=WINDOW))  # of the longest training
     charts = []
     for name, title in CURVES:
         rows = rows_of(columns, name)
@@ -105,14 +107,12 @@ def show(labels, columns, notes=(), players=()):
         if name == "return":
             chart.update(lines=lines, marks=marks, bend=bend(rows, lines, marks))
             if marks:
-                chart["title"] += (" (curves: training; marks at the right: greedy play with "
-                                   "95 % intervals)")
-            if chart["bend"]:
-                chart["title"] += ", logarithmic below 0"
+                chart["title"] += (f" (curves: means of {window} training episodes; right: greedy "
+                                   "play with 95 % intervals)")
         charts.append(chart)
     if not charts:
         return ""
-    settings = {"labels": ["episode", *labels], "charts": charts,
+    settings = {"labels": ["episode", *labels], "charts": charts, "window": window,
                 "colours": [COLOURS[i % len(COLOURS)] for i in range(len(labels))]}
     data = json.dumps(settings, allow_nan=False).replace("</", "<\\/")
     script = (pathlib.Path(__file__).resolve().parent / "templates" / "curves.js").read_text(
@@ -121,5 +121,5 @@ def show(labels, columns, notes=(), players=()):
     library = _library("dygraph.min.js").replace("//# sourceMappingURL=dygraph.min.js.map", "")
     style = _library("dygraph.min.css").partition("/*#")[0]
     scripts = [library, f'"use strict";const CURVES={data};\n{script}']
-    return blocks.section("Training curves", blocks.curves(WINDOW, charts, style, scripts,
+    return blocks.section("Training curves", blocks.curves(window, charts, style, scripts,
                                                            [note for note in notes if note]))

@@ -87,7 +87,7 @@ def success_text(player):
     return intervals.share_text(rate, count)
 
 
-_NO_SHARE = "a return below 0 has no share"
+_NO_SHARE = "return below 0: no share"
 
 
 def share_text(player, optimum):
@@ -116,10 +116,10 @@ def difference(one, other):
 
 
 def _points(interval):
-    """Returns a difference above 0 as "24 points [21, 27]"."""
+    """Returns a difference above 0 as "24 points [21, 27]", without a line break in it."""
     form = "{:.1f}" if interval[0] < 10.0 else "{:.0f}"
     mean, _, bounds = text(interval, form).partition(" ")
-    return f"{mean} points {bounds}".rstrip()
+    return f"{mean} points {bounds}".rstrip().replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def verdict(players):
@@ -132,26 +132,29 @@ def verdict(players):
         return ""
     best = runs[0]
     share = share_text(best, optimum_of(players))
-    facts = [] if share == "–" else [
-        "its returns sum up to less than 0" if share == _NO_SHARE else f"it reaches {share}"]
+    has_share = share not in ("–", _NO_SHARE)
+    facts = [f"reaches {share.partition(' of ')[0]} of the clairvoyant's return" if has_share else
+             "its returns sum up to less than 0"] if share != "–" else []
     planner = next((one for one in players if one.label == "planner" and one.rows
                     and not one.is_run), None)
     for other in [*runs[1:2], *([planner] if planner else [])]:
         gap = difference(best, other)
+        name = "the planner" if other is planner else other.label
         if gap is None:
             continue
         if gap[1] <= 0.0 <= gap[2]:
-            facts.append(f"not distinct from {other.label}")
+            facts.append(f"not distinct from {name}")
             continue
         side = "above" if gap[0] >= 0.0 else "below"
         mean, *bounds = gap if gap[0] >= 0.0 else (-gap[0], -gap[2], -gap[1])
-        facts.append(f"{_points((mean, *bounds))} {side} {other.label}")
+        facts.append(f"{_points((mean, *bounds))} {side} {name}")
     if not facts:
         return ""
     if len(runs) == 1:
-        return f"{best.label}: {', '.join(facts)}."
-    return (f"{best.label} has the highest return of the {len(runs)} runs: {', '.join(facts)}. One "
-            "training each does not rank their algorithms.")
+        return f"{best.label}{'' if has_share else ':'} {', '.join(facts)}."
+    return (f"{best.label} has the highest return of the {len(runs)} runs: "
+            f"{'it ' if has_share else ''}{', '.join(facts)}. One training each does not rank their "
+            "algorithms.")
 
 
 def optimum_of(players):

@@ -26,7 +26,7 @@ for (const chart of CURVES.charts) {
     connectSeparatedPoints: true,
     strokeWidth: 2,
     xRangePad: PAD,
-    xlabel: "episode",
+    xlabel: `episode (mean of the last ${CURVES.window})`,
     gridLineColor: "rgba(128, 128, 128, 0.3)",
     axisLabelColor: "currentColor",
     axisLabelWidth: 60,

@@ -191,6 +191,18 @@ class FiguresTest(unittest.TestCase):
                          "others",
                          " ".join(axes.figure._suptitle.get_text().split()))
 
+    def test_names_in_a_grid_do_not_widen_a_column_with_a_free_place_next_to_it(self):
+        figure, charts = style.chart_grid(4)
+        self.assertEqual(6, len(figure.axes))
+        for axes in charts:
+            axes.plot([0.0, 9.0], [0.0, 5.0])
+            style.name_ends(axes, [End(9.0, 5.0, "black", "SARSA")])
+        figure.draw_without_rendering()
+        widths = [axes.get_position().width for axes in charts]
+        self.assertAlmostEqual(min(widths), max(widths))
+        self.assertEqual([False, False, True, False],
+                         [axes.texts[0].get_in_layout() for axes in charts])
+
     def test_almost_equal_references_share_one_line(self):
         ends = figures._plot_references(self.axes, {"planner": 276.0, "clairvoyant": 277.6, "x": 5.0}, 9)
         self.assertEqual([(9, 277.6, "clairvoyant 278, planner 276"), (9, 5.0, "x 5")],
@@ -327,6 +339,9 @@ class FiguresTest(unittest.TestCase):
                          "54 (SARSA); LSTM-DQN: not within 120 episodes",
                          figures._recovery_times(self.contestants, self.runs))
         self.assertEqual("", figures._recovery_times(self.contestants[1:], self.runs))
+        figures.plot_average_rewards(self.axes, self.contestants, self.runs, OPTIMUM)
+        self.assertEqual([(54, 0.0)], [tuple(line.get_xydata()[0]) for line in self.axes.lines
+                                       if line.get_marker() == "o"])
 
     def test_fig_14_enlarges_the_second_half_if_a_learner_is_near_the_reference(self):
         for run in self.runs["lstm_dqn"]:

@@ -1,12 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Compares the maps of routes with the steps of these routes."""
+import json
+import pathlib
 import sys
+import tempfile
 import unittest
+import unittest.mock
 
 import numpy as np
 import rosunit
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.patches import Rectangle
 
 from aquafarm_benchmark import route_figure, style
@@ -111,6 +115,26 @@ class RouteFigureTest(unittest.TestCase):
         labels = [line.get_label() for line in self.axes.lines]
         self.assertEqual(1, labels.count("the same ring 60 steps before"), "not of the far disaster")
         self.assertAlmostEqual(2.5, self.lines()["the same ring 60 steps before"][0].mean(), 1)
+
+    def test_the_legend_of_failures_shows_the_sign_of_a_device_that_was_left(self):
+        chart = {"width": 9, "height": 9, "islands": [], "rocks": [], "ports": [[0, 0]],
+                 "devices": [{"cell": [8, 8]}]}
+        steps = [{"cell": [0, 0], "action": "east", "aboard": 0, "delivered": 0, "disasters": []},
+                 {"cell": [1, 0], "aboard": 0, "delivered": 0, "disasters": []}]
+        kept = []
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "route.json"
+            file.write_text(json.dumps({"chart": chart, "steps": steps, "reason": "time_limit",
+                                        "return": 0.0}))
+            with unittest.mock.patch.object(route_figure, "save", lambda one, _: kept.append(one)):
+                route_figure.draw_unfinished("nowhere", {"ranch 7": file}, "Failures")
+        figure, = kept
+        self.assertEqual("Failures: time runs out in ranch 7", figure._suptitle.get_text())
+        legend = figure.axes[-1].get_legend()
+        words = [text.get_text() for text in legend.get_texts()]
+        self.assertIn("device that was not fetched", words)
+        signs = [one for one in legend.findobj(PathCollection)]
+        self.assertEqual(len(words) - 2 + 1, len(signs), "two lines; one sign has two marks")
 
     def test_the_map_of_a_failure_shows_the_part_around_the_last_leg(self):
         chart = {"width": 50, "height": 40, "islands": [], "rocks": [[40, 30]], "ports": [[20, 20]],

@@ -59,7 +59,8 @@ def _describe_success(found):
     early = {name: episodes for name, (episodes, is_shown) in found.items()
              if episodes and not is_shown}
     never = [name for name, (episodes, _) in found.items() if not episodes]
-    said = f"; {joined(list(early))} (no mark): by episode {max(map(max, early.values()))}" if early else ""
+    said = (f"; {joined(list(early))} (no mark): by episode {max(map(max, early.values()))}"
+            if early else "")
     return said + (f"; {joined(never)} (no mark): not in this training" if never else "")
 
 
@@ -109,8 +110,8 @@ def _mark_course(axes, colour):
                   clip_on=False)
         covered = np.abs(edge[:, 0] - x[i]) <= (0.5 if across == "center" else 1.0) * width
         axes.annotate(text, (x[i], edge[covered, 1].max()), textcoords="offset points",
-                      xytext=(3 if across == "left" else 0, 4), ha=across, color=legible(colour), fontsize=11,
-                      weight="bold", zorder=6,
+                      xytext=(3 if across == "left" else 0, 4), ha=across, color=legible(colour),
+                      fontsize=11, weight="bold", zorder=6,
                       path_effects=[withStroke(linewidth=3, foreground="white")])
     return y[0], y[top], y[-1]
 

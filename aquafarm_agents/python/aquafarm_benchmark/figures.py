@@ -320,10 +320,12 @@ def _not_within(contestants, runs):
 
 def draw_average_rewards(path, contestants, runs, references):
     """Draws Fig. 12b: the mean return of all episodes so far, over all runs."""
+    has_dots = any(1 < _recovery(runs[one.name]) < math.inf for one in contestants)
     _draw_returns(
         path, contestants, lambda ends: _recovery_times(contestants, runs) or
         _highest(contestants, ends, "mean return of all episodes"),
         "Fig. 12b: mean return of all episodes so far; bad early episodes count to the end. "
+        f"{'Dots: the median rises above 0. ' if has_dots else ''}"
         f"{describe_shading(contestants, runs)}", "mean return so far",
         [(lambda axes: plot_average_rewards(axes, contestants, runs, references), "", True)])
 
@@ -334,13 +336,17 @@ def _means_so_far(of_one):
     return np.cumsum(curves, axis=1) / np.arange(1, curves.shape[1] + 1)
 
 
+def _recovery(of_one):
+    """Returns the first episode at which the mean return so far is above 0, in the median of the
+    runs. Infinity if this does not happen."""
+    is_above = np.median(_means_so_far(of_one), axis=0) > 0.0
+    return int(np.argmax(is_above)) + 1 if is_above.any() else math.inf
+
+
 def _recovery_times(contestants, runs):
     """Returns the headline of Fig. 12b: the first episode at which the mean return so far is above
     0, in the median of the runs. "" if this is the first episode or does not happen."""
-    found = []
-    for one in _learners(contestants):
-        is_above = np.median(_means_so_far(runs[one.name]), axis=0) > 0.0
-        found.append((int(np.argmax(is_above)) + 1 if is_above.any() else math.inf, one.label))
+    found = [(_recovery(runs[one.name]), one.label) for one in _learners(contestants)]
     known = [f"{episode:,} ({name})" for episode, name in sorted(found) if episode < math.inf]
     never = [name for episode, name in found if episode == math.inf]
     if not known or min(found)[0] == 1:
@@ -356,13 +362,17 @@ def plot_average_rewards(axes, contestants, runs, references):
     for one in contestants:
         means = _means_so_far(runs[one.name])
         ends.append(_plot_shaded(axes, np.arange(1, means.shape[1] + 1), means, one))
+        if 1 < _recovery(runs[one.name]) < math.inf:
+            axes.plot(_recovery(runs[one.name]), 0.0, "o", color=one.colour, markersize=6,
+                      markeredgecolor="white", zorder=5, label="_recovery")
     return ends + _plot_references(axes, references, max(end.x for end in ends))
 
 
 def draw_mean_score(path, contestants, runs, references):
     """Draws Fig. 13: the mean return per step by episode: a chart for each learner with the range
-    of its runs, first (a) LSTM-DQN and (b) SARSA, and (c) the medians of all contestants. If several
-    contestants have the algorithm of (a) or (b), the one with its name is shown there, or the first.
+    of its runs, first (a) LSTM-DQN and (b) SARSA, and (c) the medians of all contestants. If
+    several contestants have the algorithm of (a) or (b), the one with its name is shown there, or
+    the first.
 
     references: {name: return per step}, drawn for comparison
     """
@@ -429,7 +439,8 @@ def draw_repeated(path, contestants, runs, references):
         low = [one.label for one in _learners(contestants) if one not in high]
         if low:
             title += f" ({joined(low)} {'is' if len(low) == 1 else 'are'} mostly below)"
-        plots.append((lambda axes: plot_enlarged(axes, high, runs, references, level), title, False))
+        plots.append((lambda axes: plot_enlarged(axes, high, runs, references, level), title,
+                      False))
     _draw_returns(
         path, contestants,
         lambda ends: _highest(contestants, ends, "return at the end of the training"),

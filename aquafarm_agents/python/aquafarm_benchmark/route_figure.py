@@ -299,7 +299,8 @@ def _chart(axes, chart, window=None, left=None):
     axes.add_patch(Rectangle(**shown, fill=False, edgecolor=_EDGE, zorder=2))  # above the islands
     area = 4900.0 / max(width, height)  # area of a marker that fills a cell [pt²]
     groups = [(chart["islands"], {"color": _LAND, "marker": "s", "s": area}, "island"),
-              (chart["rocks"], {"color": "#9aa5ae" if left is None else "#cfd6db", "marker": "^", "s": 0.18 * area}, "rock"),
+              (chart["rocks"], {"color": "#9aa5ae" if left is None else "#cfd6db", "marker": "^",
+                                "s": 0.18 * area}, "rock"),
               (chart["ports"], {"facecolor": "white", "edgecolor": "black", "linewidth": 2.0,
                                 "s": 0.9 * area}, "port")]
     if left is None:

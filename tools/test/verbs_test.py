@@ -159,24 +159,39 @@ class TestEnd(unittest.TestCase):
         self.assertEqual((137, "its node was killed before it ended"), self.end(None, 0, "sim"))
 
 
+def load(path):
+    """Returns the module of a program whose name has no suffix."""
+    loader = importlib.machinery.SourceFileLoader(path.name, str(path))
+    module = types.ModuleType(loader.name)
+    loader.exec_module(module)
+    return module
+
+
 class TestSecondRanch(unittest.TestCase):
     """A master that has one node, /ours/sim."""
 
     def setUp(self):
         self.node = socket.create_server(("127.0.0.1", 0))
         self.addCleanup(self.node.close)
-        uri = f"http://127.0.0.1:{self.node.getsockname()[1]}/"
+        self.answer = (1, "", f"http://127.0.0.1:{self.node.getsockname()[1]}/")
         master = xmlrpc.server.SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False)
         master.register_function(
-            lambda _, name: (1, "", uri) if name == "/ours/sim" else (-1, "unknown node", ""),
+            lambda _, name: self.answer if name == "/ours/sim" else (-1, "unknown node", ""),
             "lookupNode")
         threading.Thread(target=master.serve_forever, daemon=True).start()
         self.addCleanup(master.server_close)
         self.addCleanup(master.shutdown)
-        address = {"ROS_MASTER_URI": f"http://127.0.0.1:{master.server_address[1]}"}
-        environment = mock.patch.dict(os.environ, address)
+        self.use_master(f"http://127.0.0.1:{master.server_address[1]}")
+
+    def use_master(self, uri):
+        environment = mock.patch.dict(os.environ, {"ROS_MASTER_URI": uri})
         environment.start()
         self.addCleanup(environment.stop)
+
+    def expect_doubt(self, pattern):
+        with self.assertRaisesRegex(workspace.Refused, f"^/ours/sim may already run on .*{pattern}.*; "
+                                    "give ns:=another_name or another master$"):
+            launch.refuse_a_second_ranch(["ns:=ours"])
 
     def test_it_is_refused_while_the_first_one_runs(self):
         with self.assertRaisesRegex(workspace.Refused, "^/ours/sim already runs on http://127"):
@@ -186,6 +201,55 @@ class TestSecondRanch(unittest.TestCase):
         launch.refuse_a_second_ranch([])
         self.node.close()
         launch.refuse_a_second_ranch(["ns:=ours"])
+
+    def test_it_is_refused_if_the_first_one_cannot_be_reached(self):
+        for answer, reason in (((1, "", "http://no-such-host.invalid:7/"), "known|resolution"),
+                               ((1, "", "http://127.0.0.1:seven/"), "seven"),
+                               ((1, "", ""), ""), ((0, "internal error", ""), "internal error"),
+                               ("text", ""), (7, "")):
+            self.answer = answer
+            self.expect_doubt(f"({reason})")
+
+    def test_it_is_refused_if_the_host_of_the_first_one_does_not_answer(self):
+        with mock.patch.object(launch.socket, "create_connection",
+                               side_effect=TimeoutError("timed out")) as connect:
+            with mock.patch.object(launch.xmlrpc.client, "ServerProxy") as proxy:
+                proxy.return_value.lookupNode.return_value = self.answer
+                self.expect_doubt("'timed out'")
+        self.assertEqual({"timeout": launch.MASTER_LIMIT_S}, connect.call_args.kwargs)
+
+    def test_it_is_refused_if_the_master_does_not_answer_in_time(self):
+        self.assertEqual(load(workspace.CHECK_ARGUMENTS).MASTER_LIMIT_S, launch.MASTER_LIMIT_S)
+        silent = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(silent.close)
+        self.use_master(f"http://127.0.0.1:{silent.getsockname()[1]}")
+        with mock.patch.object(launch, "MASTER_LIMIT_S", 0.2):
+            begin = time.monotonic()
+            self.expect_doubt("'timed out'")
+        self.assertLess(time.monotonic() - begin, launch.MASTER_LIMIT_S)
+
+    def test_it_is_refused_if_the_master_answers_with_something_else(self):
+        for answer in (b"SSH-2.0-OpenSSH\r\n", b"HTTP/1.0 200 OK\r\nContent-Length: 5\r\n\r\nhello",
+                       b"HTTP/1.0 404 Not Found\r\n\r\n"):
+            with socket.create_server(("127.0.0.1", 0)) as broken:
+                self.use_master(f"http://127.0.0.1:{broken.getsockname()[1]}")
+                thread = threading.Thread(target=answer_once, args=(broken, answer))
+                thread.start()
+                self.expect_doubt("expected an answer or a refused connection")
+                thread.join()
+
+    def test_it_may_start_where_no_master_runs(self):
+        with socket.create_server(("127.0.0.1", 0)) as port:
+            self.use_master(f"http://127.0.0.1:{port.getsockname()[1]}")
+        launch.refuse_a_second_ranch(["ns:=ours"])
+
+
+def answer_once(server, answer):
+    """Sends `answer` to one client after its request."""
+    connection, _ = server.accept()
+    with connection:
+        connection.recv(65536)
+        connection.sendall(answer)
 
 
 class TestRanks(unittest.TestCase):
@@ -274,10 +338,7 @@ class TimeLeftTest(unittest.TestCase):
     """The estimate of tools/run_ros_tests."""
 
     def test_slow_tests_weigh_more_and_running_ones_are_half_done(self):
-        path = ROOT / "tools/run_ros_tests"
-        loader = importlib.machinery.SourceFileLoader("run_ros_tests", str(path))
-        runner = types.ModuleType(loader.name)
-        loader.exec_module(runner)
+        runner = load(ROOT / "tools/run_ros_tests")
         short = [f"_run_tests_p_gtest_{letter}" for letter in "abc"]
         slow = "_run_tests_p_rostest_test_benchmark.test"
         self.assertEqual(0.0, runner.left_s(short, set(short), 2, 60.0))

@@ -17,6 +17,8 @@ QUIET_ROSLAUNCH = ROOT / "aquafarm_bringup" / "scripts" / "quiet_roslaunch"
 # By default, roslaunch kills a node 15 s after Ctrl-C. Writing a large checkpoint can take longer.
 SIGINT_LIMIT_S = 120
 KILLED = 137
+MASTER_LIMIT_S = 15  # that of check_arguments
+UNKNOWN_NODE = -1  # code of the master for a node without an address
 
 
 def without_verbose(words):
@@ -43,36 +45,46 @@ def refuse_unknown(launch, words):
 
 
 class _Transport(xmlrpc.client.Transport):
-    """Requests to a master that does not answer end after 10 s."""
+    """Requests to a master that does not answer end after MASTER_LIMIT_S."""
 
     def make_connection(self, host):
         connection = super().make_connection(host)
-        connection.timeout = 10
+        connection.timeout = MASTER_LIMIT_S
         return connection
 
 
-def is_running(node):
-    """Returns whether a process accepts connections at the address that the master has for a node.
-    The master also keeps the address of a killed node."""
+def running_fault(node):
+    """Returns an error message if a node runs on the master, or if this cannot be excluded; None if
+    it does not run. The master also keeps the address of a killed node. Only a refused connection
+    to this address proves that the node was killed."""
+    master = os.environ["ROS_MASTER_URI"]
+    asked = f"the master {master}"
     try:
-        master = xmlrpc.client.ServerProxy(os.environ["ROS_MASTER_URI"], transport=_Transport())
-        code, _, uri = master.lookupNode("/aquafarm", node)
+        proxy = xmlrpc.client.ServerProxy(master, transport=_Transport())
+        code, answer, uri = proxy.lookupNode("/aquafarm", node)
+        if code == UNKNOWN_NODE:
+            return None
         if code != 1:
-            return False
+            raise ValueError(answer)
+        asked = f"its address {uri}"
         address = urllib.parse.urlparse(uri)
-        socket.create_connection((address.hostname, address.port), timeout=5).close()
-        return True
-    except (OSError, xmlrpc.client.Error):
-        return False
+        socket.create_connection((address.hostname, address.port), timeout=MASTER_LIMIT_S).close()
+    except ConnectionRefusedError:  # of the node; or of the master, which roslaunch then starts
+        return None
+    except Exception as error:  # a program at these addresses may answer anything
+        reason = " ".join(str(error).split()) or type(error).__name__
+        return (f"{node} may already run on {master}, as {asked} gives '{reason}', expected an "
+                "answer or a refused connection")
+    return f"{node} already runs on {master}"
 
 
 def refuse_a_second_ranch(words):
-    """Raises Refused if a ranch with the same namespace runs on a shared master, because starting a
-    second one would end the first."""
+    """Raises Refused if a ranch with the same namespace runs on a shared master or may run there,
+    because starting a second one would end the first."""
     ns = dict(map(arguments.split, words)).get("ns", "aquafarm")
-    if is_running(f"/{ns}/sim"):
-        raise Refused(f"/{ns}/sim already runs on {os.environ['ROS_MASTER_URI']}; give "
-                      "ns:=another_name or another master")
+    fault = running_fault(f"/{ns}/sim")
+    if fault:
+        raise Refused(f"{fault}; give ns:=another_name or another master")
 
 
 def complete(launch, words):

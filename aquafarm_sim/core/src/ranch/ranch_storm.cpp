@@ -50,9 +50,12 @@ std::string NearestLine(const Passage& passage) {
 
 std::string OverLine(const std::string& wind, const Passage& passage,
                      const StormKnowledge& knowledge) {
-  std::string line = wind + Text(" over the ranch for %.1f h, ", passage.widest_h) +
-                     Span({passage.first, passage.last}) +
-                     Text("; strongest ring %d kt", passage.worst_wind_kt);
+  constexpr double kShortest_h = 0.05;  // "%.1f" shows less as 0.0
+  std::string line = wind + " over the ranch ";
+  if (passage.widest_h >= kShortest_h) line += Text("for %.1f h, ", passage.widest_h);
+  line += passage.first == passage.last ? "at " + FormatTime(passage.first)
+                                        : Span({passage.first, passage.last});
+  line += Text("; strongest ring %d kt", passage.worst_wind_kt);
   if (passage.first > knowledge.recorded_until) {
     line += "; all of it by the forecast";
   } else if (passage.last > knowledge.recorded_until) {

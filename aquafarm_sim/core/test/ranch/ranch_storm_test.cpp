@@ -138,6 +138,24 @@ TEST(Ranch, HasTheStormAsItsFileSays) {
   EXPECT_LT(RiskAt(farm.disasters(), {12, 10}), 0.0F);
 }
 
+TEST(PassageReport, StatesHoursOnlyIfTheyAreKnown) {
+  StormRings storm;
+  storm.wind_kt = {34};
+  StormKnowledge knowledge;
+  knowledge.recorded_until = knowledge.known_until = kMidnight + 24 * kHour_s;
+  Passage passage;
+  passage.worst_wind_kt = 34;
+  passage.first = passage.last = kMidnight;
+  EXPECT_TRUE(Says(internal::Report(storm, passage, knowledge).lines,
+                   "34 kt over the ranch at 2021-07-25T00:00:00Z; strongest ring 34 kt"));
+  passage.last += 5 * kHour_s;  // two samples with a gap between them
+  EXPECT_TRUE(Says(internal::Report(storm, passage, knowledge).lines,
+                   "34 kt over the ranch from 2021-07-25T00:00:00Z to 2021-07-25T05:00:00Z; "));
+  passage.widest_h = 2.0;
+  EXPECT_TRUE(Says(internal::Report(storm, passage, knowledge).lines,
+                   "34 kt over the ranch for 2.0 h, from 2021-07-25T00:00:00Z to "));
+}
+
 TEST(Ranch, RefusesAFixFarAwayWithItsLine) {
   const fs::path path = fs::temp_directory_path() / ("far." + std::to_string(getpid()) + ".txt");
   RanchRequest request = Request();

@@ -252,6 +252,29 @@ TEST(ClosestApproach, HasTheTimeOfTheNearestPointAndTheDurationOfTheWind) {
   EXPECT_NEAR(far.nearest_km, 665.5, 1.0) << "six degrees of latitude";
 }
 
+TEST(ClosestApproach, LeavesOutTheHoursBetweenTwoPassages) {
+  StormTrack track = WestGoing();
+  StormFix back = Fix(30, 122.0, 35.0);
+  for (StormFix& fix : track.fixes) fix.rings = {Ring(34, {100, 100, 100, 100})};
+  back.rings = track.fixes[0].rings;
+  track.fixes.push_back(back);  // at the ranch in hours 10 and 30, 193 km west of it in hour 20
+  const Passage passage = ClosestApproach(ToRings(track, RingReduction::kLargest), kRanch, 0.0);
+  EXPECT_NEAR(static_cast<double>(passage.first - kStart), 4.8 * kHour_s, 600.0);
+  EXPECT_EQ(passage.last, kStart + 30 * kHour_s);
+  const double covered_h = 2 * 5.18 + 5.18;  // 100 km take 5.18 h
+  EXPECT_NEAR(passage.widest_h, covered_h, 0.5) << "without the 9.6 h of the gap";
+}
+
+TEST(ClosestApproach, HasNoDurationIfTheWindCoversOneSample) {
+  StormTrack track = WestGoing();
+  track.fixes = {track.fixes[1]};
+  const Passage passage = ClosestApproach(ToRings(track, RingReduction::kLargest), kRanch, 0.0);
+  EXPECT_EQ(passage.first, track.fixes[0].time);
+  EXPECT_EQ(passage.last, track.fixes[0].time);
+  EXPECT_EQ(passage.worst_wind_kt, 64);
+  EXPECT_EQ(passage.widest_h, 0.0);
+}
+
 // The shipped scenario was written by hand from these two files.
 TEST(RealFiles, GiveTheTrackOfTheShippedScenario) {
   const std::filesystem::path data = SharedData();

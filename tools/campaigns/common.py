@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Common code of the campaigns: limits, counts, programs and processes."""
 import collections
-import contextlib
 import os
 import pathlib
 import random
 import shutil
-import signal
 import subprocess
 import sys
 import time
+
+import sessions
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENARIOS = ROOT / "aquafarm_sim" / "scenarios"
@@ -108,20 +108,12 @@ def execute(*command, seconds=60, **options):
     return done.returncode, done.stdout.decode(errors="replace")
 
 
-@contextlib.contextmanager
 def started(*command, **options):
-    """Starts a program in its own process group; yields the process, with its output in a pipe.
-    Kills the group at the end if the program still runs, for example after Ctrl-C."""
-    process = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL,
-                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                               start_new_session=True, **options)
-    try:
-        yield process
-    finally:
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
-        process.stdout.close()
+    """Starts a program as sessions.started does, with its output in a pipe. Leaving the context
+    kills the remaining processes of the session, for example after Ctrl-C."""
+    return sessions.started([str(word) for word in command], sessions.AT_ONCE,
+                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, **options)
 
 
 def left_over(folder):

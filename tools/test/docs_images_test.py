@@ -58,9 +58,9 @@ import importlib.machinery, signal, sys
 sys.dont_write_bytecode = True
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a background shell ignores it
 tool = importlib.machinery.SourceFileLoader("tool", {str(TOOL)!r}).load_module()
-tool.GRACE_S = 1
+ends = [(signal.SIGINT, 1), (signal.SIGTERM, 10), (signal.SIGKILL, 10)]
 shell = "set -m; trap '' INT; sleep 600 & wait"
-with tool.started(["bash", "-c", shell]) as process:
+with tool.started(["bash", "-c", shell], ends) as process:
     print(process.pid, flush=True)
     signal.pause()
 """

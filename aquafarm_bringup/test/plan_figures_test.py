@@ -115,6 +115,26 @@ class PlanFiguresTest(unittest.TestCase):
         self.assertFalse([label for label in later["labels"] if "now" in label.lines[0]],
                          "no other point is called so")
 
+    def test_no_past_position_of_the_storm_has_a_label_if_a_later_one_exists(self):
+        plan = plan_sample.sample(members=100)
+        storm, start = plan["storm"], plan["clock"]["start"]
+        clock = document.Clock(plan["clock"])
+        past_times = [clock.day_time(point["time"]) for point in storm["points"]
+                      if point["time"] < start]
+        for without_now in (False, True):
+            if without_now:
+                storm["points"] = [point for point in storm["points"] if point["time"] != start]
+            region = figures.region(plan)
+            past = [point["xy"] for point in region["points"] if point["time"] in past_times]
+            self.assertTrue(past, "the map shows past positions")
+            fixes = [label for label in region["labels"] if label.name in ("recorded", "forecast")]
+            self.assertLessEqual(2, len(fixes))
+            self.assertFalse([label.lines for label in fixes if label.anchor in past])
+        storm["points"] = [point for point in storm["points"] if point["time"] < start]
+        region = figures.region(plan)
+        last, = (label for label in region["labels"] if label.name == "recorded")
+        self.assertEqual(region["points"][-1]["xy"], last.anchor)
+
     def test_the_coast_is_where_it_is_and_ends_at_the_box(self):
         box = (-800.0, -900.0, 600.0, 300.0)
         rings = coast.rings({"latitude": 30.15, "longitude": 122.65}, 1000.0, box)

@@ -387,7 +387,7 @@ void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     const double radius = layout.device_radius_px();
     const cv::Point2d at = layout.view.ToPixel(device.x, device.y);
     const cv::Point2d aside(1.3 * radius + size.width / 2.0 + 4.0 * layout.unit, 0.0);
-    std::optional<cv::Rect> place;  // beside the symbol, else as near to its right side as possible
+    std::optional<cv::Rect> place;  // next to the symbol, else near its right side
     for (const cv::Point2d& offset : {aside, -aside}) {
       if (!place) place = space.Take(Cover::kNothing, size, at + offset, 6.0 * layout.unit);
     }

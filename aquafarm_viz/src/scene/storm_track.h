@@ -58,8 +58,8 @@ StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m
 
 /// Returns the risks that a legend shows and their texts, the mildest first. These are the risks of
 /// all rings at the start of the episode, and the texts contain the name of the wind, such as "gale
-/// -5". If a ring has no wind, or if two names share a risk, the texts are only the risks. If there
-/// is no ring, or if there are more than four risks, the risks are -5, -10, -15 and -20.
+/// -5". If a ring has no wind, or if two names share a risk, the texts are only the risks. Without
+/// rings, or with more than four risks, the risks are -5, -10, -15 and -20.
 std::vector<std::pair<double, std::string>> NamedRisks(const aquafarm_msgs::FarmSpec& spec);
 
 /// Returns the point of a track at a step. Between two points, position, rings and wind are

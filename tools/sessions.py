@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Programs in sessions of their own: none of their processes outlives the caller's context."""
+"""Starts programs in sessions of their own, and ends all processes of a session at the end of its
+context."""
 import contextlib
 import os
 import pathlib

@@ -76,7 +76,7 @@ class SimNodePairTest(unittest.TestCase):
     def test_waiting_commands_block_no_other_client(self):
         waiting = [Caller(0, HOLD, token=i + 1) for i in range(20)]
         end = time.monotonic() + 60
-        while sum(caller.is_alive() for caller in waiting) > 1:  # the last command has not arrived
+        while sum(caller.is_alive() for caller in waiting) > 1:  # each one is superseded by the next
             self.assertLess(time.monotonic(), end, "20 commands did not arrive within 60 s")
             rospy.rostime.wallsleep(0.02)
         start = time.monotonic()

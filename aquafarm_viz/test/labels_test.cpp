@@ -31,7 +31,7 @@ TEST(DescribeResult, OfAPacedCommandIsNotYetKnown) {
   EXPECT_EQ(Line(Outcome::ACCEPTED, 0.0F), "accepted for step 5");
 }
 
-TEST(EndText, CountsTheDevicesInPortUnlessAllAre) {
+TEST(EndText, CountsTheDevicesInPortUnlessAllAreRetrieved) {
   aquafarm_msgs::FarmState state;
   state.devices.resize(3);
   state.devices[1].status = aquafarm_msgs::DeviceState::DELIVERED;

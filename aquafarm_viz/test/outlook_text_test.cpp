@@ -169,7 +169,7 @@ TEST(OutlookText, NamesTheDevicesThatTheSameRingReachesLater) {
       << "another disaster reaches F2";
 }
 
-TEST(OutlookText, SaysFromWhenARingReachesSeveralDevices) {
+TEST(OutlookText, StatesFromIfSomeDevicesAreReachedLater) {
   Outlooks scene;
   scene.spec.has_start_time = true;
   scene.spec.step_duration_s = 180.0;

@@ -243,7 +243,7 @@ TEST(RegionWords, GiveTheTimeOfTheClosestApproachInsideARing) {
   EXPECT_EQ(storms.words().lines[1], "24 Jul 18:00 UTC-5, 40 m/s");
 }
 
-TEST(RegionWords, NameTheStrongestWindOverTheFarm) {
+TEST(RegionWords, NameTheWindOfTheWorstRingOverTheFarm) {
   constexpr const char* kRings =
       "{step: 0, x: 50, y: 12, radii: [5, 20, 60]}, {step: 20, x: 12, y: 12, radii: [5, 20, 60]}";
   Storms storms;
@@ -256,7 +256,7 @@ TEST(RegionWords, NameTheStrongestWindOverTheFarm) {
   storms.state.disasters[0].radii = {5.0F, 20.0F, 60.0F};
   storms.state.disasters[0].risks = {-20.0F, -10.0F, -5.0F};
   EXPECT_EQ(storms.words().heading, "RISK -5 OVER THE RANCH") << "the winds are not given";
-  storms.state.disasters[0].radii[2] = 51.0F;  // one cell less than to the farthest corner
+  storms.state.disasters[0].radii[2] = 51.0F;  // the farthest corner is 51.4 cells away
   EXPECT_EQ(storms.words().heading, "RISK -5 OVER PART OF THE RANCH");
 }
 

@@ -18,7 +18,7 @@ QUIET_ROSLAUNCH = ROOT / "aquafarm_bringup" / "scripts" / "quiet_roslaunch"
 SIGINT_LIMIT_S = 120
 KILLED = 137
 MASTER_LIMIT_S = 15  # that of check_arguments
-UNKNOWN_NODE = -1  # code of the master for a node without an address
+UNKNOWN_NODE = -1  # status code of lookupNode for a node that is not registered
 
 
 def without_verbose(words):
@@ -54,8 +54,8 @@ class _Transport(xmlrpc.client.Transport):
 
 
 def running_fault(node):
-    """Returns an error message if a node runs on the master, or if this cannot be excluded; None if
-    it does not run. The master also keeps the address of a killed node. Only a refused connection
+    """Returns an error message if a node runs, or may run, on the master; None if it does not run.
+    The master also keeps the address of a killed node. Only a refused connection
     to this address proves that the node was killed."""
     master = os.environ["ROS_MASTER_URI"]
     asked = f"the master {master}"
@@ -73,8 +73,8 @@ def running_fault(node):
         return None
     except Exception as error:  # a program at these addresses may answer anything
         reason = " ".join(str(error).split()) or type(error).__name__
-        return (f"{node} may already run on {master}, as {asked} gives '{reason}', expected an "
-                "answer or a refused connection")
+        return (f"{node} may already run on {master}: the call to {asked} failed with '{reason}', "
+                "expected a running node or a refused connection")
     return f"{node} already runs on {master}"
 
 

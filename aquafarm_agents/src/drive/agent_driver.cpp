@@ -76,7 +76,7 @@ class AgentDriver::Impl {
     try {
       DriveEpisodes(policy, seed, episodes, ended);
     } catch (const EnvironmentLost&) {
-      if (!Stopped()) throw;  // else the reason is most likely a call that was stopped
+      if (!Stopped()) throw;  // after a stop, the most likely cause is the call that was stopped
     }
     return ended;
   }

@@ -72,7 +72,7 @@ class ShipDriver::Impl {
     try {
       DriveEpisodes(policy, seed, episodes, ended);
     } catch (const EnvironmentLost&) {
-      if (!Stopped()) throw;  // else the reason is most likely a call that was stopped
+      if (!Stopped()) throw;  // after a stop, the most likely cause is the call that was stopped
     }
     claim_.reset();
     return ended;

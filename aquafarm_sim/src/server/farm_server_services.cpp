@@ -246,8 +246,8 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
   resets_.Complete(key);
 }
 
-// If every episode has a new layout, makes one farm first, because too many farms would need too
-// much memory.
+// Makes the farms. If every episode has a new layout, first makes one farm to compute the size of
+// all.
 std::unique_ptr<aquafarm::FarmBatch> FarmServer::MakeBatch(
     const std::shared_ptr<const aquafarm::Scenario>& scenario, const ServerOptions& options) {
   if (scenario->layout == aquafarm::LayoutMode::kPerEpisode) {

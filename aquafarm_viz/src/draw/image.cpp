@@ -182,7 +182,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   Forecasts forecasts;
   forecasts.courses = p.courses.Read(spec, state);
   forecasts.outlook = ComputeOutlook(spec, state, forecasts.courses);
-  // Without the layer, no circles are drawn around devices in danger.
+  // Without the layer `risk`, devices in danger have no circles, which would block space.
   FreeSpace space =
       BlockSymbols(spec, state, layers.risk ? forecasts.outlook : Outlook(), p.layout);
   const bool has_route = layers.route && overlays.route != nullptr;  // the route contains the trail

@@ -451,8 +451,9 @@ void LabelShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, Labe
     const double farthest = 2.0 * layout.ship_radius_px() + size.width / 2.0 + 10.0 * layout.unit;
     const auto place = space.Take(size, at, farthest);
     if (!place) continue;
-    DrawLabel(map, fonts.bold, text, TextAt(*place, layout), layout,
-              Mix(ShipColor(ship.id), layout.style->label, 0.7));
+    const Rgb color = Mix(ShipColor(ship.id), layout.style->label, 0.7);
+    DrawLeader(map, at, layout.ship_radius_px(), *place, color, space, layout);
+    DrawLabel(map, fonts.bold, text, TextAt(*place, layout), layout, color);
   }
 }
 

@@ -16,8 +16,8 @@ constexpr double kBetweenHeads = 50.0;  // min distance between arrowheads [desi
 
 // Returns the colour of a part of a ship's path. If there is only one ship, its path is green,
 // because no risk is green. If there are several ships, each path has the colour of its ship, mixed
-// with the colour of labels. Older parts have a colour that is closer to that of the sea; paths of
-// several ships less, so that their colours remain different.
+// with the colour of labels. Older parts have a colour that is closer to that of the sea. Paths of
+// several ships fade less, so that their colours stay different.
 // @param age  0: now, 1: the oldest part
 Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
   if (state.ships.size() == 1) return Mix(style.good, style.sea_south, 0.4 * age);
@@ -47,8 +47,8 @@ cv::Point2d Turn(cv::Point2d at, cv::Point2d own, cv::Point2d other, double asid
   return cosine < -0.2 ? at + aside * own : at + (own + other) * (aside / (1.0 + cosine));
 }
 
-// Returns the distance of a ship's path from the centres of the cells [pixels], so that the ways
-// out and back on the same cells are both visible. If there are several ships, there are three
+// Returns the distance of a ship's path from the centres of the cells [pixels], so that an outward
+// and a return path on the same cells are both visible. If there are several ships, there are three
 // distances, by id, so that two paths on the same cells are usually both visible.
 double AsideOf(std::int32_t ship, bool are_several, const Layout& layout) {
   const double units = are_several ? 2.2 + 2.4 * (ship % 3) : 3.2;

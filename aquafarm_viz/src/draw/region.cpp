@@ -142,8 +142,8 @@ std::string Upper(std::string text) {
 }
 
 // Returns the heading for the case that a ring reaches the farm in a later step. It contains the
-// strongest wind over the farm in that step: "NEAR GALE IN 2.0 h". If winds are not given, it is
-// "REACHES THE RANCH IN 2.0 h". After the end of the known course, "IN ABOUT" replaces "IN".
+// wind of the worst ring over the farm in that step: "NEAR GALE IN 2.0 h". If winds are not given,
+// it is "REACHES THE RANCH IN 2.0 h". After the end of the known course, "IN ABOUT" replaces "IN".
 std::string ReachesText(const FarmSpec& spec, const Course& course, double step) {
   const std::string wind = Upper(WindOverFarm(spec, course, TrackAt(course.ahead, step)));
   return (wind.empty() ? "REACHES THE RANCH" : wind) +

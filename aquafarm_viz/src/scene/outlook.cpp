@@ -37,7 +37,7 @@ struct RingRisk {
   std::size_t ring{};
 };
 
-// Returns the quadrant of a point that is seen from the centre, as in the farm.
+// Returns the quadrant of an offset from the centre, by the same rule as the farm.
 std::size_t QuadrantOf(double east, double north) {
   return aquafarm::QuadrantOf(float(-east), float(-north));
 }

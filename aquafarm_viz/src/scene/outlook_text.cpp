@@ -68,8 +68,7 @@ const RingArrival* Extreme(
   return best;
 }
 
-// Returns whether two arrivals are of the same ring at the same time, that is, a time for which
-// AheadText returns the same text.
+// Returns whether two arrivals have the same disaster and risk, and times with the same AheadText.
 bool IsSameArrival(const FarmSpec& spec, const RingArrival& a, const RingArrival& b) {
   return a.disaster == b.disaster && a.risk == b.risk &&
          AheadText(spec, a.steps) == AheadText(spec, b.steps);

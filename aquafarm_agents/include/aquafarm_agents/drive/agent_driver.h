@@ -45,7 +45,8 @@ class AgentDriver {
   /// @param episodes number of episodes; 0: no limit
   /// @returns for each ended episode in which the ship acted: whether every device was delivered
   /// @throws InputError if another node has claimed the ship
-  /// @throws EnvironmentLost if the sim node refuses a call or does not respond within the limit
+  /// @throws EnvironmentLost if the sim node refuses a call or does not respond within the limit;
+  ///         after a stop, Drive returns the ended episodes instead
   std::vector<bool> Drive(aquafarm::agents::Policy& policy, std::uint64_t seed,
                           std::int32_t episodes);
 

@@ -44,7 +44,8 @@ class ShipDriver {
   /// @param episodes number of episodes; 0: no limit
   /// @returns the summaries of the ended episodes
   /// @throws InputError if another node has claimed a ship
-  /// @throws EnvironmentLost if the sim node refuses a call or does not respond within the limit
+  /// @throws EnvironmentLost if the sim node refuses a call or does not respond within the limit;
+  ///         after a stop, Drive returns the ended episodes instead
   std::vector<aquafarm::EpisodeSummary> Drive(aquafarm::agents::Policy& policy, std::uint64_t seed,
                                               std::int32_t episodes);
 

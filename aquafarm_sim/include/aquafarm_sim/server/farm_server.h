@@ -137,7 +137,7 @@ class FarmRecorder {
 class FarmServer {
  public:
   /// @throws InputError if the scenario is a family of ranches, its layout cannot be generated, or
-  ///   new layouts of so many farms in every episode need too much memory
+  ///   every episode has a new layout and the layouts of all farms exceed kMaxDrawnCells
   FarmServer(std::shared_ptr<const aquafarm::Scenario> scenario, const ServerOptions& options);
 
   /// Sets the listener and calls its OnChange; exceptions of this call are not caught.

@@ -47,8 +47,8 @@ std::string DeviceLabel(std::int32_t id);
 /// the grid.
 bool IsLabelled(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::DeviceState& device);
 
-/// Returns why an episode ended: "All devices retrieved", or such as "The disaster has ended: 2 of
-/// 3 devices in port".
+/// Returns why an episode ended: "All devices retrieved". Without success, the text contains the
+/// number of devices in port: "The disaster has ended: 2 of 3 devices in port".
 std::string EndText(const aquafarm_msgs::FarmState& state);
 
 /// Returns the name of a training phase, such as "evaluating"; empty for an unknown phase.

@@ -235,7 +235,7 @@ class TestSecondRanch(unittest.TestCase):
                 self.use_master(f"http://127.0.0.1:{broken.getsockname()[1]}")
                 thread = threading.Thread(target=answer_once, args=(broken, answer))
                 thread.start()
-                self.expect_doubt("expected an answer or a refused connection")
+                self.expect_doubt("expected a running node or a refused connection")
                 thread.join()
 
     def test_it_may_start_where_no_master_runs(self):

@@ -41,14 +41,18 @@ def reliability(data):
     far = [one for one in bins if is_far(one)]
     most = max(abs(100 * (one["kept"]["mean"] - one["promised"])) for one in bins)
     missed = sum(map(is_missed, bins))
+    points = "point" if round(most) == 1 else "points"
     return (f"Promised chances hold within {MARGIN} points in {len(bins) - len(far)} of "
-            f"{len(bins)} groups, at worst {most:.0f} points off.\nThe 95 % intervals of "
+            f"{len(bins)} groups, at worst {most:.0f} {points} off.\nThe 95 % intervals of "
             f"{len(bins) - missed} groups contain the promise ({data['storms']:,} simulated "
             "storms).")
 
 
 def draw_groups(axes, bins, colour, label):
-    """Draws the kept chance of groups of promises, with 95 % intervals."""
+    """Draws the kept chance of groups of promises, with 95 % intervals. Draws nothing without
+    groups, because an empty errorbar that is not clipped breaks the layout."""
+    if not bins:
+        return
     kept = [one["kept"] for one in bins]
     axes.errorbar([100 * one["promised"] for one in bins], [100 * one["mean"] for one in kept],
                   yerr=[[100 * max(0.0, one["mean"] - one["low"]) for one in kept],
@@ -71,9 +75,10 @@ def draw_reliability(data, path):
         draw_groups(one, [group for group in bins if is_far(group)], "#d55e00",
                     f"group beyond {MARGIN} points")
         missed = [group for group in bins if is_missed(group)]
-        one.scatter([100 * group["promised"] for group in missed],
-                    [100 * group["kept"]["mean"] for group in missed], s=190, facecolor="none",
-                    edgecolor="black", linewidth=1.8, zorder=4)
+        if missed:
+            one.scatter([100 * group["promised"] for group in missed],
+                        [100 * group["kept"]["mean"] for group in missed], s=190, facecolor="none",
+                        edgecolor="black", linewidth=1.8, zorder=4, label="misses the promise")
         one.set_title(f"{title} (n = {sum(b['count'] for b in bins):,})", fontsize=12)
         one.set_xlim(-RIM, 100 + RIM)
         one.set_ylim(-RIM, 100 + RIM)
@@ -89,13 +94,10 @@ def draw_reliability(data, path):
         sizes.set_xlabel("promised chance [%]", fontsize=11)
     axes[0][0].set_ylabel("share of cases\nin which it happened [%]", fontsize=11)
     axes[1][0].set_ylabel("cases per\ngroup (log)", fontsize=11)
-    if any(is_missed(group) for key in KINDS for group in bins_of(data, key)):
-        axes[0][0].scatter([], [], s=190, facecolor="none", edgecolor="black", linewidth=1.8,
-                           label="misses the promise")
-    handles, words = axes[0][0].get_legend_handles_labels()
-    order = sorted(range(len(words)), key=lambda i: words[i].startswith("misses"))
-    axes[0][0].legend([handles[i] for i in order], [words[i] for i in order], loc="upper left",
-                      fontsize=10)
+    signs = {label: sign for one in axes[0]
+             for sign, label in zip(*one.get_legend_handles_labels())}
+    order = sorted(signs, key=lambda label: (label.startswith("misses"), "beyond" in label))
+    axes[0][0].legend([signs[label] for label in order], order, loc="upper left", fontsize=10)
     for words, x, y in (("more often", 20, 60), ("less often", 80, 30)):
         axes[0][1].text(x, y, f"{words}\nthan promised", ha="center", fontsize=11, color="0.3")
     figure.suptitle(reliability(data), fontsize=12.5, weight="bold", x=0.01, ha="left")

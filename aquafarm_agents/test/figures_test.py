@@ -6,6 +6,7 @@ import re
 import sys
 import unittest
 import unittest.mock
+import warnings
 
 import numpy as np
 import rosunit
@@ -282,8 +283,8 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(20 * 150, self.lines()["SARSA"][0][-1])
         self.assertEqual(["SARSA 2k (980 to 3.9k)"], [text.get_text() for text in self.axes.texts])
         dots = [line.get_xdata() for line in self.axes.lines if line.get_marker() == "o"]
-        self.assertEqual([[980, 1960], [1960]], [list(x) for x in dots],
-                         "the chart ends with the thick line")
+        self.assertEqual([[3920, 980, 1960], [1960]], [list(x) for x in dots])
+        self.assertAlmostEqual(40 * 150, self.axes.get_xlim()[1], msg="the slowest run")
         figure = self.drawn(figures.draw_rewards, [by_name("sarsa")], {"sarsa": runs},
                             {"clairvoyant": 100.0})
         self.assertIn("thick: the run whose time to 90 % is nearest to the median",
@@ -327,6 +328,10 @@ class FiguresTest(unittest.TestCase):
             ends = [End(9, 4.0, "red", "SARSA", 3.0, high), first]
             self.assertEqual("LSTM-DQN has the highest return: 8" + expected,
                              figures._highest(self.contestants, ends, "return"))
+        for y, expected in ((5.0, "; each of its runs is above all runs of the others"),
+                            (7.0, "; its runs are not all above those of SARSA")):
+            self.assertEqual("LSTM-DQN has the highest return: 8" + expected, figures._highest(
+                self.contestants, [End(9, y, "red", "SARSA"), first], "return"), "one run")
         self.assertEqual(["LSTM-DQN 8 (6 to 9)"],
                          [end.name.replace(figures._NBSP, " ")
                           for end in figures._with_values(self.contestants, [first])])
@@ -362,16 +367,27 @@ class FiguresTest(unittest.TestCase):
     def test_the_headline_of_fig_12a_has_the_steps_until_90_percent_of_the_reference(self):
         learnt = {"return": np.array([-100.0] * 50 + [100.0] * 100), "steps": np.full(150, 10)}
         # The mean of 50 episodes is 90 or more from the 48th good episode on, the 98th of all.
-        self.runs["sarsa"] = [{"curve": learnt}]
+        learnt_run = {"curve": learnt}
+        self.runs["sarsa"] = [learnt_run]
         self.runs["lstm_dqn"] = [{"curve": {**learnt, "return": np.zeros(150)}}]
         found = figures._learning_times(self.contestants, self.runs, {"clairvoyant": 100.0})
         self.assertEqual("Time steps to 90 % of the return of the clairvoyant: SARSA 980, "
                          "LSTM-DQN not within 150 episodes", found.replace(figures._NBSP, " "))
         slow = {"curve": {**learnt, "steps": np.full(150, 30)}}  # 2,940 steps
-        self.runs["sarsa"] = self.runs["lstm_dqn"] = [{"curve": learnt}, slow]
+        self.runs["sarsa"] = self.runs["lstm_dqn"] = [learnt_run, slow]
         found = figures._learning_times(self.contestants, self.runs, {"clairvoyant": 100.0})
         self.assertIn("(median of 2 runs): LSTM-DQN 2,000, SARSA 2,000",
                       found.replace(figures._NBSP, " "))
+        never = {"curve": {**learnt, "return": np.zeros(150)}}
+        self.runs["lstm_dqn"] = [learnt_run, never, never, learnt_run]
+        found = figures._learning_times(self.contestants, self.runs, {"clairvoyant": 100.0})
+        self.assertTrue(found.replace(figures._NBSP, " ").endswith(
+            ": SARSA 2,000, LSTM-DQN only in 2 of 4 runs"), found)
+        self.runs["lstm_dqn"] = [learnt_run, never, slow]
+        figures.plot_rewards_by_steps(self.axes, self.contestants[1:], self.runs,
+                                      {"clairvoyant": 100.0})
+        self.assertEqual(["LSTM-DQN 2.9k (from 980, in 2 of 3 runs)"],
+                         [text.get_text() for text in self.axes.texts])
         self.assertEqual("", figures._learning_times(self.contestants, self.runs, {}))
 
     def test_the_headline_of_fig_12c_names_the_errors_that_rise(self):
@@ -410,10 +426,20 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual("The errors of A and B end lower than they begin; that of A first rises "
                          "to 100", error_figure.describe_courses(courses))
         courses["D"] = (10.0, 40.0, 20.0)
-        self.assertIn("Only the error of D (×2.0) ends higher",
-                      error_figure.describe_courses(courses))
+        self.assertEqual("Only the error of D (×2.0) ends higher than it begins; that of A ends "
+                         "lower after a peak of 100", error_figure.describe_courses(courses))
         self.assertEqual("Error of the value estimates in training",
                          error_figure.describe_courses({"C": courses["C"]}))
+
+    def test_fig_12c_of_a_benchmark_without_learners_has_an_empty_chart(self):
+        for run in self.runs["sarsa"]:
+            run["curve"]["loss"][:] = np.nan
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            figure = self.drawn(error_figure.draw_square_error, [by_name("sarsa")], self.runs)
+        axes, = figure.axes
+        self.assertEqual(("", 0), (axes.get_title("left"), len(axes.lines)))
+        self.assertEqual("Error of the value estimates in training", figure._suptitle.get_text())
 
     def test_a_row_with_printed_settings_has_the_colour_of_its_learner_dashed(self):
         printed = next(one for one in PROFILES["paper"].contestants if one.name == "sarsa_printed")

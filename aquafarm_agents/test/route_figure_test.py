@@ -10,7 +10,7 @@ import unittest.mock
 
 import numpy as np
 import rosunit
-from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.collections import LineCollection, PatchCollection, PathCollection
 from matplotlib.patches import Rectangle
 
 from aquafarm_benchmark import route_figure, style
@@ -93,11 +93,12 @@ class RouteFigureTest(unittest.TestCase):
         last, = (one for one in self.axes.collections if isinstance(one, LineCollection))
         self.assertIn("last leg, a device aboard", lines)
         np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
-        np.testing.assert_array_equal([0.6, 2.2], last.get_linewidths(), "thin: repeated cells")
+        np.testing.assert_array_equal([2.2, 2.2], last.get_linewidths(), "a pickup is not a visit")
+        self.assertFalse(any("visits" in label for label in lines))
         np.testing.assert_array_equal([[0, 1], [0, 0]], lines["route before"])
         # From the pickup at (1, 0), (3, 2) is 2 moves away; one step is left.
         self.assertEqual("ranch 7: 0 of 2 devices in port, return −12\n"
-                         "2 moves needed, 1 steps left; device inside a ring",
+                         "2 moves needed, 1 step left; device inside a ring",
                          self.axes.get_title("left"))
         self.assertEqual((2, 1, True), route_figure.shortage(route))
         long = {**route, "steps": [*steps[:2], *[steps[2]] * 3, steps[3]]}
@@ -146,11 +147,36 @@ class RouteFigureTest(unittest.TestCase):
             "chart": chart, "steps": steps, "reason": "time_limit", "return": 0.0})
         self.assertEqual((17 - 0.7, 25 + 0.7), self.axes.get_xlim())
         self.assertEqual((17 - 0.7, 23 + 0.7), self.axes.get_ylim())
-        labels = self.axes.get_legend_handles_labels()[1]
+        handles, labels = self.axes.get_legend_handles_labels()
         self.assertIn("cell with 5 to 9 visits", labels)
+        shades = [one for one in self.axes.collections if isinstance(one, PatchCollection)]
+        self.assertEqual([2], [len(one.get_paths()) for one in shades])
+        port = handles[labels.index("port")]
+        self.assertLess(shades[0].get_zorder(), port.get_zorder(), "ports and devices are on top")
+        last, = (one for one in self.axes.collections if isinstance(one, LineCollection))
+        np.testing.assert_array_equal([0.6], np.unique(last.get_linewidths()), "repeated cells")
         self.assertNotIn("cell with 10 or more visits", labels)
         self.assertNotIn("rock", labels, "outside the map")
         self.assertIn("2 moves needed, 10 steps left", self.axes.get_title("left"))
+
+    def test_a_visit_of_a_cell_is_an_arrival(self):
+        waiting = [[4, 4]] * 12  # a pickup and waiting take steps in one cell
+        counts = route_figure._shade_visits(self.axes, [*waiting, [5, 4], [4, 4], [3, 4]])
+        self.assertEqual({(4, 4): 2, (5, 4): 1, (3, 4): 1}, dict(counts))
+        self.assertEqual(["cell with 2 to 4 visits"], self.axes.get_legend_handles_labels()[1])
+
+    def test_the_map_of_a_failure_has_its_shape_and_stays_in_the_ranch(self):
+        for cells, size, expected in (
+                ([[2, 2], [4, 30]], (80, 60), (0, 47, 0, 33)),  # tall: wider, from the west border
+                ([[40, 10], [42, 30]], (80, 60), (22, 59, 7, 33)),  # tall, in the middle
+                ([[77, 30], [79, 30]], (80, 60), (71, 79, 27, 33)),  # at the east border
+                ([[10, 57], [60, 59]], (80, 60), (7, 63, 21, 59)),  # flat: higher, from the north
+                ([[2, 2], [4, 5]], (8, 6), (0, 7, 0, 5))):  # a ranch that is smaller than the map
+            window = route_figure._window(cells, size)
+            self.assertEqual(expected, window, cells)
+            west, east, south, north = window
+            for x, y in cells:
+                self.assertTrue(west <= x <= east and south <= y <= north, cells)
 
 
 if __name__ == "__main__":

@@ -77,7 +77,8 @@ def describe_courses(courses):
         return "Error of the value estimates in training"
     said = _ending(higher or lower, "higher" if higher else "lower")
     said = f"Only the {said}" if lower and len(higher) == 1 else f"The {said}"
-    peaks = [f"that of {name} first rises to {_significant(peak)}"
+    course = "ends lower after a peak of" if higher else "first rises to"
+    peaks = [f"that of {name} {course} {_significant(peak)}"
              for name, (first, peak, last) in courses.items()
              if name in lower and peak > _PEAK * max(first, last)]
     return f"{said}; {joined(peaks)}" if peaks else said

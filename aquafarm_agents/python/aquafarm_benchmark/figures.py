@@ -39,7 +39,8 @@ def _highest(contestants, ends, what, digits=0):
     said = f"{last[0].name}: {what} {value}" if len(last) == 1 else (
         f"{joined(names)} {'has' if len(names) == 1 else 'have'} the highest {what}: {value}")
     if others and len(names) == 1 and not math.isnan(last[0].low):
-        near = [end.name for end in others if end.high >= last[0].low]
+        near = [end.name for end in others  # a line of one run has no range
+                if (end.y if math.isnan(end.high) else end.high) >= last[0].low]
         said += (f"; its runs are not all above those of {joined(near)}" if near else
                  "; each of its runs is above all runs of the others")
     if all(end.name.endswith(PRINTED) for end in last):
@@ -172,6 +173,11 @@ def _name_reached(axes, ends, target, steps_of):
     steps_of: {name of a line: numbers of steps of the runs}
     """
     last = axes.get_xlim()[1]
+    for end in ends:
+        shown = [steps for steps in steps_of[end.name] if steps <= last]
+        if shown:
+            axes.plot(shown, [target] * len(shown), "o", color=end.colour, markersize=3, zorder=5,
+                      label="_reached")
     others = [end for end in ends if np.median(steps_of[end.name]) > last]
     reached = [(np.median(steps_of[end.name]), end.colour, end.name) for end in ends
                if end not in others]
@@ -180,11 +186,10 @@ def _name_reached(axes, ends, target, steps_of):
     for steps, colour, name in sorted(reached):
         words = f"{name} {_rounded_steps(steps)}"
         of_runs = sorted(steps_of[name])
-        if of_runs[0] < of_runs[-1]:
+        if of_runs[-1] == math.inf:
+            words += f" (from {_rounded_steps(of_runs[0])}, {_in_some(of_runs)})"
+        elif of_runs[0] < of_runs[-1]:
             words += f" ({_rounded_steps(of_runs[0])} to {_rounded_steps(of_runs[-1])})"
-        shown = [one for one in of_runs if one <= last]
-        axes.plot(shown, [target] * len(shown), "o", color=colour, markersize=3, zorder=5,
-                  label="_reached")
         place = float(to_axes.transform((steps, target))[0])
         # A name also leaves space for the leaders of the names above it.
         row = next(i for i in range(len(row_ends))
@@ -213,17 +218,16 @@ def plot_rewards_by_steps(axes, contestants, runs, references):
     axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter(lambda value, _: _steps_text(value))
     axes.xaxis.set_minor_formatter(ticker.NullFormatter())
-    # RANDOM takes the most steps. The chart ends where the last learner ends.
+    thin = [_plot_one_run(axes, one, run["curve"], label="_run", linewidth=0.8, alpha=0.5)
+            for one in _learners(contestants)
+            for i, run in enumerate(runs[one.name]) if i != main[one.name]]
+    # RANDOM takes the most steps. The chart ends where the last run of a learner ends.
     learners = {one.label for one in _learners(contestants)}
-    last = max((end.x for end in ends if end.name in learners), default=np.inf)
+    last = max((end.x for end in ends + thin if end.name in learners), default=np.inf)
     ends = [end for end in (_cut(axes, end, last) for end in ends) if end]
     axes.relim()
     axes.margins(x=0.0)
     axes.autoscale_view()
-    axes.set_xlim(axes.get_xlim())  # the other runs do not change the limits
-    for one in _learners(contestants):
-        for run in runs[one.name][:main[one.name]] + runs[one.name][main[one.name] + 1:]:
-            _plot_one_run(axes, one, run["curve"], label="_run", linewidth=0.8, alpha=0.5)
     reference = _mark_reached(axes, references)
     ends = _name_reached(axes, ends, target, steps_of)
     return ends + reference + _plot_references(axes, references, axes.get_xlim()[1])
@@ -250,8 +254,13 @@ def _steps_text(value):
 
 
 def _rounded_steps(value):
-    """Returns a number of steps with two digits as text; infinity is "never"."""
-    return _steps_text(float(f"{value:.2g}")) if value < math.inf else "never"
+    """Returns a number of steps with two digits as text."""
+    return _steps_text(float(f"{value:.2g}"))
+
+
+def _in_some(steps):
+    """Returns a text such as "in 3 of 4 runs", given the result of _steps_until."""
+    return f"in {np.isfinite(steps).sum()} of {len(steps)} runs"
 
 
 def draw_rewards(path, contestants, runs, references):
@@ -267,8 +276,8 @@ def draw_rewards(path, contestants, runs, references):
         path, contestants, lambda ends: _learning_times(contestants, runs, references) or
         _highest(contestants, ends, "return at the end of the training"),
         f"Fig. 12a: {shown}. Means of {measures.WINDOW} episodes: a line begins after episode "
-        f"{measures.WINDOW}. {dots if has_target else ''}The chart ends with the last learner; "
-        "RANDOM takes more steps.",
+        f"{measures.WINDOW}. {dots if has_target else ''}The chart ends with the last run of a "
+        "learner; RANDOM takes more steps.",
         f"{measures.WINDOW}-episode mean return",
         [(lambda axes: plot_rewards_by_steps(axes, contestants, runs, references), "", False)],
         "time steps so far (logarithmic)")
@@ -299,11 +308,13 @@ def _learning_times(contestants, runs, references):
     target = _target(references)
     if target == math.inf:
         return ""
-    found = sorted((float(np.median(_steps_until(runs[one.name], target))), one.label)
-                   for one in _learners(contestants))
+    steps_of = {one.label: _steps_until(runs[one.name], target) for one in _learners(contestants)}
+    found = sorted((float(np.median(steps)), name) for name, steps in steps_of.items())
     texts = [f"{name}{_NBSP}{float(f'{steps:.2g}'):,.0f}" for steps, name in found
              if steps < math.inf]
-    late = [name for steps, name in found if steps == math.inf]
+    texts += [f"{name} only {_in_some(steps_of[name])}" for steps, name in found
+              if min(steps_of[name]) < steps == math.inf]
+    late = [name for _, name in found if min(steps_of[name]) == math.inf]
     if late:
         texts.append(f"{joined(late)} {_not_within(contestants, runs)}")
     count = most_common_count(contestants, runs)

@@ -205,8 +205,12 @@ def plot_unfinished(axes, name, route):
     result = f"{route['return']:.0f}".replace("-", "−")
     needed, had, is_covered = shortage(route)
     axes.set_title(f"{name}: {last['delivered']} of {len(chart['devices'])} devices in port, "
-                   f"return {result}\n{needed} moves needed, {had} steps left"
+                   f"return {result}\n{_count(needed, 'move')} needed, {_count(had, 'step')} left"
                    f"{'; device inside a ring' if is_covered else ''}", fontsize=10.5, loc="left")
+
+
+def _count(number, noun):
+    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def _window(cells, size):
@@ -242,15 +246,17 @@ def _plot_last_rings(axes, steps, left, sea):
 
 
 def _shade_visits(axes, cells):
-    """Shades the cells that a route visits more than once. Returns the visits of each cell."""
-    counts = collections.Counter(map(tuple, cells))
+    """Shades the cells that a route visits more than once. Returns the visits of each cell. Steps
+    without a move, such as a pickup, are no visits."""
+    counts = collections.Counter(tuple(cell) for before, cell in zip([None, *cells], cells)
+                                 if cell != before)
     for i, (low, (colour, label)) in enumerate(_VISITS.items()):
         high = [*_VISITS, np.inf][i + 1]
         shown = [cell for cell, count in counts.items() if low <= count < high]
         if shown:
             axes.add_collection(PatchCollection(
                 [Rectangle((x - 0.5, y - 0.5), 1.0, 1.0) for x, y in shown], facecolor=colour,
-                edgecolor="none", zorder=4))
+                edgecolor="none", zorder=1.5))  # below ports and devices
             axes.scatter([], [], color=colour, marker="s", s=150, label=label)
     return counts
 
@@ -263,7 +269,7 @@ def _measure(axes, cell, left):
               label="min number of moves at the end")
     east, north = np.array(left[nearest]) - cell
     is_below = north > 0  # the line is above
-    axes.annotate(f"≥ {moves} moves", cell, xytext=(0, -10 if is_below else 10),
+    axes.annotate(f"≥ {_count(moves, 'move')}", cell, xytext=(0, -10 if is_below else 10),
                   textcoords="offset points", ha="left" if east > 0 else "right",
                   va="top" if is_below else "bottom", fontsize=11, weight="bold", zorder=10,
                   path_effects=[withStroke(linewidth=3, foreground="white")])

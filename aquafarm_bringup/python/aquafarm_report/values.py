@@ -220,9 +220,9 @@ def draw(text, values, layers, results, path):
     height, width = values.shape
     tall = min(1.6, max(0.5, height / width))
     columns = 1 + len(layers)
-    column = _COLUMN if layers else 2.0 * _COLUMN
-    heights = [column * tall, _RELATION] if layers else [column * tall]
-    width_in = _GAP * (columns + 0.6) + column * columns
+    column_in = _COLUMN if layers else 2.0 * _COLUMN
+    heights = [column_in * tall, _RELATION] if layers else [column_in * tall]
+    width_in = _GAP * (columns + 0.6) + column_in * columns
     near = device_relation(values, text)
     found = textwrap.wrap(headline([*zip(layers, results), *([near] if near else [])]),
                           int(width_in / _LETTER)) or [""]
@@ -231,7 +231,7 @@ def draw(text, values, layers, results, path):
     figure, axes = pyplot.subplots(len(heights), columns, squeeze=False,
                                    figsize=(width_in, height_in), height_ratios=heights)
     figure.subplots_adjust(
-        left=0.8 * _GAP / width_in, right=1.0 - 0.8 * _GAP / width_in, wspace=_GAP / column,
+        left=0.8 * _GAP / width_in, right=1.0 - 0.8 * _GAP / width_in, wspace=_GAP / column_in,
         top=1.0 - top / height_in, bottom=_BOTTOM / height_in,
         hspace=_GAP / (sum(heights) / len(heights)))
     draw_map(axes[0][0], values, km, _VALUE_COLOURS, "points", _LOWEST)

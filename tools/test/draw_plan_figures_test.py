@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""tools/draw_plan_figures.py with results that have and lack deviating groups and storms."""
+import json
+import pathlib
+import subprocess
+import sys
+import warnings
+
+import pytest
+
+pytest.importorskip("matplotlib")
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+import draw_plan_figures as tool  # noqa: E402
+
+NEAR, FAR = 0.52, 0.70  # kept shares of a group with a promise of 0.5
+
+
+def group(kept, count=100, half=0.05):
+    return {"promised": 0.5, "count": count,
+            "kept": {"mean": kept, "low": kept - half, "high": kept + half}}
+
+
+def results(home, gales):
+    return {"storms": 6000, **{key: {"diagram": [group(kept) for kept in kept_shares]}
+                               for key, kept_shares in (("home", home), ("gales", gales))}}
+
+
+def storm(name, **values):
+    return {"name": name, "id": "x", "nearest": "2021-07-24T00:00Z", "at_risk": 100.0,
+            "promised": 50.0, "saved": 60.0, "saved_low": 55.0, "saved_high": 65.0,
+            "clairvoyant": 60.0, **values}
+
+
+@pytest.fixture
+def figures(monkeypatch):
+    """The figures that the tool has drawn; they stay open until the end of the test."""
+    kept = []
+    monkeypatch.setattr(tool.plt, "close", kept.append)
+    yield kept
+    monkeypatch.undo()
+    tool.plt.close("all")
+
+
+@pytest.mark.parametrize("home, gales, far, missed", [
+    ([NEAR], [NEAR], 0, 0),
+    ([NEAR, FAR], [NEAR], 1, 1),
+    ([NEAR], [NEAR, FAR], 1, 1),
+    ([FAR], [FAR], 2, 2),
+])
+def test_both_charts_have_their_size_also_without_far_groups(figures, tmp_path, home, gales, far,
+                                                             missed):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # matplotlib warns if a layout collapses
+        tool.draw_reliability(results(home, gales), tmp_path / "plan.png")
+    figure = figures[-1]  # a first figure also makes matplotlib close "all"
+    left, right = figure.axes[:2]
+    for axes in (left, right):
+        assert axes.get_window_extent().width > 0.3 * figure.bbox.width
+    words = [text.get_text() for text in left.get_legend().get_texts()]
+    assert ("group beyond 5 points" in words) == (far > 0)
+    assert ("misses the promise" in words) == (missed > 0)
+    assert ("group, 95 % interval" in words) == (NEAR in home + gales)
+    total = len(home + gales)
+    title = " ".join(figure._suptitle.get_text().split())
+    assert title == (
+        f"Promised chances hold within 5 points in {total - far} of {total} groups, at worst "
+        f"{20 if far else 2} points off. The 95 % intervals of {total - missed} groups contain the "
+        "promise (6,000 simulated storms).")
+
+
+def test_groups_of_fewer_than_20_cases_are_left_out_and_one_point_is_singular():
+    data = results([0.51], [0.51])
+    data["home"]["diagram"].append(group(FAR, count=19))
+    assert "in 2 of 2 groups, at worst 1 point off." in tool.reliability(data)
+
+
+def test_the_title_of_the_back_test_names_the_storms_in_which_the_plan_saves_less():
+    storms = [storm("IN-FA"), storm("MITAG", saved=30.0), storm("CALM", at_risk=0.0, saved=0.0,
+                                                                clairvoyant=0.0)]
+    assert tool.finding(storms).split("\n") == [
+        "The plan saves what a clairvoyant saves in 1 of 2 storms with something at stake",
+        "(not in Mitag 2021), and 75 % of the clairvoyant's value over all 3."]
+
+
+def test_the_program_draws_both_figures_from_files(tmp_path):
+    (tmp_path / "storms.json").write_text(json.dumps(results([NEAR], [NEAR])))
+    (tmp_path / "back_test.json").write_text(json.dumps(
+        {"bulletins": 4, "lead_h": 12.0, "storms": [storm("IN-FA"), storm("MITAG", saved=30.0)]}))
+    subprocess.run([sys.executable, ROOT / "tools" / "draw_plan_figures.py", "storms.json",
+                    "back_test.json", "."], cwd=tmp_path, timeout=120, check=True)
+    for name in ("plan_reliability", "plan_back_test"):
+        assert (tmp_path / f"{name}.png").stat().st_size > 10_000

@@ -15,7 +15,7 @@ from matplotlib import pyplot as plt  # noqa: E402
 
 DPI = 160
 NAMED = 3  # max number of storms that a title names
-MARGIN = 5  # the figure marks groups of promises that are kept this many points more or less often
+MARGIN = 5  # max difference of kept and promised chance of a group that is not marked [points]
 RIM = 3  # space around chances of 0 and 100 %, so that their marks are whole [points]
 KINDS = {"home": "The device comes home", "gales": "Gales reach the device"}
 
@@ -26,7 +26,8 @@ def bins_of(data, key):
 
 
 def is_far(group):
-    """Returns whether a group of promises is kept more than MARGIN points more or less often."""
+    """Returns whether the kept chance of a group differs from the promised one by more than MARGIN
+    points."""
     return abs(100 * (group["kept"]["mean"] - group["promised"])) > MARGIN
 
 
@@ -73,12 +74,12 @@ def draw_reliability(data, path):
         draw_groups(one, [group for group in bins if not is_far(group)], "#0b5394",
                     "group, 95 % interval")
         draw_groups(one, [group for group in bins if is_far(group)], "#d55e00",
-                    f"group beyond {MARGIN} points")
+                    f"over {MARGIN} points off")
         missed = [group for group in bins if is_missed(group)]
         if missed:
             one.scatter([100 * group["promised"] for group in missed],
                         [100 * group["kept"]["mean"] for group in missed], s=190, facecolor="none",
-                        edgecolor="black", linewidth=1.8, zorder=4, label="misses the promise")
+                        edgecolor="black", linewidth=1.8, zorder=4, label="interval misses the promise")
         one.set_title(f"{title} (n = {sum(b['count'] for b in bins):,})", fontsize=12)
         one.set_xlim(-RIM, 100 + RIM)
         one.set_ylim(-RIM, 100 + RIM)
@@ -96,8 +97,8 @@ def draw_reliability(data, path):
     axes[1][0].set_ylabel("cases per\ngroup (log)", fontsize=11)
     signs = {label: sign for one in axes[0]
              for sign, label in zip(*one.get_legend_handles_labels())}
-    order = sorted(signs, key=lambda label: (label.startswith("misses"), "beyond" in label))
-    axes[0][0].legend([signs[label] for label in order], order, loc="upper left", fontsize=10)
+    order = sorted(signs, key=lambda label: (label.startswith("interval"), "points off" in label))
+    axes[0][0].legend([signs[label] for label in order], order, loc="lower right", fontsize=9)
     for words, x, y in (("more often", 20, 60), ("less often", 80, 30)):
         axes[0][1].text(x, y, f"{words}\nthan promised", ha="center", fontsize=11, color="0.3")
     figure.suptitle(reliability(data), fontsize=12.5, weight="bold", x=0.01, ha="left")
@@ -109,12 +110,11 @@ def finding(storms):
     """Returns a sentence about the results of the back-test."""
     staked = [s for s in storms if s["at_risk"] > 0.5]  # in others, no plan loses value
     worse = [name_of(s) for s in staked if is_worse(s)]
-    but = f"(not in {' and '.join(worse)}), and " if 0 < len(worse) <= NAMED else "and "
+    but = f"\n(not in {', '.join(worse)})" if 0 < len(worse) <= NAMED else ""
     share = sum(s["saved"] for s in storms) / sum(s["clairvoyant"] for s in storms)
     return (f"The plan saves what a clairvoyant saves in {len(staked) - len(worse)} of "
-            f"{len(staked)} storms with something at stake"
-            f"\n{but}{100 * share:.0f} % of the "
-            f"clairvoyant's value over all {len(storms)}.")
+            f"{len(staked)} storms with something at stake{but}.\n"
+            f"Over all {len(storms)} storms it saves {100 * share:.0f} % of the clairvoyant's value.")
 
 
 def is_worse(storm):
@@ -130,7 +130,7 @@ def name_of(storm):
 
 
 def mean_of(storms):
-    """Returns the mean of the values of several storms; without a range of the saved value."""
+    """Returns the mean of the values of several storms. The range of the saved value is empty."""
     mean = {key: sum(storm[key] for storm in storms) / len(storms)
             for key in ("at_risk", "promised", "saved", "clairvoyant")}
     return {**mean, "saved_low": mean["saved"], "saved_high": mean["saved"]}

@@ -103,7 +103,7 @@ class RouteFigureTest(unittest.TestCase):
         self.assertEqual((2, 1, True), route_figure.shortage(route))
         long = {**route, "steps": [*steps[:2], *[steps[2]] * 3, steps[3]]}
         self.assertEqual((2, 3, True), route_figure.shortage(long))
-        self.assertEqual("time runs out in ranch 7; a device stays inside a ring in ranches 8 and 9",
+        self.assertEqual("time runs out in ranch 7; a device is left inside a ring in ranches 8 and 9",
                          route_figure.describe_failures({"ranch 7": route, "ranch 8": long,
                                                          "ranch 9": long}))
         self.assertEqual({"≥ 3 moves"}, self.names_of(self.axes))

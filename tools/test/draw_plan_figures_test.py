@@ -59,8 +59,8 @@ def test_both_charts_have_their_size_also_without_far_groups(figures, tmp_path, 
     for axes in (left, right):
         assert axes.get_window_extent().width > 0.3 * figure.bbox.width
     words = [text.get_text() for text in left.get_legend().get_texts()]
-    assert ("group beyond 5 points" in words) == (far > 0)
-    assert ("misses the promise" in words) == (missed > 0)
+    assert ("over 5 points off" in words) == (far > 0)
+    assert ("interval misses the promise" in words) == (missed > 0)
     assert ("group, 95 % interval" in words) == (NEAR in home + gales)
     total = len(home + gales)
     title = " ".join(figure._suptitle.get_text().split())
@@ -81,7 +81,7 @@ def test_the_title_of_the_back_test_names_the_storms_in_which_the_plan_saves_les
                                                                 clairvoyant=0.0)]
     assert tool.finding(storms).split("\n") == [
         "The plan saves what a clairvoyant saves in 1 of 2 storms with something at stake",
-        "(not in Mitag 2021), and 75 % of the clairvoyant's value over all 3."]
+        "(not in Mitag 2021).", "Over all 3 storms it saves 75 % of the clairvoyant's value."]
 
 
 def test_the_program_draws_both_figures_from_files(tmp_path):

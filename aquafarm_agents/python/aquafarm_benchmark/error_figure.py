@@ -12,9 +12,9 @@ from aquafarm_benchmark.style import (chart_grid, explain, joined, label_axes, l
 _PEAK = 2.0  # a peak is at least this multiple of the first and of the last value
 _SAME = 0.05  # relative change below which an error ends where it begins
 _HEADROOM = 1.5  # factor of the upper limit, for the numbers at the highest values
-_FOOTROOM = 1.3  # factor of the lower limit, for the name of the grey mark
+_FOOTROOM = 1.3  # divisor of the lower limit, for the name of the grey mark
 _LETTER = 0.045  # width of a letter of a number [widths of a chart]
-_EDGE = 0.02  # a mark of success that is nearer to the left edge is not seen [widths of a chart]
+_EDGE = 0.02  # a mark of success that is nearer to the left edge is not drawn [widths of a chart]
 _SUCCESS = 0.5  # the success rate that the charts mark
 
 
@@ -43,8 +43,9 @@ def draw_square_error(path, contestants, runs):
     explain(figure, describe_courses(courses),
             f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic. Dots: "
             "first, last and, if it is far from both, highest value; ×: last value relative to the "
-            f"first. Grey: {100 * _SUCCESS:.0f} % of the last {measures.WINDOW} episodes succeed "
-            f"for the first time, from the earliest run to the latest{_describe_success(found)}. "
+            f"first. Grey: the success rate of the last {measures.WINDOW} episodes first reaches "
+            f"{100 * _SUCCESS:.0f} %, from the earliest to the latest run that reaches it"
+            f"{_describe_success(found)}. "
             f"{describe_shading(contestants, runs)} Each learner has "
             "its own targets: a lower error does not mean a better policy.")
     if has_all:
@@ -54,8 +55,8 @@ def draw_square_error(path, contestants, runs):
 
 
 def _describe_success(found):
-    """Returns an addition to the note for learners without a grey mark. found: see _mark_success,
-    {name of a learner: episodes}"""
+    """Returns the part of the note about learners without a grey mark. found: {name of a learner:
+    result of _mark_success}"""
     early = {name: episodes for name, (episodes, is_shown) in found.items()
              if episodes and not is_shown}
     never = [name for name, (episodes, _) in found.items() if not episodes]
@@ -119,7 +120,7 @@ def _mark_course(axes, colour):
 
 def _mark_success(axes, of_one):
     """Shades the episodes at which the success rate of the runs first reaches _SUCCESS, from the
-    earliest run to the latest. Returns (episodes, is_shown). is_shown is False if there are no such
+    earliest to the latest run that reaches it. Returns (episodes, is_shown). is_shown is False if there are no such
     episodes, or if all are at the left edge."""
     found = []
     for successes in columns_of_runs(of_one, "success"):

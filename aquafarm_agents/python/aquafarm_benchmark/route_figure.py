@@ -137,7 +137,7 @@ def draw_unfinished(path, routes, title):
                         frameon=False, fontsize=11, labelspacing=0.5,
                         handler_map={tuple: HandlerTuple(ndivide=1)}, alignment="left",
                         title="Needed: min number of moves from the last stop to the\n"
-                        "nearest device that was left. Left: steps after this stop.\n"
+                        "nearest device not fetched. Left: steps after this stop.\n"
                         "A map contains the last leg; other devices may be outside.",
                         title_fontproperties={"size": 10})
     save(figure, path)
@@ -145,10 +145,10 @@ def draw_unfinished(path, routes, title):
 
 def describe_failures(routes):
     """Returns a text on the causes of failed episodes. routes: {name, such as "ranch 7": route}"""
-    causes = {"time runs out": [], "a device stays inside a ring": []}
+    causes = {"time runs out": [], "a device is left inside a ring": []}
     for name, route in routes.items():
         needed, had, is_covered = shortage(route)
-        cause = "time runs out" if needed > had else "a device stays inside a ring"
+        cause = "time runs out" if needed > had else "a device is left inside a ring"
         if needed > had or is_covered:
             causes[cause].append(name.replace("ranch ", ""))
     return "; ".join(f"{cause} in {'ranches' if len(names) > 1 else 'ranch'} {joined(names)}"
@@ -157,8 +157,9 @@ def describe_failures(routes):
 
 def shortage(route):
     """Returns (needed, had, is_covered) of an episode that did not succeed: the min number of moves
-    from the last stop to the nearest device that was left, the number of steps after this stop, and
-    whether a ring covers a device that was left in the last step."""
+    from the last stop (without a stop: from the start) to the nearest device that was not fetched,
+    the number of steps after this stop, and whether, in the last step, a ring covers a device that
+    was not fetched."""
     left, (*before, (_, last_leg)) = devices_left(route), legs(route["steps"])
     needed, _ = _nearest(last_leg[0], left)
     rings = [ring for one in route["steps"][-2]["disasters"] for ring in _rings(one)]
@@ -228,7 +229,8 @@ def _window(cells, size):
 
 
 def _plot_last_rings(axes, steps, left, sea):
-    """Draws the rings in the last step, and earlier rings of those that cover a device in left."""
+    """Draws the rings in the last step. If rings of a disaster cover a device in `left`, also draws
+    the last of them as it was some steps before (_BEFORE)."""
     at_end = steps[-2]["disasters"]  # in the last state they may have ended
     for i, disaster in enumerate(at_end):
         rings = list(_rings(disaster))

@@ -127,7 +127,7 @@ def name_ends(axes, ends):
                       arrowprops={"arrowstyle": "-", "color": end.colour, "linewidth": 0.8,
                                   "relpos": (0.0, 0.5), "shrinkA": 1.0, "shrinkB": 0.0})
     if axes.get_subplotspec() and not axes.get_subplotspec().is_last_col():
-        for text in axes.texts:  # next to a free place of the grid
+        for text in axes.texts:  # no chart is to the right, so no space has to be reserved
             text.set_in_layout(False)
 
 

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <tuple>
+#include <utility>
 
 #include "aquafarm_viz/draw/image.h"
 #include "draw/free_space.h"
@@ -214,6 +217,26 @@ TEST(Outlook, UsesTheRadiusOfTheQuadrant) {
   const Outlook outlook = scene.outlook();
   ASSERT_FALSE(outlook.devices[0].arrivals.empty());
   EXPECT_EQ(outlook.devices[0].arrivals[0].steps, 26.0) << "radius 5.1: 4 cells west, 3 north";
+}
+
+TEST(Outlook, CountsAnAxisToTheQuadrantThatFollowsClockwiseAsTheFarmDoes) {
+  constexpr std::array<std::pair<float, float>, 4> kCentres{
+      // seen from them, the device is due
+      {{10.0F, 9.0F}, {7.0F, 12.0F}, {10.0F, 15.0F}, {13.0F, 12.0F}}};  // north, east, south, west
+  for (std::size_t i = 0; i < 4; ++i) {
+    Outlooks scene;
+    auto& disaster = scene.state.disasters[0];
+    std::tie(disaster.x, disaster.y) = kCentres[i];
+    disaster.speed = 0.0F;
+    disaster.radii = {5.0F};
+    disaster.risks = {-5.0F};
+    for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
+      disaster.quadrants = {1.0F, 1.0F, 1.0F, 1.0F};
+      disaster.quadrants[quadrant] = 5.0F;
+      EXPECT_EQ(scene.outlook().devices[0].risk_now, quadrant == i ? -5.0 : 0.0)
+          << i << ", " << quadrant;
+    }
+  }
 }
 
 TEST(Outlook, SaysNothingOfTooManyDevicesAndOfDisastersThatAreOver) {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 
-#include "aquafarm/farm/disaster.h"
 #include "aquafarm/tracks/wind_name.h"
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/text.h"
@@ -37,9 +36,13 @@ struct RingRisk {
   std::size_t ring{};
 };
 
-// Returns the quadrant of an offset from the centre, by the same rule as the farm.
+// Returns the quadrant of an offset from the centre: 0: NE, 1: SE, 2: SW, 3: NW. As in the farm
+// (see farm/disaster.h), due north is NE, due east SE, due south SW and due west NW.
 std::size_t QuadrantOf(double east, double north) {
-  return aquafarm::QuadrantOf(float(-east), float(-north));
+  if (east >= 0.0 && north > 0.0) return 0;
+  if (east > 0.0) return 1;
+  if (north < 0.0) return 2;
+  return east < 0.0 ? 3 : 0;
 }
 
 RingRisk RiskAt(const TrackPoint& storm, double x, double y) {

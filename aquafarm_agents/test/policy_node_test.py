@@ -13,7 +13,7 @@ import unittest
 
 import rospy
 import rostest
-from aquafarm_msgs.srv import Pause, Reset
+from aquafarm_msgs.srv import Pause
 from nav_msgs.msg import OccupancyGrid
 from sensor_msgs.msg import PointCloud2
 
@@ -128,17 +128,6 @@ class PolicyNodeTest(unittest.TestCase):
         one = self.drive("_policy:=random", "_ship:=1", "_episodes:=2")
         one.wait_for(lambda: "no command from other ships within" in one.words(), "a timeout")
         other = self.drive("_policy:=random", "_ship:=0", "_episodes:=2")
-        self.assertEqual(0, one.code(), one.words())
-        self.assertEqual(0, other.code(), other.words())
-
-    def test_a_driver_continues_after_a_reset_to_the_step_of_its_waiting_command(self):
-        start_sim(self, self.namespace, PAIR, "_barrier_timeout_s:=5")
-        one = self.drive("_policy:=planner", "_ship:=1", "_episodes:=1")
-        one.wait_for(lambda: "no command from other ships within" in one.words(), "a timeout")
-        time.sleep(1)  # its next command waits for the other ship
-        reset = rospy.ServiceProxy(f"{self.namespace}/reset", Reset)
-        self.assertTrue(reset(has_seed=True, seed=5).ok)
-        other = self.drive("_policy:=planner", "_ship:=0", "_episodes:=1")
         self.assertEqual(0, one.code(), one.words())
         self.assertEqual(0, other.code(), other.words())
 

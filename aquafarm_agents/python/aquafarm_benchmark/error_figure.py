@@ -120,8 +120,8 @@ def _mark_course(axes, colour):
 
 def _mark_success(axes, of_one):
     """Shades the episodes at which the success rate of the runs first reaches _SUCCESS, from the
-    earliest to the latest run that reaches it. Returns (episodes, is_shown). is_shown is False if there are no such
-    episodes, or if all are at the left edge."""
+    earliest to the latest run that reaches it. Returns (episodes, is_shown). is_shown is False if
+    there are no such episodes, or if all are at the left edge."""
     found = []
     for successes in columns_of_runs(of_one, "success"):
         episodes, means = moving_means(successes)

@@ -13,7 +13,7 @@ import unittest
 
 import rospy
 import rostest
-from aquafarm_msgs.srv import Pause
+from aquafarm_msgs.srv import Command, GetState, Pause, Reset
 from nav_msgs.msg import OccupancyGrid
 from sensor_msgs.msg import PointCloud2
 
@@ -130,6 +130,36 @@ class PolicyNodeTest(unittest.TestCase):
         other = self.drive("_policy:=random", "_ship:=0", "_episodes:=2")
         self.assertEqual(0, one.code(), one.words())
         self.assertEqual(0, other.code(), other.words())
+
+    def test_a_driver_continues_after_a_reset_to_the_step_of_its_waiting_command(self):
+        start_sim(self, self.namespace, PAIR, "_barrier_timeout_s:=5")
+        one = self.drive("_policy:=planner", "_ship:=1", "_episodes:=1")
+        one.wait_for(lambda: "no command from other ships within" in one.words(), "a timeout")
+        time.sleep(1)  # its next command waits for the other ship
+        reset = rospy.ServiceProxy(f"{self.namespace}/reset", Reset)
+        self.assertTrue(reset(has_seed=True, seed=5).ok)
+        other = self.drive("_policy:=planner", "_ship:=0", "_episodes:=1")
+        self.assertEqual(0, one.code(), one.words())
+        self.assertEqual(0, other.code(), other.words())
+
+    def test_a_driver_counts_an_episode_whose_successor_another_driver_has_started(self):
+        start_sim(self, self.namespace, PAIR, "_barrier_timeout_s:=20")
+        services = {name: rospy.ServiceProxy(f"{self.namespace}/{name}", kind) for name, kind in
+                    (("command", Command), ("get_state", GetState), ("reset", Reset))}
+        services["get_state"].wait_for_service(60)
+        driver = self.drive("_policy:=planner", "_ship:=1", "_episodes:=1")
+        hold, last = 10, 48  # ship 1 alone delivers all devices in 49 steps
+        for step in range(last):
+            self.assertTrue(services["command"](ship=0, action=hold, step=step).result.ok)
+        time.sleep(1)  # the driver's last command waits for ship 0
+        driver.send(signal.SIGSTOP)
+        end = services["command"](ship=0, action=hold, step=last).result
+        self.assertTrue(end.terminated, end)
+        self.assertTrue(services["reset"](only_if_over=True).ok)
+        driver.send(signal.SIGCONT)
+        self.assertEqual(0, driver.code(15), driver.words())
+        self.assertIn("episode 0: all_retrieved", driver.words())
+        self.assertEqual(0, services["get_state"]().state.step)
 
     def test_interrupted_while_a_call_has_no_response_it_ends_well(self):
         space = self.namespace

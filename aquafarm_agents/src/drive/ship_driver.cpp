@@ -2,10 +2,12 @@
 #include "aquafarm_agents/drive/ship_driver.h"
 
 #include <aquafarm_msgs/Command.h>
+#include <aquafarm_msgs/EpisodeSummary.h>
 #include <aquafarm_msgs/GetState.h>
 #include <aquafarm_msgs/Outcome.h>
 #include <aquafarm_msgs/Reset.h>
 #include <aquafarm_msgs/SaveState.h>
+#include <ros/callback_queue.h>
 #include <ros/console.h>
 #include <ros/init.h>
 
@@ -18,6 +20,7 @@
 #include "aquafarm_agents/link/service_link.h"
 #include "aquafarm_agents/link/ship_claim.h"
 #include "aquafarm_agents/link/slow_warning.h"
+#include "aquafarm_sim/checked_topics.h"
 #include "aquafarm_sim/names.h"
 
 namespace aquafarm_agents {
@@ -30,6 +33,8 @@ using aquafarm::InputError;
 using aquafarm_msgs::Outcome;
 
 constexpr double kPollPeriod_s = 0.01;
+constexpr double kSummaryLimit_s = 1.0;  // max wait for the summary of an ended episode
+constexpr std::uint32_t kMaxSummaries = 100;
 
 }  // namespace
 
@@ -63,6 +68,10 @@ class ShipDriver::Impl {
           std::make_unique<ServiceLink>(node, options_.wait_limit_s, options_.stop,
                                         CommandLimit_s(get.response.barrier_timeout_s)));
     }
+    topics_.setCallbackQueue(&queue_);
+    summaries_ = aquafarm_sim::Subscribe<aquafarm_msgs::EpisodeSummary>(
+        topics_, names::kEpisode, kMaxSummaries,
+        [this](const aquafarm_msgs::EpisodeSummary::ConstPtr& message) { Take(*message); });
   }
 
   const EnvironmentSpec& spec() const { return mirror_->spec(); }
@@ -91,6 +100,11 @@ class ShipDriver::Impl {
       if (claim_) claim_->RenewWhenDue();
       const StepResults& results = Look();
       const aquafarm::Farm& farm = mirror_->batch().farm(0);
+      const std::pair now{farm.seed(), farm.episode()};
+      if (acted_in_ && *acted_in_ != now) {
+        if (auto missed = FindMissed()) ended.push_back(*missed);
+        continue;
+      }
       const bool is_new = !seen_ || seen_->first != farm.episode() ||
                           seen_->second != static_cast<std::uint64_t>(farm.step());
       if (!is_new) {
@@ -99,17 +113,40 @@ class ShipDriver::Impl {
       }
       seen_ = {farm.episode(), static_cast<std::uint64_t>(farm.step())};
       if (farm.over()) {
-        ended.push_back(Record(farm));
+        ended.push_back(SummaryOf(farm.record(), 0));
+        Report(ended.back());
+        acted_in_.reset();
         StartNext();
         continue;
       }
       policy.Act(results, actions_);
+      if (!acted_in_) queue_.callAvailable();  // skips the summaries of earlier episodes
+      acted_in_ = now;
       Send();
       if (stale_.exchange(false)) seen_.reset();  // a new state may have the same episode and step
       if (!again_.exchange(false)) continue;
       seen_.reset();
       ros::WallDuration(kRetryPeriod_s).sleep();
     }
+  }
+
+  // Another driver may have started the next episode before this driver saw the end of its episode.
+  // Without this summary the driver would play an episode too many, which its partners do not play.
+  // Returns the summary of the episode of the last command, or nothing if a reset aborted it.
+  std::optional<EpisodeSummary> FindMissed() {
+    const ros::WallTime start = ros::WallTime::now();
+    while (!missed_ && !Stopped() && (ros::WallTime::now() - start).toSec() < kSummaryLimit_s) {
+      queue_.callAvailable(ros::WallDuration(kPollPeriod_s));
+    }
+    acted_in_.reset();
+    if (missed_) Report(*missed_);
+    return std::exchange(missed_, std::nullopt);
+  }
+
+  void Take(const aquafarm_msgs::EpisodeSummary& message) {
+    if (message.farm != 0 || acted_in_ != std::pair(message.seed, message.episode)) return;
+    missed_.emplace();
+    aquafarm::CopyEpisodeFields(message, *missed_);
   }
 
   const StepResults& Look() {
@@ -178,14 +215,12 @@ class ShipDriver::Impl {
     }
   }
 
-  static EpisodeSummary Record(const aquafarm::Farm& farm) {
-    const EpisodeSummary result = SummaryOf(farm.record(), 0);
+  static void Report(const EpisodeSummary& result) {
     ROS_INFO("episode %llu: %s, return %.1f, %d of %d delivered in %d steps",
              static_cast<unsigned long long>(result.episode),
              std::string(ToString(result.reason)).c_str(),
              static_cast<double>(result.episode_return), result.delivered, result.devices,
              result.steps);
-    return result;
   }
 
   const ShipDriverOptions options_;
@@ -203,6 +238,12 @@ class ShipDriver::Impl {
   std::atomic<std::uint64_t> token_{ros::WallTime::now().toNSec()};  // token of the last command
   SlowWarning warning_;
   std::optional<std::pair<std::uint64_t, std::uint64_t>> seen_;  // episode and step
+  // Seed and episode of the last command, until the end of the episode is known.
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> acted_in_;
+  std::optional<EpisodeSummary> missed_;  // the summary of acted_in_, as published
+  ros::NodeHandle topics_{node_};
+  ros::CallbackQueue queue_;
+  ros::Subscriber summaries_;
 };
 
 ShipDriver::ShipDriver(const ros::NodeHandle& node, std::uint8_t observation_types,

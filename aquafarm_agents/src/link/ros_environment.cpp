@@ -147,7 +147,7 @@ const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions
   step_.request.sequence = ++sequence_;
   step_.request.state_id = state_id_;
   double waited_s = 0.0;
-  ros::WallTime lost_since;
+  Outage outage;
   for (;;) {
     const bool answered = Try(step_client_, names::kStep, step_);
     if (answered && step_.response.ok) break;
@@ -157,9 +157,9 @@ const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions
       return results_;
     }
     if (code == Outcome::SHUTTING_DOWN) {
-      WaitForReturn(lost_since);
+      WaitForResponse(names::kStep, outage);
     } else if (code == Outcome::PAUSED || code == Outcome::WRONG_PACE || code == Outcome::CLAIMED) {
-      lost_since = {};
+      outage = {};
       WaitToResume(step_.response.message, waited_s);
     } else {
       throw EnvironmentLost("sim node: step refused: " + step_.response.message);
@@ -253,15 +253,22 @@ void RosEnvironment::Restart(const std::string& why) {
   restarted_ = true;
 }
 
-void RosEnvironment::WaitForReturn(ros::WallTime& lost_since) {
-  if (lost_since.isZero()) {
-    lost_since = ros::WallTime::now();
-    Notice("the sim node is gone; waiting up to " + Seconds(options_.wait_limit_s) +
-           " for its return");
+// Sleeps until the next attempt to call a service. A sim node that has responded before is reported
+// as gone at once. One that has not may still be starting, and is reported after a second.
+void RosEnvironment::WaitForResponse(const std::string& name, Outage& outage) {
+  const ros::WallTime now = ros::WallTime::now();
+  if (outage.since.isZero()) outage.since = now;
+  const double waited_s = (now - outage.since).toSec();
+  const bool was_there = spec_.farms > 0;
+  if (!outage.is_reported && (was_there || waited_s >= 1.0)) {
+    outage.is_reported = true;
+    const std::string limit = "waiting up to " + Seconds(options_.wait_limit_s) + " for ";
+    Notice(was_there ? "the sim node is gone; " + limit + "its return"
+                     : "no response from service " + node_.resolveName(name) + "; " + limit +
+                           "the sim node");
   }
-  const double waited_s = (ros::WallTime::now() - lost_since).toSec();
   if (Stopped() || waited_s >= options_.wait_limit_s) {
-    throw EnvironmentLost("sim node: no response from service " + node_.resolveName(names::kStep) +
+    throw EnvironmentLost("sim node: no response from service " + node_.resolveName(name) +
                           " for " + Seconds(waited_s));
   }
   Sleep();
@@ -292,21 +299,8 @@ bool RosEnvironment::Try(ros::ServiceClient& client, const std::string& name, Se
 template <typename Service>
 void RosEnvironment::CallOrThrow(ros::ServiceClient& client, const std::string& name,
                                  Service& service) {
-  const ros::WallTime start = ros::WallTime::now();
-  bool is_reported = false;
-  while (!Try(client, name, service)) {
-    const double waited_s = (ros::WallTime::now() - start).toSec();
-    if (!is_reported && waited_s >= 1.0) {
-      Notice("no response from service " + node_.resolveName(name) + "; waiting up to " +
-             Seconds(options_.wait_limit_s) + " for the sim node");
-      is_reported = true;
-    }
-    if (Stopped() || waited_s >= options_.wait_limit_s) {
-      throw EnvironmentLost("sim node: no response from service " + node_.resolveName(name) +
-                            " for " + Seconds(waited_s));
-    }
-    Sleep();
-  }
+  Outage outage;
+  while (!Try(client, name, service)) WaitForResponse(name, outage);
 }
 
 bool RosEnvironment::Stopped() const {

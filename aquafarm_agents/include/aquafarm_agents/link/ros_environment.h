@@ -67,6 +67,11 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   bool ConsumeRestart() override;
 
  private:
+  struct Outage {
+    ros::WallTime since;  // end of the first failed attempt; zero: none has failed
+    bool is_reported{};
+  };
+
   /// Opens a connection. The constructor opens the connections to all services: if the master
   /// restarts later, it does not know these services, but open connections remain usable.
   template <typename Service>
@@ -80,7 +85,7 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   void Sleep() const;
   void Restart(const std::string& why);
   std::uint64_t NextRound() const;
-  void WaitForReturn(ros::WallTime& lost_since);
+  void WaitForResponse(const std::string& name, Outage& outage);
   void WaitToResume(const std::string& why, double& waited_s);
   void Take(aquafarm_msgs::StepResult& result);
   aquafarm_msgs::GetState::Response GetState(std::int32_t farm, bool with_spec);

@@ -142,24 +142,29 @@ class PolicyNodeTest(unittest.TestCase):
         self.assertEqual(0, one.code(), one.words())
         self.assertEqual(0, other.code(), other.words())
 
-    def test_a_driver_counts_an_episode_whose_successor_another_driver_has_started(self):
-        start_sim(self, self.namespace, PAIR, "_barrier_timeout_s:=20")
-        services = {name: rospy.ServiceProxy(f"{self.namespace}/{name}", kind) for name, kind in
-                    (("command", Command), ("get_state", GetState), ("reset", Reset))}
-        services["get_state"].wait_for_service(60)
-        driver = self.drive("_policy:=planner", "_ship:=1", "_episodes:=1")
-        hold, last = 10, 48  # ship 1 alone delivers all devices in 49 steps
-        for step in range(last):
-            self.assertTrue(services["command"](ship=0, action=hold, step=step).result.ok)
-        time.sleep(1)  # the driver's last command waits for ship 0
-        driver.send(signal.SIGSTOP)
-        end = services["command"](ship=0, action=hold, step=last).result
-        self.assertTrue(end.terminated, end)
-        self.assertTrue(services["reset"](only_if_over=True).ok)
-        driver.send(signal.SIGCONT)
-        self.assertEqual(0, driver.code(15), driver.words())
-        self.assertIn("episode 0: all_retrieved", driver.words())
-        self.assertEqual(0, services["get_state"]().state.step)
+    def test_drivers_count_an_episode_whose_successor_another_driver_has_started(self):
+        hold = 10
+        for policy, last, word in (  # number of the last step if ship 0 holds
+                ("planner", 48, "episode 0: all_retrieved"),  # ShipDriver
+                ("random", 49, "episode 0: over")):  # AgentDriver
+            space = f"{self.namespace}/{policy}"
+            start_sim(self, space, PAIR, "_barrier_timeout_s:=20")
+            services = {name: rospy.ServiceProxy(f"{space}/{name}", kind) for name, kind in
+                        (("command", Command), ("get_state", GetState), ("reset", Reset))}
+            services["get_state"].wait_for_service(60)
+            driver = start_agent(self, "policy_node", space, f"_policy:={policy}", "_mode:=act",
+                                 "_ship:=1", "_episodes:=1")
+            for step in range(last):
+                self.assertTrue(services["command"](ship=0, action=hold, step=step).result.ok)
+            time.sleep(1)  # the driver's last command waits for ship 0
+            driver.send(signal.SIGSTOP)
+            end = services["command"](ship=0, action=hold, step=last).result
+            self.assertTrue(end.terminated or end.truncated, end)
+            self.assertTrue(services["reset"](only_if_over=True).ok)
+            driver.send(signal.SIGCONT)
+            self.assertEqual(0, driver.code(15), driver.words())
+            self.assertIn(word, driver.words())
+            self.assertEqual(0, services["get_state"]().state.step)
 
     def test_interrupted_while_a_call_has_no_response_it_ends_well(self):
         space = self.namespace

@@ -88,7 +88,10 @@ class AgentDriver::Impl {
                      std::vector<bool>& ended) {
     Board();
     policy.Begin(seed, 1);
-    while (!Stopped() && (episodes == 0 || ended.size() < static_cast<std::size_t>(episodes))) {
+    const auto is_done = [&] {
+      return episodes != 0 && ended.size() >= static_cast<std::size_t>(episodes);
+    };
+    while (!Stopped() && !is_done()) {
       const FarmState::ConstPtr now = WaitForObservation();
       for (const FarmState::ConstPtr& over : std::exchange(over_, {})) {
         const bool success = over->reason == FarmState::ALL_RETRIEVED;
@@ -99,7 +102,7 @@ class AgentDriver::Impl {
         const bool is_now = newest_->seed == over->seed && newest_->episode == over->episode;
         if (is_now) StartNext(*over);
       }
-      if (!now || now->reason != FarmState::NONE) continue;
+      if (is_done() || !now || now->reason != FarmState::NONE) continue;
       if (!now->ships[static_cast<std::size_t>(options_.ship)].active) continue;
       if (now != acted_on_) {  // else the last actions are repeated; the policy must not act twice
         Look(*now);

@@ -121,6 +121,15 @@ class CompareBrowserTest(unittest.TestCase):
             self.assertIn(words, seen, page.name)
             self.assertRegex(seen, r"[−-]?[\d.]+( \| 95 %: | )\[[−-]?[\d.]+, [−-]?[\d.]+\]", page.name)
 
+    def test_numbers_of_episodes_have_thousands_separators(self):
+        self.show()
+        labels = self.browser.execute_script("""
+          window.charts[0].updateOptions({dateWindow: [0, 5000]});
+          return [...document.querySelectorAll("#curve_return .dygraph-axis-label-x")]
+            .map(one => one.textContent);""")
+        self.assertIn("2,000", labels)
+        self.assertNotIn("2000", labels)
+
     def test_tiles_show_both_runs_between_the_references(self):
         self.show()
         tiles = [one.text.splitlines() for one in

@@ -31,11 +31,14 @@ for (const chart of CURVES.charts) {
     axisLabelColor: "currentColor",
     axisLabelWidth: 60,
     digitsAfterDecimal: 3,
-    axes: returns ? {y: {
-      valueFormatter: y => inWords(fromScale(y, unit), 1),
-      ticker: (low, high) => ticks(fromScale(low, unit), fromScale(high, unit)).map(
-        value => ({v: toScale(value, unit), label: inWords(value, 0)})),
-    }} : {},
+    axes: {
+      x: {axisLabelFormatter: episode => inWords(episode, 0)},
+      y: returns ? {
+        valueFormatter: y => inWords(fromScale(y, unit), 1),
+        ticker: (low, high) => ticks(fromScale(low, unit), fromScale(high, unit)).map(
+          value => ({v: toScale(value, unit), label: inWords(value, 0)})),
+      } : {},
+    },
     valueRange: returns ? visible(chart).map(onScale) : null,
     underlayCallback: (canvas, area, dygraph) => {
       if (unit) shade(canvas, area, dygraph);

@@ -18,8 +18,8 @@
 ///     | training                                |
 ///     '-----------------------------------------'
 ///
-/// A picture with a side below 300 pixels consists of the map only. The end of the episode, the
-/// scale of values and the choice of a policy are then drawn on the map.
+/// A picture with a side below 300 pixels consists of the map only. The map then also contains how
+/// the episode ended, the scale of values and the actions that a policy chooses.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>

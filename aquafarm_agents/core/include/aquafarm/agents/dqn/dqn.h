@@ -11,11 +11,10 @@
 /// mask_illegal).
 ///
 /// LSTM-DQN (Algorithm 2) is DQN with a recurrent network. It is trained on sequences of steps of
-/// one episode. The network first reads the steps before a sequence; their number is the option
-/// burn_in. It starts with the recurrent state that was stored at the first of these steps. If the
-/// steps before a sequence include the first step of the episode, or if fewer than burn_in of them
-/// are stored, the sequence begins at the first stored step of the episode instead, without
-/// burn-in.
+/// one episode. The network first reads the steps directly before a sequence; their number is the
+/// option burn_in. It starts with the recurrent state that was stored at the first of these steps.
+/// If they include the first step of the episode, or are not all stored, there is no burn-in, and
+/// the sequence begins earlier, at the first stored step of the episode.
 ///
 /// One forward pass computes the actions of all farms. DeepOptions lists the options.
 

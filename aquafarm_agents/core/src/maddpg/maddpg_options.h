@@ -19,7 +19,7 @@ struct MaddpgOptions {
   std::int32_t batch_size{64};          ///< time steps per update, each with all agents of a farm
   double train_interval{4.0};           ///< farm steps between updates
   std::uint64_t learning_starts{5000};  ///< farm steps before the first update
-  std::uint64_t buffer_size{200000};    ///< max number of stored observations of one agent
+  std::uint64_t buffer_size{200000};    ///< capacity in observations, each of one agent
   double priority_exponent{0.6};        ///< exponent α of prioritised replay; 0: uniform
   double importance_exponent{0.4};      ///< initial exponent β; rises to 1
   double tau{0.01};                     ///< weight of the online network in soft target updates

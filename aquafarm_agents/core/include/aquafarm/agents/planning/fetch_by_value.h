@@ -12,8 +12,8 @@
 /// The value of a device is its insured value (farm/accounts.h) if the scenario has money, else the
 /// value that the reward credits (Device::value). Routes are the shortest ones by water. The rule
 /// uses disasters only to compute the latest end of the episode: with its last disaster, or at the
-/// step limit. A ship keeps its chosen device until the device is aboard, or can no
-/// longer be brought home in time. A self-propelled device sails to the nearest port.
+/// step limit. A ship keeps its chosen device until the device is aboard, or can no longer be
+/// brought home in time. A self-propelled device sails to the nearest port.
 
 #include <cstddef>
 #include <cstdint>
@@ -47,7 +47,7 @@ class FetchByValue {
 
   std::uint64_t seed_{};
   std::uint64_t episode_{};
-  std::int32_t next_step_{kNone};      ///< step expected in the next Act, else it restarts
+  std::int32_t next_step_{kNone};      ///< Act keeps errands_ only at this step
   std::vector<Errand> errands_;        ///< by ship
   std::vector<std::int32_t> to_port_;  ///< [H, W] moves by water to the nearest port
   std::vector<Cell> cells_;            ///< cells of the ships after the actions chosen so far

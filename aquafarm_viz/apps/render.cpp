@@ -244,9 +244,12 @@ void RenderPicture(const Request& request) {
                              ": got an unknown extension, "
                              "expected .png, .jpg, .mp4, .webm or .gif");
   }
-  aquafarm_viz::FarmPainter painter(request.size, aquafarm_viz::StyleByName(request.style));
   const std::vector<std::uint64_t> steps =
       request.steps.empty() ? std::vector<std::uint64_t>{0} : request.steps;
+  aquafarm_viz::ImageSize size = request.size;
+  // Pictures next to each other are usually shown smaller.
+  if (!request.at_end && steps.size() > 1 && !request.is_stacked) size.text_scale = 1.2;
+  aquafarm_viz::FarmPainter painter(size, aquafarm_viz::StyleByName(request.style));
   std::vector<cv::Mat> pictures(request.at_end ? 1 : steps.size());
   std::optional<std::uint64_t> episode;  // the first episode that has one of the steps
   std::size_t missing = pictures.size();
@@ -338,7 +341,7 @@ void AddLook(CLI::App& app, Request& request, std::string& layers) {
       ->capture_default_str();
   app.add_flag_callback(
       "--no-panel", [&request] { request.size.has_panel = false; },
-      "no lists, inset and legend, so that the map is larger");
+      "no lists and inset, so that the map is larger");
 }
 
 }  // namespace

@@ -313,7 +313,7 @@ TEST(DangerMarkers, FollowTheTrackOfTheScenario) {
                                    "    ring_winds_kt: [64, 34]\n");
   const auto named = scene.Draw();
   EXPECT_EQ(named.at({"alarm", 0}).text, "typhoon: gale over F0 now, hurricane force in 30 min");
-  EXPECT_EQ(named.at({"danger_label", 0}).text, "F0: gale now, hurricane in 30 min");
+  EXPECT_EQ(named.at({"danger_label", 0}).text, "F0: gale now, 64 kt in 30 min");
 }
 
 TEST(DangerMarkers, PutAHeadlineThatIsWiderThanTheFarmInTwoLines) {

@@ -75,7 +75,22 @@ TEST(OutlookText, NamesTheNextAndTheWorstArrivalOfAllDevices) {
   outlook.devices.clear();
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "no device is deployed");
   EXPECT_EQ(NowAndWorstText(scene.spec, {2, -5.0, 0U, 34, {{60.0, -20.0, 0U, 64}}}),
-            "gale now, hurricane in 3.0 h");
+            "gale now, 64 kt in 3.0 h");
+}
+
+TEST(OutlookText, DividesADangerIntoTheFirstRingAndTheWorseOnes) {
+  const Outlooks scene;
+  const auto words = [&](const DeviceOutlook& device, bool is_wide) {
+    const auto [first, worse] =
+        FirstAndWorse(scene.spec, device, [is_wide](const std::string&) { return is_wide; });
+    return first + "|" + worse;
+  };
+  DeviceOutlook device{3, -5.0, 0U, 34, {{10.0, -10.0, 0U, 50}, {60.0, -20.0, 0U, 64}}};
+  EXPECT_EQ(words(device, true), "gale now|storm in 30 min, hurricane force in 3.0 h");
+  EXPECT_EQ(words(device, false), "gale now|storm in 30 min, 64 kt in 3.0 h");
+  EXPECT_EQ(words({3, -5.0, 0U, 0, {{60.0, -20.0, 0U, 0}}}, true), "risk -5 now|risk -20 in 3.0 h");
+  device.arrivals.clear();
+  EXPECT_EQ(words(device, true), "gale now|");
 }
 
 TEST(OutlookText, ShortensTheNameAndTheDangerOfADeviceUntilTheyFit) {
@@ -91,7 +106,7 @@ TEST(OutlookText, ShortensTheNameAndTheDangerOfADeviceUntilTheyFit) {
   };
   EXPECT_EQ(words(60), "F3 release|gale in 30 min, hurricane force in 3.0 h");
   EXPECT_EQ(words(43), "F3|gale in 30 min, hurricane force in 3.0 h");
-  EXPECT_EQ(words(30), "F3 release|hurricane in 3.0 h") << "the kind rather than the second word";
+  EXPECT_EQ(words(30), "F3 release|64 kt in 3.0 h") << "the kind rather than the second word";
   EXPECT_EQ(words(27), "F3|hurricane force in 3.0 h");
   EXPECT_EQ(words(0), "F3|" + RiskText(scene.spec, device, ", ")) << "the shortest if nothing fits";
 }
@@ -193,10 +208,12 @@ TEST(OutlookText, NamesTheNearestRingIfNoDeviceIsInDanger) {
             "no known danger to devices for the next 3.0 h");
   const std::vector<std::string> headlines = Headlines(scene.spec, scene.state, scene.outlook());
   EXPECT_EQ(headlines.front().substr(0, 36), "Typhoon in the ENE: risk -5 passes a");
-  EXPECT_EQ(headlines.back(),
+  EXPECT_EQ(headlines[2],
             "Risk -5 passes about 2.0 km from F3 in about 1.5 h; "
-            "no known danger to devices for the next 3.0 h")
-      << "also the shortest headline says so";
+            "no known danger to devices for the next 3.0 h");
+  EXPECT_EQ(headlines.back(),
+            "Risk -5 passes about 2.0 km from F3 in about 1.5 h; no danger known for 3.0 h")
+      << "also the shortest headline names the ring";
   scene.state.disasters[0].x = 10.0F;  // moves away
   EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()),
             "risk -5 is 2.0 km from F3 now; no known danger to devices for the next 3.0 h");

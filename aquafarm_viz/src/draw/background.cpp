@@ -182,10 +182,10 @@ cv::Mat DrawBackground(const FarmSpec& spec, const Layout& layout, const Fonts& 
   for (const int y : {layout.top.height - 1, layout.bottom.y}) {
     cv::rectangle(image, cv::Rect(0, y, size.width, 1), Bgr(layout.style->rule), cv::FILLED);
   }
+  DrawLegend(image, spec, layout, fonts);
   if (layout.panel.empty()) return image;
   cv::rectangle(image, cv::Rect(layout.panel.x, layout.panel.y, 1, layout.panel.height),
                 Bgr(layout.style->rule), cv::FILLED);
-  DrawLegend(image, spec, layout, fonts);
   return image;
 }
 

@@ -48,7 +48,8 @@ struct FarmPainter::Parts {
   Parts(ImageSize wanted, const Style& colours)
       : style(&colours),
         size{std::clamp(wanted.width, kMinImageSide, kMaxImageSide),
-             std::clamp(wanted.height, kMinImageSide, kMaxImageSide), wanted.has_panel},
+             std::clamp(wanted.height, kMinImageSide, kMaxImageSide), wanted.has_panel,
+             wanted.text_scale},
         fonts(MakeLayout(1, 1, size).unit) {}
 
   const Style* style;

@@ -18,6 +18,7 @@ constexpr double kMaxPanelWidth = 276.0;  // max width; the panel takes what the
 constexpr double kAxisLeft = 52.0;
 constexpr double kAxisBottom = 18.0;
 constexpr double kGap = 10.0;
+constexpr double kKeyBelow = 72.0;  // height of a legend below the map
 constexpr int kSmallest = 300;      // min side of a picture with texts around the map [pixels]
 constexpr double kWholePixels = 6;  // from this size [pixels] on, the size of a cell is an integer
 
@@ -41,7 +42,7 @@ Layout MakeLayout(int width, int height, ImageSize size, const Style& style) {
   Layout layout;
   layout.style = &style;
   const int short_side = std::min(size.width, size.height);
-  layout.unit = std::max(short_side / kDesignSide, 0.7);
+  layout.unit = std::max(size.text_scale * short_side / kDesignSide, 0.7);
   cv::Rect room(0, 0, size.width, size.height);
   if (short_side >= kSmallest) {
     layout.top = {0, 0, size.width, layout.Px(kTop)};
@@ -66,6 +67,12 @@ Layout MakeLayout(int width, int height, ImageSize size, const Style& style) {
     layout.panel.width += spare;
     room.width -= spare;
   }
+  // A map that is much lower than its place has the legend below it.
+  if (short_side >= kSmallest && room.height - map.height >= layout.Px(kKeyBelow)) {
+    room.height -= layout.Px(kKeyBelow);
+    layout.key = {room.x, room.br().y + layout.Px(kAxisBottom + 4.0), room.width,
+                  layout.Px(kKeyBelow - 4.0)};
+  }
   layout.map = {room.x + (room.width - map.width) / 2, room.y + (room.height - map.height) / 2,
                 map.width, map.height};
   layout.view = MapView(width, height, cell_px);
@@ -74,8 +81,8 @@ Layout MakeLayout(int width, int height, ImageSize size, const Style& style) {
 
 MapPlace PlaceMap(int width, int height, ImageSize size) {
   const auto side = [](int pixels) { return std::clamp(pixels, kMinImageSide, kMaxImageSide); };
-  const Layout layout =
-      MakeLayout(width, height, {side(size.width), side(size.height), size.has_panel});
+  const Layout layout = MakeLayout(
+      width, height, {side(size.width), side(size.height), size.has_panel, size.text_scale});
   return {layout.map, layout.view};
 }
 

@@ -18,23 +18,35 @@ using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
 // Sizes in design units.
-constexpr double kFoot = 45.0;      // height of the north arrow and the scale bar
-constexpr double kHeading = 18.0;   // height of the heading
-constexpr double kKeyRow = 16.0;    // height of a row of the keys
-constexpr double kKeyScale = 24.0;  // height of the scale of risks with its texts
+constexpr double kFoot = 45.0;       // height of the north arrow and the scale bar
+constexpr double kHeading = 18.0;    // height of the heading
+constexpr double kKeyRow = 16.0;     // height of a row of the keys
+constexpr double kKeyScale = 24.0;   // height of the scale of risks with its texts
+constexpr double kSign = 84.0;       // min width of a sign with its text below the map
+constexpr double kMaxRisks = 260.0;  // max width of the key of risks without names below the map
+constexpr double kScale = 205.0;     // width of the north arrow and the scale bar below the map
 
 constexpr std::size_t kMaxColors = 4;  // max number of risks in the key
 constexpr double kMildRisk = -5.0;     // risk of the sample for Sign::kAtRisk
 
 bool HasNames(const RiskKey& key) { return !key.empty() && key.front().wind_kt > 0; }
 
-// Returns the height of the key of risks [pixels]. Rings with names have a row each.
+bool IsBelowMap(const Layout& layout) { return !layout.key.empty(); }
+
+// Returns the height of the key of risks [pixels]. Rings with names have a row each in the panel,
+// and a common row below the map.
 int KeyPx(const RiskKey& key, const Layout& layout) {
   if (key.empty()) return layout.Px(kKeyScale);
-  return (HasNames(key) ? static_cast<int>(key.size()) : 1) * layout.Px(kKeyRow);
+  const bool has_rows = HasNames(key) && !IsBelowMap(layout);
+  return (has_rows ? static_cast<int>(key.size()) : 1) * layout.Px(kKeyRow);
 }
 
-int SignColumns(const Layout& layout) { return layout.panel.width >= layout.Px(245.0) ? 3 : 2; }
+int SignColumns(const Layout& layout) {
+  if (IsBelowMap(layout)) {
+    return std::max(2, (layout.key.width - layout.Px(kScale)) / layout.Px(kSign));
+  }
+  return layout.panel.width >= layout.Px(245.0) ? 3 : 2;
+}
 
 // Returns the column and row of each sign in the key. A sign that does not fit into the rest of a
 // row begins the next row.
@@ -91,13 +103,17 @@ void DrawNorthArrow(cv::Mat& image, cv::Point at, const Layout& layout, const Fo
 }  // namespace
 
 void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
-  if (layout.panel.empty()) return;
-  const int left = layout.panel.x + layout.Px(10);
-  const int foot = layout.panel.y + layout.panel.height - layout.Px(14);
+  if (!HasLegend(layout)) return;
+  const cv::Rect place = IsBelowMap(layout) ? layout.key : layout.panel;
+  const int width = IsBelowMap(layout) ? layout.Px(kScale) : place.width - layout.Px(16);
+  const int left = place.br().x - width - (IsBelowMap(layout) ? 0 : layout.Px(6));
+  const int foot = place.br().y - layout.Px(14);
   DrawNorthArrow(image, {left + layout.Px(8), foot - layout.Px(6)}, layout, fonts);
-  DrawScaleBar(image, {left + layout.Px(30), foot}, layout.panel.width - layout.Px(46),
-               spec.cell_size_m, layout, fonts);
+  DrawScaleBar(image, {left + layout.Px(30), foot}, width - layout.Px(30), spec.cell_size_m, layout,
+               fonts);
 }
+
+bool HasLegend(const Layout& layout) { return IsBelowMap(layout) || !layout.panel.empty(); }
 
 namespace {
 
@@ -344,15 +360,30 @@ void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
 }  // namespace
 
 int LegendPx(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout) {
+  if (IsBelowMap(layout)) return 0;
   return layout.Px(kFoot) + SignsPx(signs, layout) + KeyPx(key, layout) + layout.Px(kHeading);
 }
 
-void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs, const FarmState& state,
-               const Layout& layout, const Fonts& fonts) {
-  const int columns = SignColumns(layout);
-  const int left = layout.panel.x + layout.Px(10);
-  const int top = layout.panel.y + layout.panel.height - layout.Px(kFoot) - SignsPx(signs, layout);
-  const int width = (layout.panel.width - layout.Px(16)) / columns;
+namespace {
+
+// Returns the part of the picture that contains the rows of both keys.
+cv::Rect RowsOf(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout) {
+  if (IsBelowMap(layout)) return layout.key;
+  const int height = SignsPx(signs, layout) + KeyPx(key, layout);
+  const cv::Rect& panel = layout.panel;
+  return {panel.x + layout.Px(10), panel.br().y - layout.Px(kFoot) - height,
+          panel.width - layout.Px(16), height};
+}
+
+}  // namespace
+
+void DrawSigns(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
+               const FarmState& state, const Layout& layout, const Fonts& fonts) {
+  const cv::Rect rows = RowsOf(key, signs, layout);
+  const int left = rows.x;
+  const int top = rows.y + KeyPx(key, layout);
+  const int width =
+      (rows.width - (IsBelowMap(layout) ? layout.Px(kScale) : 0)) / SignColumns(layout);
   const std::vector<cv::Point> cells = SignCells(signs, layout);
   for (std::size_t i = 0; i < signs.size(); ++i) {
     const int x = left + cells[i].x * width;
@@ -383,44 +414,63 @@ void DrawRisks(cv::Mat& image, const RiskKey& rings, bool is_filled, cv::Rect ro
   }
 }
 
-}  // namespace
+// Draws a sample of a ring, its name, and its risk. Below the map, the risk is next to the name,
+// else at the right end of the row.
+void DrawNamedRing(cv::Mat& image, const KeyRing& ring, bool is_filled, cv::Rect row,
+                   const Layout& layout, const Fonts& fonts) {
+  const int base = row.y + (row.height + fonts.small.cap_height()) / 2;
+  const cv::Rect box(row.x, row.y + layout.Px(1.5), layout.Px(15), layout.Px(12));
+  DrawRiskSample(image, box, ring.kind, ring.risk, is_filled, layout);
+  const std::string risk = "risk " + Number(ring.risk, 0);
+  const int words = row.x + layout.Px(22);
+  const int space = row.br().x - fonts.small.Width(risk) - layout.Px(8) - words;
+  const std::string name =
+      fonts.small.Fit(FittingRingName(ring.wind_kt, space, fonts.small), space);
+  const int end = words + fonts.small.Draw(image, name, {words, base}, Bgr(layout.style->words));
+  const int at = IsBelowMap(layout) ? end + layout.Px(8) : row.br().x - fonts.small.Width(risk);
+  fonts.small.Draw(image, risk, {at, base}, Bgr(layout.style->faint));
+}
 
-void DrawRiskKey(cv::Mat& image, const RiskKey& key, bool is_filled, const std::vector<Sign>& signs,
-                 const Layout& layout, const Fonts& fonts) {
-  const int left = layout.panel.x + layout.Px(10);
-  const int right = layout.panel.x + layout.panel.width - layout.Px(10);
-  int y = layout.panel.y + layout.panel.height - LegendPx(key, signs, layout);
-  fonts.bold.Draw(image, "KEY", {left, y + (layout.Px(kHeading) + fonts.bold.cap_height()) / 2},
-                  Bgr(layout.style->faint));
-  y += layout.Px(kHeading);
-  const auto at_right = [&](const std::string& text, int base, Rgb color) {
-    fonts.small.Draw(image, text, {right - fonts.small.Width(text), base}, Bgr(color));
-  };
-  if (!key.empty() && !HasNames(key)) {
-    return DrawRisks(image, key, is_filled, {left, y, right - left, layout.Px(kKeyRow)}, layout,
-                     fonts);
-  }
-  for (const KeyRing& ring : key) {
-    const int base = y + (layout.Px(kKeyRow) + fonts.small.cap_height()) / 2;
-    const cv::Rect box(left, y + layout.Px(1.5), layout.Px(15), layout.Px(12));
-    DrawRiskSample(image, box, ring.kind, ring.risk, is_filled, layout);
-    const std::string risk = "risk " + Number(ring.risk, 0);
-    const int words = left + layout.Px(22);
-    const int space = right - fonts.small.Width(risk) - layout.Px(4) - words;
-    const std::string name = FittingRingName(ring.wind_kt, space, fonts.small);
-    fonts.small.Draw(image, fonts.small.Fit(name, space), {words, base}, Bgr(layout.style->words));
-    at_right(risk, base, layout.style->faint);
-    y += layout.Px(kKeyRow);
-  }
-  if (!key.empty()) return;
-  const cv::Rect scale(left, y, right - left, layout.Px(7));
+// Draws the colours of all risks, from the mildest to the worst.
+void DrawRiskScale(cv::Mat& image, cv::Rect row, const Layout& layout, const Fonts& fonts) {
+  const cv::Rect scale(row.x, row.y, row.width, layout.Px(7));
   for (int i = 0; i < scale.width; ++i) {
     cv::rectangle(image, cv::Rect(scale.x + i, scale.y, 1, scale.height),
                   Bgr(layout.style->Risk(double(i) / scale.width)), cv::FILLED);
   }
-  const int base = y + layout.Px(10) + fonts.small.cap_height();
-  fonts.small.Draw(image, "risk -5", {left, base}, Bgr(layout.style->faint));
-  at_right("-20 worst", base, layout.style->faint);
+  const int base = row.y + layout.Px(10) + fonts.small.cap_height();
+  const std::string worst = "-20 worst";
+  fonts.small.Draw(image, "risk -5", {row.x, base}, Bgr(layout.style->faint));
+  fonts.small.Draw(image, worst, {row.br().x - fonts.small.Width(worst), base},
+                   Bgr(layout.style->faint));
+}
+
+}  // namespace
+
+void DrawRiskKey(cv::Mat& image, const RiskKey& key, bool is_filled, const std::vector<Sign>& signs,
+                 const Layout& layout, const Fonts& fonts) {
+  cv::Rect row = RowsOf(key, signs, layout);
+  row.height = layout.Px(kKeyRow);
+  if (IsBelowMap(layout)) {
+    if (HasNames(key)) row.width /= static_cast<int>(key.size());
+    if (!HasNames(key)) row.width = std::min(row.width, layout.Px(kMaxRisks));
+  } else {
+    row.width -= layout.Px(4);
+    fonts.bold.Draw(
+        image, "KEY",
+        {row.x, row.y - layout.Px(kHeading) + (layout.Px(kHeading) + fonts.bold.cap_height()) / 2},
+        Bgr(layout.style->faint));
+  }
+  if (key.empty()) return DrawRiskScale(image, row, layout, fonts);
+  if (!HasNames(key)) return DrawRisks(image, key, is_filled, row, layout, fonts);
+  for (const KeyRing& ring : key) {
+    DrawNamedRing(image, ring, is_filled, row, layout, fonts);
+    if (IsBelowMap(layout)) {
+      row.x += row.width;
+    } else {
+      row.y += row.height;
+    }
+  }
 }
 
 }  // namespace aquafarm_viz

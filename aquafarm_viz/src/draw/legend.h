@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The legend at the bottom of the panel. From top to bottom: the key of risks, the key of signs,
-/// and the north arrow with the scale bar. Private to this package.
+/// The legend at the bottom of the panel, or below the map if that has space (Layout::key). It
+/// consists of the key of risks, the key of signs, and the north arrow with the scale bar. Private
+/// to this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -74,19 +75,23 @@ const char* SignWords(Sign sign);
 /// Returns the number of columns that a sign takes in the key.
 int SignSpan(Sign sign);
 
-/// Returns the height of the whole legend [pixels].
+/// Returns whether the picture has a legend: it has a panel, or space for the legend below the map.
+bool HasLegend(const Layout& layout);
+
+/// Returns the height of the whole legend in the panel [pixels]; 0 if the legend is below the map.
 int LegendPx(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout);
 
 /// Draws the constant part of the legend: north arrow and scale bar.
 void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                 const Fonts& fonts);
 
-/// Draws the key of signs above the constant part.
-void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs,
+/// Draws the key of signs below the key of risks.
+void DrawSigns(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
                const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
 
-/// Draws the key of risks and its heading above the key of signs. Rings with winds have a row each,
-/// others are in one row. An empty key: draws the colour scale of all risks.
+/// Draws the key of risks above the key of signs, in the panel with a heading. Rings with winds
+/// have a row each in the panel, others are in one row. An empty key: draws the colour scale of all
+/// risks.
 /// @param is_filled  see DrawRiskSample
 void DrawRiskKey(cv::Mat& image, const RiskKey& key, bool is_filled, const std::vector<Sign>& signs,
                  const Layout& layout, const Fonts& fonts);

@@ -118,8 +118,6 @@ cv::Point TextAt(cv::Rect place, const Layout& layout) {
   return place.tl() + cv::Point(margin, margin);
 }
 
-Rgb RiskColor(double risk, const Layout& layout) { return layout.style->Risk(Severity(risk)); }
-
 }  // namespace
 
 FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
@@ -250,16 +248,26 @@ std::vector<RingPoint> PointsOnMap(const DisasterState& disaster, std::size_t ri
   return points;
 }
 
+// A place for one of several texts.
+struct TextPlace {
+  std::size_t text{};  // index of the text
+  cv::Rect place;
+};
+
 // Finds and takes a place for the label of a ring: on its line, else outside it, else inside it.
-std::optional<cv::Rect> PlaceBesideRing(const std::vector<RingPoint>& points, cv::Size size,
-                                        FreeSpace& space, const Layout& layout) {
+// @param sizes  size of each possible text; the first that fits is chosen
+std::optional<TextPlace> PlaceBesideRing(const std::vector<RingPoint>& points,
+                                         const std::vector<cv::Size>& sizes, FreeSpace& space,
+                                         const Layout& layout) {
   for (const double side : {0.0, 1.0, -1.0}) {
-    for (const RingPoint& point : points) {
-      const double away = std::abs(point.outwards.x) * size.width / 2.0 +
-                          std::abs(point.outwards.y) * size.height / 2.0 + 6.0 * layout.unit;
-      const auto place =
-          space.Take(size, point.at + point.outwards * (side * away), 5.0 * layout.unit);
-      if (place) return place;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      for (const RingPoint& point : points) {
+        const double away = std::abs(point.outwards.x) * sizes[i].width / 2.0 +
+                            std::abs(point.outwards.y) * sizes[i].height / 2.0 + 6.0 * layout.unit;
+        const auto place =
+            space.Take(sizes[i], point.at + point.outwards * (side * away), 5.0 * layout.unit);
+        if (place) return TextPlace{i, *place};
+      }
     }
   }
   return std::nullopt;
@@ -292,31 +300,32 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
     if (!IsDrawn(disaster)) continue;
     for (std::size_t ring = 0; ring < std::min(disaster.radii.size(), disaster.risks.size());
          ++ring) {
-      const std::string name = ring < winds.size() ? aquafarm::RingName(winds[ring]) + ", " : "";
       const std::string risk = Number(double(disaster.risks[ring]), 0);
-      const auto points = PointsOnMap(disaster, ring, map.size(), layout);
+      const std::string wind = ring < winds.size() ? aquafarm::RingName(winds[ring]) + ", " : "";
+      // The second text is for a ring with little space. Rings of several disasters have no plates,
+      // because many plates would cover the rings.
+      const std::vector<std::string> texts =
+          are_several ? std::vector<std::string>{DisasterName(disaster.kind) + " " + risk, risk}
+                      : std::vector<std::string>{wind + "risk " + risk, "risk " + risk};
+      std::vector<cv::Size> sizes;
+      for (const std::string& text : texts) {
+        sizes.push_back(are_several ? TextSize(fonts.bold, text, layout)
+                                    : PlateSize({text}, layout, fonts));
+      }
       FreeSpace water = space.space(Cover::kNothing);
       BlockOtherRings(state, disaster, ring, map.size(), water, layout);
+      const auto found =
+          PlaceBesideRing(PointsOnMap(disaster, ring, map.size(), layout), sizes, water, layout);
+      if (!found) continue;  // only the key of risks explains the ring
+      const auto& [text, place] = *found;
+      space.Add(place);
       const Rgb color = RiskColor(double(disaster.risks[ring]), layout);
-      if (are_several) {  // only the risk, because many plates would cover the rings
-        const auto place =
-            PlaceBesideRing(points, TextSize(fonts.bold, risk, layout), water, layout);
-        if (!place) continue;
-        space.Add(*place);
-        DrawLabel(map, fonts.bold, risk, TextAt(*place, layout), layout,
+      if (are_several) {
+        DrawLabel(map, fonts.bold, texts[text], TextAt(place, layout), layout,
                   Mix(color, style.label, 0.3));
-        continue;
+      } else {
+        DrawPlate(map, place, {texts[text]}, color, layout, fonts);
       }
-      std::optional<cv::Rect> place;
-      std::vector<std::string> lines;
-      for (const std::string& text : {name + "risk " + risk, "risk " + risk}) {
-        lines = {text};
-        place = PlaceBesideRing(points, PlateSize(lines, layout, fonts), water, layout);
-        if (place) break;
-      }
-      if (!place) continue;  // only the key of risks explains the ring
-      space.Add(*place);
-      DrawPlate(map, *place, lines, color, layout, fonts);
     }
   }
 }
@@ -448,8 +457,12 @@ void LabelShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, Labe
     const std::string text = "ship " + std::to_string(ship.id);
     const cv::Size size = TextSize(fonts.bold, text, layout);
     const cv::Point2d at = ShipPlace(spec, state, ship, layout);
-    const double farthest = 2.0 * layout.ship_radius_px() + size.width / 2.0 + 10.0 * layout.unit;
-    const auto place = space.Take(size, at, farthest);
+    // A label next to its ship may cover a path, so that it is not next to another symbol.
+    const double above = layout.ship_radius_px() + size.height + 8.0 * layout.unit;
+    const double beside = layout.ship_radius_px() + size.width / 2.0 + 6.0 * layout.unit;
+    auto place = space.Take(Cover::kNothing, size, at, above);
+    if (!place) place = space.Take(Cover::kPaths, size, at, above);
+    if (!place) place = space.Take(size, at, beside + layout.ship_radius_px());
     if (!place) continue;
     const Rgb color = Mix(ShipColor(ship.id), layout.style->label, 0.7);
     DrawLeader(map, at, layout.ship_radius_px(), *place, color, space, layout);

@@ -130,9 +130,45 @@ class Panel {
   int end_;
 };
 
+// Returns when a device was fetched, and its port: "fetched 0:27", "port B". Unknown parts are
+// empty.
+std::pair<std::string, std::string> TripOf(const FarmSpec& spec, const DeviceState& device,
+                                           const Trail* trail) {
+  const auto at = trail == nullptr ? std::nullopt : trail->FetchedAt(device.id);
+  const std::string fetched = at ? "fetched " + TimeOfDay(spec, *at) : "";
+  for (const auto& port : spec.ports) {
+    const bool is_there = port.cell.x == device.x && port.cell.y == device.y;
+    if (is_there && device.status == DeviceState::DELIVERED) {
+      return {fetched, "port " + PortLetter(port.id)};
+    }
+  }
+  return {fetched, ""};
+}
+
+// Returns the health and the value of a device: "health 88 %", "value 80".
+std::pair<std::string, std::string> HealthAndValue(const DeviceState& device) {
+  const std::string health = Number(100.0 * double(device.health), 0) + " %";
+  return {device.health_known ? "health " + health : "",
+          "value " + Number(double(device.value), 0)};
+}
+
+// Draws two rows for a device in danger: the first ring in the first row, worse ones in the second.
+// Each row has the colour of its worst ring.
+void ListDanger(Panel& panel, const FarmSpec& spec, const DeviceState& device,
+                const DeviceOutlook& outlook, const Layout& layout) {
+  const auto [first, worse] = FirstAndWorse(
+      spec, outlook, [&panel](const std::string& text) { return panel.Fits("", text); });
+  const double risk = outlook.risk_now < 0.0 ? outlook.risk_now : outlook.arrivals.front().risk;
+  panel.Item(DeviceLabel(device.id) + " " + DeviceName(device.kind), first,
+             RiskColor(risk, layout));
+  panel.Detail("", worse.empty() ? HealthAndValue(device).first : worse,
+               worse.empty() ? layout.style->faint : RiskColor(WorstRisk(outlook), layout));
+}
+
 // Draws one row for each device with its symbol, its kind, and its danger or status.
+// @param has_details  true: draws a second row for each device
 void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
-                    const Outlook& outlook, const Layout& layout) {
+                    const Outlook& outlook, bool has_details, const Layout& layout) {
   for (const auto& device : state.devices) {
     const bool done = device.status == DeviceState::DELIVERED;
     DrawDeviceSymbol(panel.image(), device.kind, {panel.SymbolAt(), 6.0 * layout.unit, 0.0},
@@ -143,14 +179,25 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
     }
     Rgb color = done ? layout.style->good : layout.style->faint;
     std::string name = DeviceLabel(device.id) + " " + DeviceName(device.kind);
+    const DeviceOutlook* danger = nullptr;
     for (const DeviceOutlook& one : outlook.devices) {
-      if (one.id != device.id || DangerText(spec, one).empty()) continue;
-      color = layout.style->alarm;
+      if (one.id == device.id && !DangerText(spec, one).empty()) danger = &one;
+    }
+    if (danger != nullptr && has_details) {
+      ListDanger(panel, spec, device, *danger, layout);
+      continue;
+    }
+    if (danger != nullptr) {
+      color = RiskColor(WorstRisk(*danger), layout);
       std::tie(name, status) = NameAndDanger(
-          spec, DeviceName(device.kind), one,
+          spec, DeviceName(device.kind), *danger,
           [&panel](const auto& left, const auto& right) { return panel.Fits(left, right); });
     }
     panel.Item(name, status, color);
+    if (!has_details) continue;
+    const auto [left, right] = device.status == DeviceState::DEPLOYED ? HealthAndValue(device)
+                                                                      : TripOf(spec, device, trail);
+    panel.Detail(left, right, layout.style->faint);
   }
 }
 
@@ -167,7 +214,7 @@ ColoredText DeviceInHalf(const Panel& panel, const FarmSpec& spec, const DeviceS
                                               [&panel](const auto& left, const auto& right) {
                                                 return panel.FitsInHalf(left + " " + right);
                                               });
-    return {name + " " + danger, layout.style->alarm};
+    return {name + " " + danger, RiskColor(WorstRisk(one), layout)};
   }
   const std::string text = DeviceLabel(device.id) + " " + status;
   const std::string longer = at ? text + " " + TimeOfDay(spec, *at) : text;
@@ -214,7 +261,8 @@ void ListKinds(Panel& panel, const FarmState& state, const Layout& layout) {
 void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                  const Outlook& outlook, const Layout& layout) {
   constexpr std::size_t kMaxRows = 6;
-  constexpr int kRowsBelow = 8;  // kept free for disasters and ships
+  constexpr int kRowsBelow = 8;      // kept free for disasters and ships
+  constexpr int kRowsOfRegion = 12;  // kept free for headings and the region
   const auto delivered = std::count_if(
       state.devices.begin(), state.devices.end(),
       [](const DeviceState& device) { return device.status == DeviceState::DELIVERED; });
@@ -222,7 +270,9 @@ void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, con
   panel.Heading("DEVICES" + zone,
                 std::to_string(delivered) + " / " + std::to_string(state.devices.size()) + " safe");
   if (state.devices.size() <= kMaxRows) {
-    ListEachDevice(panel, spec, state, trail, outlook, layout);
+    const auto rows = 2 * state.devices.size() + 3 * state.disasters.size() + state.ships.size();
+    const bool has_details = panel.RowsLeft() >= static_cast<int>(rows) + kRowsOfRegion;
+    ListEachDevice(panel, spec, state, trail, outlook, has_details, layout);
   } else if (state.devices.size() <= 2 * kMaxRows &&
              panel.RowsLeft() >= int(kMaxRows) + kRowsBelow) {
     ListInHalves(panel, spec, state, trail, outlook, layout);
@@ -404,12 +454,13 @@ bool ListPolicy(Panel& panel, const FarmSpec& spec, const FarmState& state,
 bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                const Overlays& overlays, const Values* values, const Forecasts& forecasts,
                const std::vector<CoastRing>& coast, const Layout& layout, const Fonts& fonts) {
-  if (layout.panel.empty()) return false;
+  if (!HasLegend(layout)) return false;
   const RiskKey key = MakeRiskKey(state, forecasts.courses);
   const std::vector<Sign> signs = SignsOf(spec, state, overlays, forecasts.outlook, key, layout);
-  DrawSigns(image, signs, state, layout, fonts);
+  DrawSigns(image, key, signs, state, layout, fonts);
   const bool has_values = overlays.layers.values && values != nullptr;
   DrawRiskKey(image, key, /*is_filled=*/!has_values, signs, layout, fonts);
+  if (layout.panel.empty()) return false;
   Panel panel(image, LegendPx(key, signs, layout), layout, fonts);
   const Trail* trail = overlays.trail != nullptr ? overlays.trail : overlays.route;
   ListDevices(panel, spec, state, trail, forecasts.outlook, layout);

@@ -21,6 +21,7 @@ struct Moved {
   cv::Point2d to;
   bool is_dashed{};  ///< the ship had nothing aboard
   double age{};      ///< in (0, 1): lowest for the newest move, highest for the oldest
+  bool is_past{};    ///< a later move of the ship begins another trip, after a drop-off
 };
 
 /// Returns the moves of a ship, the oldest first. They run to the right of the cells' centres, so
@@ -32,7 +33,8 @@ std::vector<Moved> MovesOf(const ShipTrail& way, std::int32_t ship, bool are_sev
                            const Layout& layout);
 
 /// Draws the trails or routes of the ships. Older parts have a colour that is closer to that of the
-/// sea. Moves of a rescue ship with nothing aboard are dashed.
+/// sea. If there are several ships, their past trips are thinner until the episode ends.
+/// Moves of a rescue ship with nothing aboard are dashed.
 void DrawPaths(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& paths,
                const Layout& layout);
 

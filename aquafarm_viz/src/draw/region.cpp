@@ -27,7 +27,9 @@ using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr double kSmallestSide = 58.0;  // min height of the inset [design units]
+// Min height of the inset [design units], if a course is known and if none is.
+constexpr double kSmallestSide = 58.0;
+constexpr double kSmallestWithoutCourse = 90.0;
 
 bool IsOutside(const FarmSpec& spec, const DisasterState& disaster) {
   return IsDrawn(disaster) && !IsCentreInFarm(spec, disaster);
@@ -221,11 +223,13 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
 namespace {
 
 // Returns the part of the region that the inset shows [cells]. It contains the farm and the centres
-// of all disasters. For each course that is not extrapolated, it also contains the closest approach
-// and the points at less than half of `farthest_m` from the middle of the farm.
+// of all disasters, and their rings with a radius of less than half of `farthest_m`. For each
+// course that is not extrapolated, it also contains the closest approach and the points at less
+// than half of `farthest_m` from the middle of the farm.
 // @param farthest_m  distance of the farthest centre from the middle of the farm [m]
 cv::Rect2d ShownPart(const FarmSpec& spec, const FarmState& state,
                      const std::vector<Course>& courses, double farthest_m) {
+  constexpr double kSmallRing = 0.5;  // max radius of a ring that is shown whole [farthest_m]
   cv::Rect2d part(-0.5, -0.5, spec.width, spec.height);
   const auto add = [&part](double x, double y) {
     const cv::Point2d from(std::min(part.x, x), std::min(part.y, y));
@@ -236,6 +240,13 @@ cv::Rect2d ShownPart(const FarmSpec& spec, const FarmState& state,
     if (!IsDrawn(state.disasters[i])) continue;
     const Track& ahead = courses[i].ahead;
     add(state.disasters[i].x, state.disasters[i].y);
+    for (std::size_t ring = 0; ring < state.disasters[i].radii.size(); ++ring) {
+      const auto radii = RingQuadrants(state.disasters[i], ring);
+      const double radius = *std::max_element(radii.begin(), radii.end());
+      if (radius * spec.cell_size_m >= kSmallRing * farthest_m) continue;
+      add(state.disasters[i].x - radius, state.disasters[i].y - radius);
+      add(state.disasters[i].x + radius, state.disasters[i].y + radius);
+    }
     if (courses[i].kind == Course::Kind::kExtrapolated) continue;
     const TrackPoint nearest = ClosestApproach(spec, ahead, ahead.front().step);
     add(nearest.x, nearest.y);
@@ -367,7 +378,7 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
   const bool has_course = words.heading != RegionWords().heading;
   // If there is no space for both the lines and the inset, the lines are left out, unless they
   // describe a course that is not extrapolated, or the arrival of a ring.
-  const int smallest = layout.Px(kSmallestSide);
+  const int smallest = layout.Px(has_course ? kSmallestSide : kSmallestWithoutCourse);
   const int for_inset = room.height - row_px - layout.Px(4);
   const bool has_lines = has_course || words.is_urgent || for_inset - 2 * row_px >= smallest;
   // The inset is lower if the course is extrapolated, because it then contains little.

@@ -36,6 +36,7 @@ struct Layout {
   cv::Rect top;
   cv::Rect map;
   cv::Rect panel;
+  cv::Rect key;  ///< legend below the map; empty: the panel contains the legend
   cv::Rect bottom;
   MapView view;
   const Style* style{&DarkStyle()};
@@ -73,6 +74,11 @@ cv::Mat DrawBackground(const aquafarm_msgs::FarmSpec& spec, const Layout& layout
 ///         the scenario's sea layers: warmth"
 void DrawSea(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const std::string& name,
              const Layout& layout, const Fonts& fonts);
+
+/// Returns the colour of a risk.
+inline Rgb RiskColor(double risk, const Layout& layout) {
+  return layout.style->Risk(Severity(risk));
+}
 
 /// Returns whether a disaster is drawn: it is known and has not ended.
 inline bool IsDrawn(const aquafarm_msgs::DisasterState& disaster) {

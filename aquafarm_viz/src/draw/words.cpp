@@ -81,6 +81,7 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
     fonts.title.Draw(image, fonts.title.Fit(name, right - left), first, Bgr(layout.style->words));
   }
   const auto pair = [&](const std::string& name_of, const std::string& value, Rgb color) {
+    if (!line.Has(fonts.small.Width(name_of) + layout.Px(5) + fonts.bold.Width(value))) return;
     line.Put(fonts.small, name_of, layout.style->faint, layout.Px(5));
     line.Put(fonts.bold, value, color, gap);
   };
@@ -92,10 +93,7 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
   if (state.paused) line.Put(fonts.bold, "paused", layout.style->GradeText(2), gap);
   if (state.observer >= 0)
     pair("as seen by ship", std::to_string(state.observer), layout.style->words);
-  const std::string seed = SeedText(state.seed);
-  if (line.Has(fonts.small.Width("seed") + layout.Px(5) + fonts.bold.Width(seed))) {
-    pair("seed", seed, layout.style->faint);
-  }
+  pair("seed", SeedText(state.seed), layout.style->faint);
 }
 
 // @param y  base of the line, from the upper edge of Layout::bottom down [design units]

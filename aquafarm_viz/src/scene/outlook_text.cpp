@@ -110,11 +110,14 @@ std::string ClockAhead(const FarmSpec& spec, const FarmState& state, const Outlo
          ")";
 }
 
-// Shortens "hurricane force in 9.0 h" to "hurricane in 9.0 h".
-std::string WithoutForce(std::string text) {
-  const std::string word = " force";
+// Shortens "hurricane force in 9.0 h" to "64 kt in 9.0 h".
+std::string WithKnots(std::string text) {
+  constexpr std::int32_t kHurricane_kt = 64;
+  const std::string word = NameOf(kHurricane_kt);
   const std::size_t at = text.find(word);
-  return at == std::string::npos ? text : text.erase(at, word.size());
+  return at == std::string::npos
+             ? text
+             : text.replace(at, word.size(), std::to_string(kHurricane_kt) + " kt");
 }
 
 // Returns "no known danger to devices for the next 12 h"; empty if all courses are known to their
@@ -147,9 +150,13 @@ std::string MissText(const FarmSpec& spec, const Outlook& outlook) {
 }
 
 // Returns MissText and KnownText: "risk -5 is 900 m from F2 now; no known danger to devices for the
-// next 3.0 h". A part that does not apply is left out.
-std::string SafeText(const FarmSpec& spec, const Outlook& outlook) {
-  const std::string known = KnownText(spec, outlook);
+// next 3.0 h", or "...; no danger known for 3.0 h" if `is_brief` is true. A part that does not
+// apply is left out.
+std::string SafeText(const FarmSpec& spec, const Outlook& outlook, bool is_brief) {
+  std::string known = KnownText(spec, outlook);
+  if (is_brief && !known.empty()) {
+    known = "no danger known for " + AheadText(spec, outlook.known_until);
+  }
   if (!std::isfinite(outlook.miss.cells)) return known;
   return MissText(spec, outlook) + (known.empty() ? "" : "; " + known);
 }
@@ -203,7 +210,8 @@ class Sentence {
   // Returns the sentence for the case that no device is in danger.
   std::string WriteSafe() const {
     const bool is_near = std::isfinite(outlook_.miss.cells);
-    return (is_near ? Name(outlook_.miss.disaster) + ": " : "") + SafeText(spec_, outlook_);
+    return (is_near ? Name(outlook_.miss.disaster) + ": " : "") +
+           SafeText(spec_, outlook_, /*is_brief=*/false);
   }
 
   // Adds the ring that covers the most urgent device now, if there is one.
@@ -283,6 +291,7 @@ std::vector<std::string> Headlines(const FarmSpec& spec, const FarmState& state,
   if (brief.empty()) return {};
   std::vector<std::string> lines{Sentence(spec, state, outlook, /*has_directions=*/true).Write(),
                                  OutlookText(spec, state, outlook), brief};
+  if (!IsInDanger(outlook)) lines.push_back(SafeText(spec, outlook, /*is_brief=*/true));
   for (std::string& line : lines) {
     line[0] = char(std::toupper(static_cast<unsigned char>(line[0])));
   }
@@ -291,7 +300,7 @@ std::vector<std::string> Headlines(const FarmSpec& spec, const FarmState& state,
 
 std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
   if (outlook.devices.empty()) return "";
-  if (!IsInDanger(outlook)) return SafeText(spec, outlook);
+  if (!IsInDanger(outlook)) return SafeText(spec, outlook, /*is_brief=*/false);
   const DeviceOutlook& first = outlook.devices.front();
   return DeviceLabel(first.id) + ": " + DangerText(spec, first);
 }
@@ -335,7 +344,18 @@ std::string NowAndWorstText(const FarmSpec& spec, const DeviceOutlook& device) {
       device.risk_now < 0.0 && device.wind_now_kt > 0 && !device.arrivals.empty() &&
       device.arrivals.back().wind_kt > 0 &&
       std::string(NameOf(device.wind_now_kt)) != NameOf(device.arrivals.back().wind_kt);
-  return is_named ? NameOf(device.wind_now_kt) + (" now, " + WithoutForce(worst)) : worst;
+  return is_named ? NameOf(device.wind_now_kt) + (" now, " + WithKnots(worst)) : worst;
+}
+
+std::pair<std::string, std::string> FirstAndWorse(
+    const FarmSpec& spec, const DeviceOutlook& device,
+    const std::function<bool(const std::string& text)>& fits) {
+  const std::string danger = DangerText(spec, device);
+  const std::size_t comma = danger.find(", ");
+  if (comma == std::string::npos) return {danger, ""};
+  std::string worse = danger.substr(comma + 2);
+  if (danger.rfind("risk ", 0) == 0) worse = "risk " + worse;
+  return {danger.substr(0, comma), fits(worse) ? worse : WithKnots(worse)};
 }
 
 std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {
@@ -363,7 +383,7 @@ std::pair<std::string, std::string> NameAndDanger(
     if (fits(label, danger)) break;
     danger = shorter;
   }
-  const std::string brief = WithoutForce(danger);
+  const std::string brief = WithKnots(danger);
   return fits(full, brief) ? std::pair(full, brief) : std::pair(label, danger);
 }
 

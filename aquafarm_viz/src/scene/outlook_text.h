@@ -41,8 +41,9 @@ std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs
                         const Outlook& outlook);
 
 /// Returns the outlook as headlines, the longest first: OutlookText with the direction of each
-/// disaster outside the farm, OutlookText, and ShortOutlookText. Each begins with a capital letter.
-/// Empty if ShortOutlookText is empty.
+/// disaster outside the farm, OutlookText, ShortOutlookText and, without a danger, a text of the
+/// same content with fewer words: "Risk -5 is 900 m from F2 now; no danger known for 3.0 h". Each
+/// begins with a capital letter. Empty if ShortOutlookText is empty.
 std::vector<std::string> Headlines(const aquafarm_msgs::FarmSpec& spec,
                                    const aquafarm_msgs::FarmState& state, const Outlook& outlook);
 
@@ -66,10 +67,18 @@ std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook&
 /// comes, or if the wind of the worst ring is not given.
 std::string WorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
 
-/// Returns the ring that covers the device now and the worst ring to come: "gale now, hurricane in
-/// 9.0 h". Returns WorstText if one of the two rings is missing, if the wind of one is not given,
-/// or if both winds have the same name.
+/// Returns the ring that covers the device now and the worst ring to come: "gale now, storm in
+/// 9.0 h". Instead of "hurricane force" it contains the wind, "gale now, 64 kt in 9.0 h". Returns
+/// WorstText if one of the two rings is missing, if the wind of one is not given, or if both winds
+/// have the same name.
 std::string NowAndWorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
+
+/// Returns DangerText in two parts, the first ring and the worse ones: "gale now", and "storm in
+/// 6.5 h, hurricane force in 9.0 h". The second part is empty if there is no worse ring. If `fits`
+/// refuses it, it contains "64 kt" instead of "hurricane force".
+std::pair<std::string, std::string> FirstAndWorse(
+    const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
+    const std::function<bool(const std::string& text)>& fits);
 
 /// Returns DangerText with risks instead of names of winds, and without the word "risk": "-5 now,
 /// -20 in 6.5 h".

@@ -18,6 +18,8 @@
 ///     | training                                |
 ///     '-----------------------------------------'
 ///
+/// If the map leaves enough height, the legend is below the map.
+///
 /// A picture with a side below 300 pixels consists of the map only. The map then also contains how
 /// the episode ended, the scale of values and the actions that a policy chooses.
 

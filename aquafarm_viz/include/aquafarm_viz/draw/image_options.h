@@ -20,9 +20,10 @@ inline constexpr int kMaxImageSide = 4096;  ///< max width and height [pixels]
 struct ImageSize {
   int width{800};
   int height{640};
-  /// false: omits the panel at the right (lists, map of the region, legend), so that the map is
-  /// larger
+  /// false: omits the panel at the right (lists, map of the region), so that the map is larger; the
+  /// legend is then below the map, if there is space
   bool has_panel{true};
+  double text_scale{1.0};  ///< factor of the sizes of texts and symbols, above 0
 };
 
 /// Optional content of a picture in addition to the state. A null pointer omits that content.

@@ -76,7 +76,7 @@ class RanchModel {
   /// Returns a row for each ship and self-propelled device; empty before the first state.
   std::vector<Row> Ships() const;
   /// Returns a row for each device; empty before the first state. The column "status" of a device
-  /// in danger contains its danger, such as "gale now, hurricane in 6.4 h".
+  /// in danger contains its danger, such as "gale now, 64 kt in 6.4 h".
   std::vector<Row> Devices() const;
 
   /// Returns the last rescue plan; null before the first one.

@@ -366,12 +366,16 @@ MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state, cons
   const std::vector<std::size_t> outside = AddPointers(array, maker, spec, state, labels);
   AddDevices(array, maker, spec, state, outlook, labels);
   const bool is_over = state.terminated || state.truncated;
-  AddLines(array, maker, spec, "alarm", 1.0, is_over ? "" : OutlookText(spec, state, outlook),
+  const std::vector<std::string> headlines = Headlines(spec, state, outlook);
+  AddLines(array, maker, spec, "alarm", 1.0, is_over || headlines.empty() ? "" : headlines[1],
            IsInDanger(outlook) ? kAlarm : kPaper);
   AddLines(array, maker, spec, "outside", -1.0, OutsideText(spec, state, courses, outside), kPaper);
-  const bool has_rings =
-      std::any_of(state.disasters.begin(), state.disasters.end(),
-                  [](const auto& disaster) { return disaster.known && disaster.steps_left > 0; });
+  bool has_rings = false;
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    const DisasterState& disaster = state.disasters[i];
+    has_rings = has_rings || (disaster.known && disaster.steps_left > 0 &&
+                              StepsToFarm(spec, disaster, courses[i]) == 0.0);
+  }
   AddSignLegend(array, spec,
                 {IsInDanger(outlook), !outside.empty(), has_rings,
                  trail != nullptr && HasDashes(state, *trail)});

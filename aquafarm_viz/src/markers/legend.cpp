@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -240,10 +241,18 @@ void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& valu
   }
   row.Arrow();
   row.Text("best move");
-  row.Frame(kPickupColor);
-  row.Text("pickup");
-  row.Frame(kDropOffColor);
-  row.Text("drop-off");
+  constexpr std::uint8_t kPickup = 8;  // values of Command.action
+  constexpr std::uint8_t kDropOff = 9;
+  for (const auto& [action, name, color] :
+       {std::tuple(kPickup, "pickup", kPickupColor), {kDropOff, "drop-off", kDropOffColor}}) {
+    if (std::find(values.actions.begin(), values.actions.end(), action) != values.actions.end()) {
+      row.Frame(color);
+      row.Text(name);
+    } else {
+      row.Remove("value_legend");
+      row.Remove("value_legend_text");
+    }
+  }
 }
 
 }  // namespace aquafarm_viz

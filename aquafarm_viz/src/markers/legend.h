@@ -17,7 +17,7 @@ void AddLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::Farm
 struct MapSigns {
   bool circle{};   ///< circle around a device in danger
   bool pointer{};  ///< pointer to a centre outside the farm
-  bool pattern{};  ///< pattern of rings
+  bool pattern{};  ///< pattern of rings over the farm
   bool dashes{};   ///< dashed path of a ship with nothing aboard
 };
 
@@ -27,7 +27,8 @@ void AddSignLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::
                    const MapSigns& signs);
 
 /// Adds a third line, in the namespaces `value_legend` and `value_legend_text`: the range and the
-/// colours of values, and the symbols of best moves.
+/// colours of values, and the symbols of those best moves that occur. Deletes the markers of the
+/// others.
 void AddValueLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec,
                     const Values& values);
 

@@ -286,7 +286,8 @@ void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, cv::
 }
 
 // Adds the trail of a ship. Older moves are more transparent. Each move is a rectangle, because
-// the lines of rviz have an uneven width in the top-down view.
+// the lines of rviz have an uneven width in the top-down view. The trail runs to the right of the
+// cells' centres, so that moves in opposite directions do not cover each other.
 void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, const ShipState& ship,
              const Trail* trail) {
   const ShipTrail* way = trail == nullptr ? nullptr : trail->Find(ship.id);
@@ -298,12 +299,14 @@ void AddPath(MarkerArray& array, const Maker& maker, const FarmState& state, con
   const double half_m = 0.06 * maker.thing_m();
   double since_head_m = 0.0;
   for (std::size_t i = 1; i < count; ++i) {
-    const cv::Point2d from = cv::Point2d(way->places[i - 1]) * maker.cell_m();
-    const cv::Point2d to = cv::Point2d(way->places[i]) * maker.cell_m();
+    cv::Point2d from = cv::Point2d(way->places[i - 1]) * maker.cell_m();
+    cv::Point2d to = cv::Point2d(way->places[i]) * maker.cell_m();
     const double length = cv::norm(to - from);
     if (length == 0.0 || Trail::IsGap(way->places[i - 1], way->places[i])) continue;
     const cv::Point2d along = (to - from) * (half_m / length);  // overlaps the next rectangle
     const cv::Point2d side(-along.y, along.x);
+    from -= 1.6 * side;
+    to -= 1.6 * side;
     const bool is_dash = !way->loaded[i];
     const cv::Point2d a = is_dash ? from + 0.2 * (to - from) : from - along;
     const cv::Point2d b = is_dash ? to - 0.2 * (to - from) : to + along;

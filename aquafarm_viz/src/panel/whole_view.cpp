@@ -16,7 +16,7 @@ namespace aquafarm_viz {
 // latitudes on the left, five lines above, longitudes and three lines of the legend below.
 constexpr double kLeft = 0.115;
 constexpr double kRight = 0.035;
-constexpr double kAbove = 0.18;
+constexpr double kAbove = 0.195;
 constexpr double kBelow = 0.165;
 
 rviz::ViewController* WholeView::FromAbove(rviz::VisualizationManager& rviz) {

@@ -182,6 +182,17 @@ StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m
   return storms;
 }
 
+namespace {
+
+// Returns the name of a wind. That of the worst ring also has its wind, because lists of devices
+// contain "64 kt" instead of its name.
+std::string LegendName(std::int32_t wind_kt) {
+  constexpr std::int32_t kHurricane_kt = 64;
+  return wind_kt < kHurricane_kt ? aquafarm::WindName(wind_kt) : aquafarm::RingName(wind_kt);
+}
+
+}  // namespace
+
 std::vector<std::pair<double, std::string>> NamedRisks(const FarmSpec& spec) {
   constexpr std::size_t kMaxNames = 4;
   const auto winds = ReadStormTracks(spec.scenario_yaml, spec.cell_size_m).ring_winds_kt;
@@ -192,8 +203,7 @@ std::vector<std::pair<double, std::string>> NamedRisks(const FarmSpec& spec) {
     is_named = is_named && winds[i].size() == risks.size();
     for (std::size_t ring = 0; ring < risks.size(); ++ring) {
       const double risk = std::round(double(risks[ring]));
-      const std::string wind =
-          is_named ? aquafarm::WindName(winds[i][ring]) + std::string(" ") : "";
+      const std::string wind = is_named ? LegendName(winds[i][ring]) + " " : "";
       const std::string name = wind + Number(risk, 0);
       is_named = names.emplace(risk, name).first->second == name && is_named;
     }

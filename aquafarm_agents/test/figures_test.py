@@ -12,7 +12,7 @@ import numpy as np
 import rosunit
 from matplotlib.text import Text
 
-from aquafarm_benchmark import error_figure, evaluation_figure, figures, style
+from aquafarm_benchmark import error_figure, evaluation_figure, figures, headlines, style
 from aquafarm_benchmark.curves import End
 from aquafarm_benchmark.protocol import CONTESTANTS, PROFILES
 
@@ -185,11 +185,10 @@ class FiguresTest(unittest.TestCase):
         ends = {one.label: np.median([run["curve"]["return"][-WINDOW:].mean()
                                       for run in self.runs[one.name]]) for one in self.contestants}
         self.assertEqual({f"{name} −{-value:.0f}" for name, value in ends.items()},
-                         {name.split(" (")[0].replace(figures._NBSP, " ")
+                         {name.split(" (")[0].replace(headlines.NBSP, " ")
                           for name in self.names_of(axes)}, "the range of the runs is in brackets")
-        self.assertEqual(f"LSTM-DQN has the highest return at the end of the training: "
-                         f"−{-ends['LSTM-DQN']:.0f}; each of its runs is above all runs of the "
-                         "others",
+        self.assertEqual(f"LSTM-DQN ends with the highest return: −{-ends['LSTM-DQN']:.0f}. Each "
+                         "of its runs is above all runs of the others.",
                          " ".join(axes.figure._suptitle.get_text().split()))
 
     def test_names_in_a_grid_do_not_widen_a_column_with_a_free_place_next_to_it(self):
@@ -238,18 +237,18 @@ class FiguresTest(unittest.TestCase):
         shown, hidden = figure.axes[:4], figure.axes[4:]
         self.assertFalse(any(axes.axison for axes in hidden))
         self.assertEqual(1, len({axes.get_ylim() for axes in shown}), "one scale")
-        self.assertEqual([{"LSTM-DQN"}, {"SARSA"}, {"DQN"}, {"LSTM-DQN", "SARSA", "DQN", "RANDOM"}],
+        self.assertEqual([{"SARSA"}, {"LSTM-DQN"}, {"DQN"}, {"LSTM-DQN", "SARSA", "DQN", "RANDOM"}],
                          [set(self.lines(axes)) for axes in shown])
         self.assertEqual([1, 1, 1, 0], [len(axes.collections) for axes in shown], "shades")
-        names = {name.replace(figures._NBSP, " ") for name in self.names_of(shown[3])}
+        names = {name.replace(headlines.NBSP, " ") for name in self.names_of(shown[3])}
         self.assertEqual({"SARSA", "LSTM-DQN", "DQN", "clairvoyant"},
                          {name.split()[0] for name in names} - {"RANDOM"})
         self.assertTrue(any(re.match(r"RANDOM \d\.\d\d$", name) for name in names), names)
-        titles = [axes.get_title("left").split("\n") for axes in shown]
-        self.assertEqual(["Fig. 13a: LSTM-DQN", "Fig. 13b: SARSA", "DQN", "Fig. 13c: all medians"],
-                         [title[0] for title in titles])
-        for _, values in titles[:2]:
-            self.assertRegex(values, r"^\d\.\d\d \(\d\.\d\d to \d\.\d\d\) at the end$")
+        titles = [axes.get_title("left") for axes in shown]
+        self.assertEqual("all medians", titles.pop())
+        for name, title in zip(("SARSA", "LSTM-DQN", "DQN"), titles):
+            self.assertRegex(title, rf"^{name}: \d\.\d\d \(\d\.\d\d to \d\.\d\d\)$")
+        self.assertEqual("points per step", shown[0].get_ylabel())
         self.assertIn("Dashed: clairvoyant.", figure._supxlabel.get_text())
 
     def test_fig_12a_marks_where_a_learner_reaches_90_percent_and_ends_with_the_last_learner(self):
@@ -266,7 +265,7 @@ class FiguresTest(unittest.TestCase):
             self.assertEqual({"SARSA 980"}, {text.get_text() for text in axes.texts})
             lines = self.lines(axes)
             self.assertEqual(has_random, "RANDOM" in lines)
-            self.assertEqual({"LSTM-DQN", "90 % of 100", "clairvoyant 100"} |
+            self.assertEqual({"LSTM-DQN: 90 % not reached", "90 % of 100", "clairvoyant 100"} |
                              ({"RANDOM"} if has_random else set()),
                              {end.name for end in ends})
             if has_random:
@@ -281,7 +280,10 @@ class FiguresTest(unittest.TestCase):
         figures.plot_rewards_by_steps(self.axes, [by_name("sarsa")], {"sarsa": runs},
                                       {"clairvoyant": 100.0})
         self.assertEqual(20 * 150, self.lines()["SARSA"][0][-1])
-        self.assertEqual(["SARSA 2k (980 to 3.9k)"], [text.get_text() for text in self.axes.texts])
+        self.assertEqual(["SARSA 2k"], [text.get_text() for text in self.axes.texts])
+        bar, = (line for line in self.axes.lines if line.get_label() == "_range")
+        self.assertEqual([980, 3920], list(bar.get_xdata()))
+        self.assertAlmostEqual(0.8 * 500, self.axes.get_xlim()[0], msg="left of the first value")
         dots = [line.get_xdata() for line in self.axes.lines if line.get_marker() == "o"]
         self.assertEqual([[3920, 980, 1960], [1960]], [list(x) for x in dots])
         self.assertAlmostEqual(40 * 150, self.axes.get_xlim()[1], msg="the slowest run")
@@ -304,91 +306,30 @@ class FiguresTest(unittest.TestCase):
         self.assertFalse(any(one.overlaps(other) for one, other in itertools.combinations(names, 2)))
         self.assertGreater(min(one.y0 for one in names), axes.get_window_extent().y1,
                            "above the chart")
-
-    def test_a_headline_says_once_that_all_settings_are_as_printed(self):
-        printed = [one for one in PROFILES["paper"].contestants
-                   if one.name in ("dqn_printed", "sarsa_printed")]
-        ends = [End(9, 4.0, "red", "SARSA, printed"), End(9, -2.0, "blue", "DQN, printed")]
-        self.assertEqual("With the settings as printed, SARSA has the highest return: 4",
-                         figures._highest(printed, ends, "return"))
-
-    def test_a_headline_names_all_learners_with_the_highest_printed_value(self):
-        ends = [End(9, 4.46, "red", "SARSA"), End(9, 4.54, "blue", "LSTM-DQN")]
-        self.assertEqual("LSTM-DQN has the highest return: 5",
-                         figures._highest(self.contestants, ends, "return"))
-        near = [ends[0], End(9, 4.48, "blue", "LSTM-DQN")]
-        self.assertEqual("LSTM-DQN and SARSA have the highest return: 4",
-                         figures._highest(self.contestants, near, "return"))
-        self.assertEqual("SARSA: return 4", figures._highest(self.contestants, ends[:1], "return"))
-
-    def test_a_headline_states_whether_the_ranges_of_the_runs_overlap(self):
-        first = End(9, 8.0, "blue", "LSTM-DQN", 6.0, 9.0)
-        for high, expected in ((5.0, "; each of its runs is above all runs of the others"),
-                               (7.0, "; its runs are not all above those of SARSA")):
-            ends = [End(9, 4.0, "red", "SARSA", 3.0, high), first]
-            self.assertEqual("LSTM-DQN has the highest return: 8" + expected,
-                             figures._highest(self.contestants, ends, "return"))
-        for y, expected in ((5.0, "; each of its runs is above all runs of the others"),
-                            (7.0, "; its runs are not all above those of SARSA")):
-            self.assertEqual("LSTM-DQN has the highest return: 8" + expected, figures._highest(
-                self.contestants, [End(9, y, "red", "SARSA"), first], "return"), "one run")
-        self.assertEqual(["LSTM-DQN 8 (6 to 9)"],
-                         [end.name.replace(figures._NBSP, " ")
-                          for end in figures._with_values(self.contestants, [first])])
-
-    def test_the_headline_of_fig_12b_has_the_episode_of_the_first_mean_above_0(self):
-        rising = np.array([-10.0] * 40 + [30.0] * 80)  # the sum is 0 after 13.3 good episodes
-        self.runs["sarsa"] = [{"curve": {"return": rising}}]
-        self.runs["lstm_dqn"] = [{"curve": {"return": -np.ones(120)}}]
-        self.assertEqual("The mean return of all episodes so far rises above 0 at episode "
-                         "54 (SARSA); LSTM-DQN: not within 120 episodes",
-                         figures._recovery_times(self.contestants, self.runs))
-        self.assertEqual("", figures._recovery_times(self.contestants[1:], self.runs))
-        figures.plot_average_rewards(self.axes, self.contestants, self.runs, OPTIMUM)
-        self.assertEqual([(54, 0.0)], [tuple(line.get_xydata()[0]) for line in self.axes.lines
-                                       if line.get_marker() == "o"])
+        self.assertGreaterEqual(min(one.x0 for one in names), axes.get_window_extent().x0,
+                                "right of the axis of returns")
 
     def test_fig_14_enlarges_the_second_half_if_a_learner_is_near_the_reference(self):
         for run in self.runs["lstm_dqn"]:
             run["curve"]["return"][:] = 80.0
         full, half = self.drawn(figures.draw_repeated, self.contestants, self.runs, OPTIMUM).axes
-        self.assertEqual((60.0, 120.0), half.get_xlim())
+        self.assertEqual((60.0, 120.0), half.get_xlim(), "the runs are equal, so there is no bar")
         self.assertAlmostEqual(63.0, half.get_ylim()[0], msg="70 % of the clairvoyant")
         self.assertEqual({"LSTM-DQN", "clairvoyant 90"}, self.names_of(half))
         self.assertEqual(3, len(self.names_of(full)))
-        self.assertEqual("Enlarged: second half, above 70 % of the clairvoyant (SARSA is mostly "
-                         "below)", half.get_title("left"))
+        self.assertEqual("Enlarged: second half, above 70 % of the clairvoyant; bars: range of the "
+                         "runs at the end\n(SARSA is mostly below)", half.get_title("left"))
+        self.assertEqual([], list(half.collections), "no shades")
         for run in self.runs["sarsa"]:
             run["curve"]["return"][:] = 70.0
         _, half = self.drawn(figures.draw_repeated, self.contestants, self.runs, OPTIMUM).axes
         self.assertEqual({"LSTM-DQN", "SARSA"}, set(self.lines(half)))
-        self.assertTrue(half.get_title("left").endswith("of the clairvoyant"))
-
-    def test_the_headline_of_fig_12a_has_the_steps_until_90_percent_of_the_reference(self):
-        learnt = {"return": np.array([-100.0] * 50 + [100.0] * 100), "steps": np.full(150, 10)}
-        # The mean of 50 episodes is 90 or more from the 48th good episode on, the 98th of all.
-        learnt_run = {"curve": learnt}
-        self.runs["sarsa"] = [learnt_run]
-        self.runs["lstm_dqn"] = [{"curve": {**learnt, "return": np.zeros(150)}}]
-        found = figures._learning_times(self.contestants, self.runs, {"clairvoyant": 100.0})
-        self.assertEqual("Time steps to 90 % of the return of the clairvoyant: SARSA 980, "
-                         "LSTM-DQN not within 150 episodes", found.replace(figures._NBSP, " "))
-        slow = {"curve": {**learnt, "steps": np.full(150, 30)}}  # 2,940 steps
-        self.runs["sarsa"] = self.runs["lstm_dqn"] = [learnt_run, slow]
-        found = figures._learning_times(self.contestants, self.runs, {"clairvoyant": 100.0})
-        self.assertIn("(median of 2 runs): LSTM-DQN 2,000, SARSA 2,000",
-                      found.replace(figures._NBSP, " "))
-        never = {"curve": {**learnt, "return": np.zeros(150)}}
-        self.runs["lstm_dqn"] = [learnt_run, never, never, learnt_run]
-        found = figures._learning_times(self.contestants, self.runs, {"clairvoyant": 100.0})
-        self.assertTrue(found.replace(figures._NBSP, " ").endswith(
-            ": SARSA 2,000, LSTM-DQN only in 2 of 4 runs"), found)
-        self.runs["lstm_dqn"] = [learnt_run, never, slow]
-        figures.plot_rewards_by_steps(self.axes, self.contestants[1:], self.runs,
-                                      {"clairvoyant": 100.0})
-        self.assertEqual(["LSTM-DQN 2.9k (from 980, in 2 of 3 runs)"],
-                         [text.get_text() for text in self.axes.texts])
-        self.assertEqual("", figures._learning_times(self.contestants, self.runs, {}))
+        self.assertTrue(half.get_title("left").endswith("at the end"))
+        self.runs["sarsa"][0]["curve"]["return"][:] = 85.0
+        _, half = self.drawn(figures.draw_repeated, self.contestants, self.runs, OPTIMUM).axes
+        bar, = (line for line in half.lines if line.get_label() == "_range")
+        self.assertEqual([70.0, 85.0], list(bar.get_ydata()))
+        self.assertTrue(120.0 < bar.get_xdata()[0] < half.get_xlim()[1], "right of the lines")
 
     def test_the_headline_of_fig_12c_names_the_errors_that_rise(self):
         for name, last in (("sarsa", 30.0), ("lstm_dqn", 5.0)):
@@ -399,11 +340,11 @@ class FiguresTest(unittest.TestCase):
                          " ".join(figure._suptitle.get_text().split()))
         self.assertEqual(["SARSA: ends at ×3.0", "LSTM-DQN: ends at ×0.5"],
                          [axes.get_title("left") for axes in figure.axes])
-        self.assertEqual([{"10", "30"}, {"10", "5"}], [self.names_of(axes) for axes in figure.axes])
-        self.assertIn("SARSA and LSTM-DQN (no mark): by episode 50",
-                      " ".join(figure._supxlabel.get_text().split()))
+        early = "50 % succeed by episode 50"
+        self.assertEqual([{"10", "30", early}, {"10", "5", early}],
+                         [self.names_of(axes) for axes in figure.axes])
 
-    def test_numbers_of_fig_12c_are_above_the_shade_and_the_first_mark_is_explained(self):
+    def test_numbers_of_fig_12c_are_above_the_shade_and_each_chart_states_the_success(self):
         for run in self.runs["sarsa"]:
             run["curve"]["success"] = np.array([0.0] * 60 + [1.0] * 60)
             run["curve"]["success"] = run["curve"]["success"][:len(run["curve"]["loss"])]
@@ -417,8 +358,7 @@ class FiguresTest(unittest.TestCase):
         for text in numbers:
             self.assertGreaterEqual(text.xy[1], edge[edge[:, 0] == text.xy[0], 1].max())
         self.assertEqual([85.0], [text.xy[0] for text in axes.texts if text not in numbers])
-        self.assertIn("LSTM-DQN (no mark): not in this training",
-                      " ".join(figure._supxlabel.get_text().split()))
+        self.assertIn("50 % succeed: not reached", self.names_of(figure.axes[1]))
         self.assertFalse(any(dot.get_clip_on() for dot in axes.lines if dot.get_marker() == "o"))
 
     def test_the_headline_of_fig_12c_has_the_peak_of_an_error_that_ends_lower(self):

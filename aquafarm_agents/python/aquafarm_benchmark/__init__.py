@@ -16,6 +16,8 @@ error_figure  Fig. 12c of the paper
 evaluation_figure  the returns of evaluations
 loss_figures  charts of money losses
 style         headlines, names of lines and colours of the figures
-route_figure  Fig. 11 of the paper, and other charts of routes
+headlines     the headlines of figures
+route_figure  Fig. 11 of the paper: a policy's choices and its route
+unfinished_figure  the routes of failed episodes, grouped by cause
 sweep, many   the programs aquafarm_sweep and aquafarm_many
 """

@@ -12,7 +12,7 @@ from aquafarm_benchmark.style import (chart_grid, explain, joined, label_axes, l
 _PEAK = 2.0  # a peak is at least this multiple of the first and of the last value
 _SAME = 0.05  # relative change below which an error ends where it begins
 _HEADROOM = 1.5  # factor of the upper limit, for the numbers at the highest values
-_FOOTROOM = 1.3  # divisor of the lower limit, for the name of the grey mark
+_FOOTROOM = 1.5  # divisor of the lower limit, for the name of the grey mark
 _LETTER = 0.045  # width of a letter of a number [widths of a chart]
 _EDGE = 0.02  # a mark of success that is nearer to the left edge is not drawn [widths of a chart]
 _SUCCESS = 0.5  # the success rate that the charts mark
@@ -28,7 +28,7 @@ def draw_square_error(path, contestants, runs):
     figure, charts = chart_grid(max(1, len(learners) + has_all))
     courses, found = {}, {}
     for i, axes in enumerate(charts):
-        label_axes(axes, "", "error [reward²]" if axes.get_subplotspec().is_first_col() else "",
+        label_axes(axes, "", "error [points²]" if axes.get_subplotspec().is_first_col() else "",
                    "episode")
         if i < len(learners) and plot_square_error(axes, [learners[i]], runs):
             one = learners[i]
@@ -36,33 +36,22 @@ def draw_square_error(path, contestants, runs):
             first, _, last = courses[one.label]
             axes.set_title(f"{one.label}: ends at ×{last / first:.1f}", fontsize=12,
                            color=legible(one.colour))
-            found[one.label] = _mark_success(axes, runs[one.name])
+            found[axes] = _mark_success(axes, runs[one.name])
     low, high = charts[0].get_ylim()
     charts[0].set_ylim(low / _FOOTROOM, _HEADROOM * high)  # the charts share their scale
-    _name_success(charts, found)
+    for axes, marked in found.items():
+        _name_success(axes, *marked)
     explain(figure, describe_courses(courses),
             f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic. Dots: "
             "first, last and, if it is far from both, highest value; ×: last value relative to the "
-            f"first. Grey: the success rate of the last {measures.WINDOW} episodes first reaches "
-            f"{100 * _SUCCESS:.0f} %, from the earliest to the latest run that reaches it"
-            f"{_describe_success(found)}. "
+            f"first. Grey: {100 * _SUCCESS:.0f} % of the last {measures.WINDOW} episodes succeed "
+            "for the first time, from the earliest to the latest run. "
             f"{describe_shading(contestants, runs)} Each learner has "
             "its own targets: a lower error does not mean a better policy.")
     if has_all:
         charts[-1].set_title("all medians", fontsize=12)
         name_ends(charts[-1], plot_square_error(charts[-1], learners, runs, is_shaded=False))
     save(figure, path)
-
-
-def _describe_success(found):
-    """Returns the part of the note about learners without a grey mark. found: {name of a learner:
-    result of _mark_success}"""
-    early = {name: episodes for name, (episodes, is_shown) in found.items()
-             if episodes and not is_shown}
-    never = [name for name, (episodes, _) in found.items() if not episodes]
-    said = (f"; {joined(list(early))} (no mark): by episode {max(map(max, early.values()))}"
-            if early else "")
-    return said + (f"; {joined(never)} (no mark): not in this training" if never else "")
 
 
 def describe_courses(courses):
@@ -133,17 +122,22 @@ def _mark_success(axes, of_one):
     return found, is_shown
 
 
-def _name_success(charts, found):
-    """Writes what the grey area means next to the first one, at the bottom of its chart."""
-    for axes, (episodes, is_shown) in zip(charts, found.values()):
-        if is_shown:
-            is_left = max(episodes) < sum(axes.get_xlim()) / 2
-            axes.annotate(f"{100 * _SUCCESS:.0f} % succeed",
-                          (max(episodes) if is_left else min(episodes), 0.03),
-                          xycoords=axes.get_xaxis_transform(), xytext=(4 if is_left else -4, 0),
-                          textcoords="offset points", ha="left" if is_left else "right",
-                          fontsize=10, color="0.35")
-            return
+def _name_success(axes, episodes, is_shown):
+    """Writes when _SUCCESS of the episodes succeed at the bottom of a chart: next to the grey area,
+    or in words if the chart has none.
+
+    episodes, is_shown: result of _mark_success
+    """
+    share, y = f"{100 * _SUCCESS:.0f} % succeed", 0.03
+    style = {"textcoords": "offset points", "fontsize": 10, "color": "0.35"}
+    if is_shown:
+        is_left = max(episodes) < sum(axes.get_xlim()) / 2
+        axes.annotate(share, (max(episodes) if is_left else min(episodes), y),
+                      xytext=(4 if is_left else -4, 0), ha="left" if is_left else "right",
+                      xycoords=axes.get_xaxis_transform(), **style)
+        return
+    words = f"{share} by episode {max(episodes):,}" if episodes else f"{share}: not reached"
+    axes.annotate(words, (0.02, y), xytext=(0, 0), ha="left", xycoords="axes fraction", **style)
 
 
 def plot_square_error(axes, contestants, runs, is_shaded=True):

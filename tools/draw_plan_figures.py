@@ -6,6 +6,7 @@
 """
 import json
 import sys
+import textwrap
 from pathlib import Path
 
 import matplotlib
@@ -16,7 +17,11 @@ from matplotlib import pyplot as plt  # noqa: E402
 DPI = 160
 NAMED = 3  # max number of storms that a title names
 MARGIN = 5  # max difference of kept and promised chance of a group that is not marked [points]
+LETTERS = 82  # max length of a line of a title of the back-test
 RIM = 3  # space around chances of 0 and 100 %, so that their marks are whole [points]
+# Why the mean promise is below the mean saved value (docs/results/rescue_plans.md).
+WHY_LOWER = ("A promise covers all tracks that the bulletin allows. These storms were selected "
+             "because they came near,\nwhich a plan does not know in advance.")
 KINDS = {"home": "The device comes home", "gales": "Gales reach the device"}
 
 
@@ -25,10 +30,15 @@ def bins_of(data, key):
     return [one for one in data[key]["diagram"] if one["count"] >= 20]
 
 
+def off_by(group):
+    """Returns the difference between the kept and the promised chance of a group [points]."""
+    return abs(100 * (group["kept"]["mean"] - group["promised"]))
+
+
 def is_far(group):
     """Returns whether the kept chance of a group differs from the promised one by more than MARGIN
     points."""
-    return abs(100 * (group["kept"]["mean"] - group["promised"])) > MARGIN
+    return off_by(group) > MARGIN
 
 
 def is_missed(group):
@@ -40,7 +50,7 @@ def reliability(data):
     """Returns a sentence about how well the promises hold in simulated storms."""
     bins = [one for key in KINDS for one in bins_of(data, key)]
     far = [one for one in bins if is_far(one)]
-    most = max(abs(100 * (one["kept"]["mean"] - one["promised"])) for one in bins)
+    most = max(map(off_by, bins))
     missed = sum(map(is_missed, bins))
     points = "point" if round(most) == 1 else "points"
     return (f"Promised chances hold within {MARGIN} points in {len(bins) - len(far)} of "
@@ -66,6 +76,7 @@ def draw_reliability(data, path):
     """Draws kept against promised chances, with 95 % intervals, and the numbers of cases."""
     figure, axes = plt.subplots(2, 2, figsize=(9, 6.3), sharex=True, sharey="row",
                                 height_ratios=[4, 1], layout="constrained")
+    most = max(off_by(group) for key in KINDS for group in bins_of(data, key))
     for one, sizes, (key, title) in zip(*axes, KINDS.items()):
         bins = bins_of(data, key)
         one.plot([0, 100], [0, 100], color="black", linewidth=0.8, label="kept exactly")
@@ -80,6 +91,13 @@ def draw_reliability(data, path):
             one.scatter([100 * group["promised"] for group in missed],
                         [100 * group["kept"]["mean"] for group in missed], s=190, facecolor="none",
                         edgecolor="black", linewidth=1.8, zorder=4, label="interval misses the promise")
+        for group in bins:
+            if is_far(group) and off_by(group) == most:
+                is_more = group["kept"]["mean"] > group["promised"]
+                one.annotate(f"{most:.0f} points", (100 * group["promised"],
+                                                    100 * group["kept"]["mean"]), fontsize=10.5,
+                             xytext=(-9, 11) if is_more else (9, -11), textcoords="offset points",
+                             ha="right" if is_more else "left", va="center", color="#b04a00")
         one.set_title(f"{title} (n = {sum(b['count'] for b in bins):,})", fontsize=12)
         one.set_xlim(-RIM, 100 + RIM)
         one.set_ylim(-RIM, 100 + RIM)
@@ -107,14 +125,18 @@ def draw_reliability(data, path):
 
 
 def finding(storms):
-    """Returns a sentence about the results of the back-test."""
+    """Returns two sentences about the results of the back-test, in lines of LETTERS letters."""
     staked = [s for s in storms if s["at_risk"] > 0.5]  # in others, no plan loses value
     worse = [name_of(s) for s in staked if is_worse(s)]
-    but = f"\n(not in {', '.join(worse)})" if 0 < len(worse) <= NAMED else ""
+    but = f" (not in {', '.join(worse)})" if 0 < len(worse) <= NAMED else ""
     share = sum(s["saved"] for s in storms) / sum(s["clairvoyant"] for s in storms)
-    return (f"The plan saves what a clairvoyant saves in {len(staked) - len(worse)} of "
-            f"{len(staked)} storms with something at stake{but}.\n"
-            f"Over all {len(storms)} storms it saves {100 * share:.0f} % of the clairvoyant's value.")
+    mean = mean_of(storms)
+    kept = (f" and promises {100 * mean['promised'] / mean['saved']:.0f} % of what it saves"
+            if mean["saved"] > 0.0 else "")
+    return textwrap.fill(
+        f"The plan saves what a clairvoyant saves in {len(staked) - len(worse)} of {len(staked)} "
+        f"storms with something at stake{but}. Over all {len(storms)} storms it saves "
+        f"{100 * share:.0f} % of the clairvoyant's value{kept}.", LETTERS)
 
 
 def is_worse(storm):
@@ -140,7 +162,7 @@ def draw_back_test(data, path):
     """Draws four values for each recorded storm: at stake, saved by the plan, promised by the plan,
     and saved by a clairvoyant. The last row has the means of all storms."""
     storms = sorted(data["storms"], key=lambda storm: -storm["at_risk"])
-    figure, axes = plt.subplots(figsize=(9, 0.27 * len(storms) + 2.2), layout="constrained")
+    figure, axes = plt.subplots(figsize=(9, 0.27 * len(storms) + 2.6), layout="constrained")
     rows = [*storms, mean_of(storms)]
     places = [*range(len(storms), 0, -1), -0.4]
     low = [max(0.0, s["saved"] - s["saved_low"]) for s in rows]
@@ -163,14 +185,15 @@ def draw_back_test(data, path):
                       s=f"saves {storm['saved']:.0f} of {storm['clairvoyant']:.0f}")
     mean = rows[-1]
     axes.text(mean["at_risk"] + 6, places[-1], va="center", fontsize=10.5,
-              s=f"promised {mean['promised']:.1f}, saved {mean['saved']:.1f}, "
-              f"clairvoyant {mean['clairvoyant']:.1f}")
+              s=f"promised {mean['promised']:.1f}, saved {mean['saved']:.1f},\n"
+              f"clairvoyant {mean['clairvoyant']:.1f}, at stake {mean['at_risk']:.1f}")
     axes.axhline(0.3, color="0.6", linewidth=0.8)
     axes.set_yticks(places, [*map(name_of, storms), f"mean of {len(storms)}"], fontsize=10.5)
     axes.get_yticklabels()[-1].set_weight("bold")
     axes.set_xlabel("value of devices [units]", fontsize=11)
+    why = f"\n{WHY_LOWER}" if mean["promised"] < mean["saved"] else ""
     figure.supxlabel(f"One ship; means of {data['bulletins']} bulletins per storm, issued at least "
-                     f"{data['lead_h']:.0f} h before the closest approach.", x=0.01, ha="left",
+                     f"{data['lead_h']:.0f} h before the closest approach.{why}", x=0.01, ha="left",
                      fontsize=10.5, color="0.35")
     axes.set_xlim(-4, None)
     axes.set_ylim(-1.1, len(storms) + 0.7)

@@ -24,9 +24,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"
 from aquafarm_report import values_topics  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 
-from aquafarm_report.values import (ValuesError, compare, device_relation, draw,  # noqa: E402
-                                    draw_map, draw_places, draw_relation, headline, make, read,
-                                    verdict)
+from aquafarm_report.values import (ValuesError, best_cell, compare, device_relation,  # noqa: E402
+                                    draw, draw_map, draw_places, draw_relation, headline, make,
+                                    read, verdict)
 
 
 def slope(height=12, width=14):
@@ -107,26 +107,32 @@ class ValuesTest(unittest.TestCase):
         self.assertEqual([], make(written(self.folder.name, slope(), {}), output))
         self.assertEqual(b"\x89PNG", pathlib.Path(output + ".png").read_bytes()[:4])
 
-    def test_the_title_names_the_best_start(self):
+    def test_the_picture_states_the_range_and_marks_the_best_start(self):
         values = slope()
         values[1:3, 2:4] = -50.0
         values[9, 10] = 99.0
         text = {"cell_size_m": 500.0, "ports": [[0, 0]], "devices": [[10, 8]]}
+        low = values.min()
+        self.assertLess(low, 0.0)
         said = verdict(values, text)
-        self.assertIn("Best start: next to a device, 5.2 km east, 4.8 km north (99 points)", said)
-        self.assertIn("mostly around 1.2 km east, 0.8 km north", said)
-        values[0, 13] = -60.0
-        self.assertIn("mostly around 1.2 km east, 0.8 km north", verdict(values, text),
-                      "the largest part")
-        even = np.ones((5, 6))
-        even[4, 5] = 2.0
-        self.assertEqual("Best start: 2.8 km east, 2.2 km north (2 points)",
-                         verdict(even, {"cell_size_m": 500.0}), "many cells have the lowest return")
+        self.assertEqual(f"All returns are between {low:.0f} and 99 points.\nBest start: the star "
+                         "on map (a), next to a device; lowest returns: dark on map (a)", said)
+        self.assertEqual((10, 9), best_cell(values))
+        even = np.full((5, 6), 95.0)
+        even[4, 5] = 100.0
+        self.assertIn("between 95 and 100 points (a difference of 5 %).\nBest start: the star on "
+                      "map (a); ", verdict(even, text), "no device or port is near")
         text["devices"] = [[10, 9]]
-        self.assertIn("Best start: at a device,", verdict(values, text))
-        self.assertIn("Best start: 5.2 km east", verdict(values, {"cell_size_m": 500.0}))
-        self.assertEqual("", verdict(np.ones((3, 4)), text))
-        self.assertEqual("", verdict(np.full((3, 4), np.nan), text))
+        self.assertIn("map (a), at a device;", verdict(values, text))
+        for nothing in (np.ones((3, 4)), np.full((3, 4), np.nan)):
+            self.assertEqual("", verdict(nothing, text))
+            self.assertIsNone(best_cell(nothing))
+        _, axis = pyplot.subplots()
+        self.addCleanup(pyplot.close, "all")
+        draw_places(axis, {}, 0.5, (10, 9))
+        star, = axis.collections
+        self.assertEqual(("_best", [[5.25, 4.75]]),
+                         (star.get_label(), star.get_offsets().tolist()))
 
     def test_the_figure_uses_words_and_units_that_people_know(self):
         values = slope()
@@ -135,7 +141,8 @@ class ValuesTest(unittest.TestCase):
         self.addCleanup(pyplot.close, "all")
         draw_relation(axis, values, layer, compare(values, layer[2]), "d")
         title = axis.get_title("left")
-        self.assertTrue(title.startswith("(d) rank correlation +1.00\n"), title)
+        self.assertEqual("(d) return and temperature: +1.00\nwithout the lowest twentieth: +1.00",
+                         title)
         self.assertEqual("temperature [°C]", axis.get_xlabel())
         for jargon in ("SSIM", "Spearman", "rho", "turned over", "degC"):
             self.assertNotIn(jargon, title)
@@ -150,6 +157,12 @@ class ValuesTest(unittest.TestCase):
         self.assertIn("falls with depth (−1.00)", found)
         self.assertNotIn("flat", found, "a constant layer has no rank correlation")
         self.assertIn("distance to a device (", found)
+        weak = {"spearman_rho": 0.1}
+        self.assertEqual("The return falls with depth (rank correlation −1.00), but has no steady "
+                         "trend with temperature (+0.10)", headline(
+                             [(layers[0], weak), (layers[1], compare(values, layers[1][2]))]))
+        self.assertEqual("The return has no steady trend with temperature (rank correlation +0.10)",
+                         headline([(layers[0], weak)]))
 
     def test_a_long_headline_stays_inside_the_picture(self):
         values = slope()

@@ -58,6 +58,8 @@ def test_both_charts_have_their_size_also_without_far_groups(figures, tmp_path, 
     left, right = figure.axes[:2]
     for axes in (left, right):
         assert axes.get_window_extent().width > 0.3 * figure.bbox.width
+    labels = [text.get_text() for axes in (left, right) for text in axes.texts]
+    assert labels.count("20 points") == far  # the worst groups; with other data there is one
     words = [text.get_text() for text in left.get_legend().get_texts()]
     assert ("over 5 points off" in words) == (far > 0)
     assert ("interval misses the promise" in words) == (missed > 0)
@@ -79,9 +81,24 @@ def test_groups_of_fewer_than_20_cases_are_left_out_and_one_point_is_singular():
 def test_the_title_of_the_back_test_names_the_storms_in_which_the_plan_saves_less():
     storms = [storm("IN-FA"), storm("MITAG", saved=30.0), storm("CALM", at_risk=0.0, saved=0.0,
                                                                 clairvoyant=0.0)]
-    assert tool.finding(storms).split("\n") == [
-        "The plan saves what a clairvoyant saves in 1 of 2 storms with something at stake",
-        "(not in Mitag 2021).", "Over all 3 storms it saves 75 % of the clairvoyant's value."]
+    lines = tool.finding(storms).split("\n")
+    assert " ".join(lines) == (
+        "The plan saves what a clairvoyant saves in 1 of 2 storms with something at stake (not in "
+        "Mitag 2021). Over all 3 storms it saves 75 % of the clairvoyant's value and promises 167 "
+        "% of what it saves.")
+    assert max(map(len, lines)) <= tool.LETTERS
+    assert "promises" not in tool.finding([storm("CALM", saved=0.0, promised=9.0)])
+
+
+@pytest.mark.parametrize("promised", [50.0, 70.0])
+def test_the_note_states_why_a_promise_is_below_what_is_saved(figures, tmp_path, promised):
+    data = {"bulletins": 4, "lead_h": 12.0, "storms": [storm("IN-FA", promised=promised)]}
+    tool.draw_back_test(data, tmp_path / "plan.png")
+    figure = figures[-1]
+    assert ("selected because they came near" in figure._supxlabel.get_text()) == (promised < 60.0)
+    assert any("at stake 100.0" in text.get_text() for text in figure.axes[0].texts)
+    right = figure._suptitle.get_window_extent(figure.canvas.get_renderer()).x1
+    assert right < figure.bbox.width
 
 
 def test_the_program_draws_both_figures_from_files(tmp_path):

@@ -28,7 +28,7 @@ def draw_square_error(path, contestants, runs):
     figure, charts = chart_grid(max(1, len(learners) + has_all))
     courses, found = {}, {}
     for i, axes in enumerate(charts):
-        label_axes(axes, "", "error [points²]" if axes.get_subplotspec().is_first_col() else "",
+        label_axes(axes, "", "error [reward²]" if axes.get_subplotspec().is_first_col() else "",
                    "episode")
         if i < len(learners) and plot_square_error(axes, [learners[i]], runs):
             one = learners[i]

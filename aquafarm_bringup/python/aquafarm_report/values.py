@@ -30,6 +30,8 @@ _LETTER = 0.11  # mean width of a letter of the headline (bold, 13 points) with 
 _LOW_COLOUR = "#440154"  # the first colour of viridis
 # viridis without its yellow part, as in other pictures of values
 _VALUE_COLOURS = colors.ListedColormap(pyplot.get_cmap("viridis")(np.linspace(0.0, 0.8, 256)))
+_DISTANCE = "distance to a device"
+_SHORT = {_DISTANCE: "distance"}  # short names for titles
 _SEA_COLOURS = {"depth": "Blues", "warmth": "YlOrRd"}
 _LOWEST = 0.05  # the cells with the lowest returns, this fraction of all, have one colour
 
@@ -99,45 +101,46 @@ def signed(number):
     return "-" if number is None else f"{number:+.2f}".replace("-", "−")
 
 
-def place_words(cells, text):
-    """Returns the position of a cell [east, north] as text, such as "next to a device, 5.0 km east,
-    5.0 km north". It names the nearest device or port if that is within NEXT_TO."""
-    east, north = cells
+def place_words(cell, text):
+    """Returns the position of a cell [east, north] as text, such as "next to a device". It names
+    the nearest device or port if that is within NEXT_TO, and is empty if there is none."""
+    east, north = cell
     near = [(math.hypot(east - x, north - y), words)
             for words, key in (("device", "devices"), ("port", "ports"))
             for x, y in text.get(key) or []]
-    km = text["cell_size_m"] / 1000.0
-    place = f"{(east + 0.5) * km:.1f} km east, {(north + 0.5) * km:.1f} km north"
-    if near and min(near)[0] <= NEXT_TO:
-        distance, words = min(near)
-        return f"{'at' if distance < 1.0 else 'next to'} a {words}, {place}"
-    return place
+    if not near or min(near)[0] > NEXT_TO:
+        return ""
+    distance, words = min(near)
+    return f"{'at' if distance < 1.0 else 'next to'} a {words}"
+
+
+def best_cell(values):
+    """Returns the cell [east, north] with the highest return; None if all are equal or unknown."""
+    known = values[np.isfinite(values)]
+    if not len(known) or np.ptp(known) == 0.0:
+        return None
+    north, east = np.unravel_index(np.nanargmax(values), values.shape)
+    return int(east), int(north)
 
 
 def verdict(values, text):
-    """Returns as text the position of the best start, and the middle of the largest connected area
-    of cells in the lowest twentieth (lowest_cells). Empty if all values are equal or unknown."""
-    known = np.isfinite(values)
-    if not known.any() or np.ptp(values[known]) == 0.0:
+    """Returns the range of the returns and the position of the best start as text. Empty if all
+    values are equal or unknown."""
+    best = best_cell(values)
+    if best is None:
         return ""
-    north, east = np.unravel_index(np.nanargmax(values), values.shape)
-    best = place_words((int(east), int(north)), text)
-    said = f"Best start: {best} ({np.nanmax(values):.0f} points)"
-    parts, count = ndimage.label(lowest_cells(values))
-    if count == 0:  # so many cells have the lowest return that no value is below the quantile
-        return said
-    largest = np.argwhere(parts == 1 + np.argmax(np.bincount(parts.ravel())[1:]))
-    middle = largest[np.argmin(np.abs(largest - largest.mean(axis=0)).sum(axis=1))]
-    return (f"{said}\nLowest returns: below "
-            f"{np.quantile(values[known], _LOWEST):.0f} points, mostly around "
-            f"{place_words((int(middle[1]), int(middle[0])), text)}")
+    low, high = np.nanmin(values), np.nanmax(values)
+    share = f" (a difference of {100.0 * (high - low) / high:.0f} %)" if low > 0.0 else ""
+    place = place_words(best, text)
+    return (f"All returns are between {low:.0f} and {high:.0f} points{share}.\nBest start: the "
+            f"star on map (a){f', {place}' if place else ''}; lowest returns: dark on map (a)")
 
 
 def device_distance(shape, devices, km):
     """Returns the distance of each cell to the nearest device, as a layer like those of the sea."""
     north, east = np.indices(shape)
     away = np.min([np.hypot(east - x, north - y) for x, y in devices], axis=0)
-    return "distance to a device", "km", away * km
+    return _DISTANCE, "km", away * km
 
 
 def lowest_cells(values):
@@ -175,13 +178,17 @@ def draw_map(axis, field, km, colours, unit, lowest=0.0):
     axis.set_xlabel("east [km]")
 
 
-def draw_places(axis, text, km):
-    """Marks the ports, and the devices at the start of the episode, if the file contains them."""
+def draw_places(axis, text, km, best=None):
+    """Marks the ports, and the devices at the start of the episode, if the file contains them.
+    Marks the cell `best` [east, north] with a star, unless it is None."""
     for key, words, marker in (("ports", "port", "o"), ("devices", "device", "D")):
         if cells := text.get(key):
             x, y = zip(*(((east + 0.5) * km, (north + 0.5) * km) for east, north in cells))
             axis.scatter(x, y, s=46, facecolor="white", edgecolor="black", linewidth=1.6,
                          label=words, zorder=3, marker=marker)
+    if best:
+        axis.scatter(*((place + 0.5) * km for place in best), s=130, marker="*", zorder=4,
+                     facecolor="#f0e442", edgecolor="black", label="_best")
 
 
 def draw_relation(axis, values, layer, result, letter):
@@ -202,8 +209,9 @@ def draw_relation(axis, values, layer, result, letter):
     words = sea_words(name)
     axis.set_xlabel(f"{words} [{unit_text(units)}]")
     rest = compare(np.where(low, np.nan, values), field)["spearman_rho"]
-    said = (f"rank correlation {signed(result['spearman_rho'])}\n"
-            f"{signed(rest)} without the lowest twentieth" if result["spearman_rho"] is not None else
+    said = (f"return and {_SHORT.get(words, words)}: {signed(result['spearman_rho'])}\n"
+            f"without the lowest twentieth: {signed(rest)}"
+            if result["spearman_rho"] is not None else
             f"{result['cells']} cells:\ntoo few or too alike to compare")
     axis.set_title(f"({letter}) {said}", fontsize=11, loc="left")
     axis.xaxis.set_major_locator(ticker.MaxNLocator(5))
@@ -238,7 +246,7 @@ def draw(text, values, layers, results, path):
     letters = iter("abcdefghijklmnopqrstuvwxyz")
     axes[0][0].set_title(f"({next(letters)}) Return from each start", fontsize=11,
                          loc="left")
-    draw_places(axes[0][0], text, km)
+    draw_places(axes[0][0], text, km, best_cell(values))
     axes[0][0].set_ylabel("north [km]")
     for column, (layer, result) in enumerate(zip(layers, results), start=1):
         name, units, field = layer
@@ -276,8 +284,12 @@ def headline(relations):
         trend = "has no steady trend" if abs(rho) < _WEAK else "falls" if rho < 0.0 else "rises"
         known = any(said.values())
         said[trend].append(f"{words} ({'' if known else 'rank correlation '}{signed(rho)})")
-    parts = [f"{trend} with {' and '.join(names)}" for trend, names in said.items() if names]
-    return f"The return {', '.join(parts)}" if parts else ""
+    none = said.pop("has no steady trend")
+    text = " and ".join(f"{trend} with {' and '.join(names)}" for trend, names in said.items()
+                        if names)
+    if none:
+        text += f"{', but ' if text else ''}has no steady trend with {' or '.join(none)}"
+    return f"The return {text}" if text else ""
 
 
 def device_relation(values, text):

@@ -249,6 +249,10 @@ class FiguresTest(unittest.TestCase):
         for name, title in zip(("SARSA", "LSTM-DQN", "DQN"), titles):
             self.assertRegex(title, rf"^{name}: \d\.\d\d \(\d\.\d\d to \d\.\d\d\)$")
         self.assertEqual("points per step", shown[0].get_ylabel())
+        printed = next(one for one in PROFILES["paper"].contestants if one.name == "sarsa_printed")
+        self.runs["sarsa_printed"] = self.runs["sarsa"]
+        alone = self.drawn(figures.draw_mean_score, [printed], self.runs, {})
+        self.assertTrue(alone.axes[0].get_title("left").startswith("SARSA, printed:\n"), "long")
         self.assertIn("Dashed: clairvoyant.", figure._supxlabel.get_text())
 
     def test_fig_12a_marks_where_a_learner_reaches_90_percent_and_ends_with_the_last_learner(self):

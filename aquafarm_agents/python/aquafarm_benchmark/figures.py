@@ -76,6 +76,7 @@ _ENLARGED = 0.7  # the lower chart of Fig. 14 begins at this fraction of the bes
 _LETTER = 0.013  # mean width of a letter of a name [widths of the axes]
 _BEFORE = 0.8  # Fig. 12a begins at this fraction of the steps of the first value
 _BAR = 0.012  # distance of the bars of ranges [last episode]
+_TITLE = 31  # max length of a line of a title of Fig. 13
 _ALIKE = 0.02  # references share one line if their relative difference is below this
 
 
@@ -207,7 +208,7 @@ def _cut(axes, end, last):
 
 def draw_rewards(path, contestants, runs, references):
     """Draws Fig. 12a."""
-    count = most_common_count(contestants, runs)
+    count, learners = most_common_count(contestants, runs), headlines.learners_of(contestants)
     has_target = headlines.target_of(references) < math.inf
     shown = ("one run of each learner" if count == 1 else f"{count} runs of each learner; thick: "
              + (f"the run whose time to {100 * headlines.REACHED:.0f} % is nearest to the median"
@@ -220,7 +221,7 @@ def draw_rewards(path, contestants, runs, references):
         headlines.highest(contestants, runs, ends, "return"),
         f"Fig. 12a: {shown}. Means of {measures.WINDOW} episodes: a line begins after episode "
         f"{measures.WINDOW}. {dots if has_target else ''}The chart ends with the last run of a "
-        "learner; RANDOM takes more steps.",
+        f"learner{'' if len(learners) == len(contestants) else '; RANDOM takes more steps'}.",
         f"{measures.WINDOW}-episode mean return",
         [(lambda axes: plot_rewards_by_steps(axes, contestants, runs, references), "", False)],
         "time steps so far (logarithmic)")
@@ -277,7 +278,10 @@ def draw_mean_score(path, contestants, runs, references):
     for axes, one in zip(charts, learners):
         every += [end for end in plot_mean_score(axes, [one], runs, references)
                   if end.name == one.label]
-        axes.set_title(f"{one.label}: {headlines.with_range(every[-1], 2)}", fontsize=11,
+    titles = [(end.name, headlines.with_range(end, 2)) for end in every]
+    is_long = any(len(": ".join(title)) > _TITLE for title in titles)
+    for axes, one, title in zip(charts, learners, titles):
+        axes.set_title((":\n" if is_long else ": ").join(title), fontsize=11,
                        color=legible(one.colour))
     is_repeated = most_common_count(contestants, runs) > 1
     axes = charts[-1]

@@ -58,7 +58,7 @@ disasters:
 TEST(DangerMarkers, NameTheDeviceTheRiskAndTheCentreOutsideTheFarm) {
   Scene scene;
   const auto markers = scene.Draw();
-  EXPECT_EQ(markers.at({"alarm", 0}).text, "typhoon: risk -5 over F0 now");
+  EXPECT_EQ(markers.at({"alarm", 0}).text, "Typhoon: risk -5 over F0 now");
   EXPECT_EQ(markers.at({"danger_label", 0}).text, "F0: risk -5 now");
   EXPECT_EQ(markers.at({"danger_label", 1}).action, Marker::DELETE);
   EXPECT_EQ(markers.at({"danger", 1}).action, Marker::DELETE);
@@ -308,11 +308,11 @@ TEST(DangerMarkers, SayWhenAStormOutsideIsClosest) {
 TEST(DangerMarkers, FollowTheTrackOfTheScenario) {
   Scene scene;
   scene.SetTrackTo(2);
-  EXPECT_EQ(scene.Draw().at({"alarm", 0}).text, "typhoon: risk -5 over F0 now, risk -20 in 30 min");
+  EXPECT_EQ(scene.Draw().at({"alarm", 0}).text, "Typhoon: risk -5 over F0 now, risk -20 in 30 min");
   scene.spec.scenario_yaml.replace(scene.spec.scenario_yaml.find("    track:"), 0,
                                    "    ring_winds_kt: [64, 34]\n");
   const auto named = scene.Draw();
-  EXPECT_EQ(named.at({"alarm", 0}).text, "typhoon: gale over F0 now, hurricane force in 30 min");
+  EXPECT_EQ(named.at({"alarm", 0}).text, "Typhoon: gale over F0 now, hurricane force in 30 min");
   EXPECT_EQ(named.at({"danger_label", 0}).text, "F0: gale now, 64 kt in 30 min");
 }
 
@@ -336,7 +336,7 @@ disasters:
   scene.state.devices.push_back(test::MakeDevice(10, 0, 4, 12, 1.0F));
   const Marker alarm = scene.Draw().at({"alarm", 0});
   EXPECT_EQ(alarm.text,
-            "typhoon: gale over F0 and F10 now, storm in 4.0 h (Sun 04:16 UTC+8),\n"
+            "Typhoon: gale over F0 and F10 now, storm in 4.0 h (Sun 04:16 UTC+8),\n"
             "hurricane force in 10 h (Sun 10:16)");
   // whole_view.cpp leaves 3.5 % of the farm free on its right. On the screen, letters are 0.40 of
   // their height wide on average.

@@ -373,6 +373,7 @@ TEST(ValueLegend, HasTheRangeTheColoursAndTheSymbolsWithinTheViewOfTheFarm) {
   Values values;
   values.lowest = -3.9F;
   values.highest = 157.7F;
+  values.actions = {9, 8};  // drop-off and pickup
   const auto draw = [&] {
     MarkerArray array;
     AddValueLegend(array, spec, values);
@@ -390,6 +391,13 @@ TEST(ValueLegend, HasTheRangeTheColoursAndTheSymbolsWithinTheViewOfTheFarm) {
     EXPECT_GT(marker.colors.back().g, 0.75F) << "and ends with green";
   }
   EXPECT_EQ(words, "value -3.9||157.7||best move||pickup||drop-off|");
+  values.actions[0] = 0;
+  int without_drop_off = 0;
+  for (const auto& marker : draw().markers) {
+    without_drop_off += marker.action == Marker::DELETE ? 1 : 0;
+  }
+  EXPECT_EQ(without_drop_off, 2) << "the symbol of a move that does not occur, and its name";
+  values.actions[0] = 9;
   const auto keys = Keys(draw());
   values.highest = values.lowest;
   EXPECT_EQ(Keys(draw()), keys) << "a policy without values deletes the range";

@@ -105,9 +105,11 @@ TEST(OutlookText, ShortensTheNameAndTheDangerOfADeviceUntilTheyFit) {
     return name + "|" + danger;
   };
   EXPECT_EQ(words(60), "F3 release|gale in 30 min, hurricane force in 3.0 h");
-  EXPECT_EQ(words(43), "F3|gale in 30 min, hurricane force in 3.0 h");
+  EXPECT_EQ(words(43), "F3 release|gale in 30 min, 64 kt in 3.0 h");
+  EXPECT_EQ(words(34), "F3|gale in 30 min, 64 kt in 3.0 h");
   EXPECT_EQ(words(30), "F3 release|64 kt in 3.0 h") << "the kind rather than the second word";
-  EXPECT_EQ(words(27), "F3|hurricane force in 3.0 h");
+  EXPECT_EQ(words(26), "F3 release|64 kt in 3.0 h");
+  EXPECT_EQ(words(17), "F3|64 kt in 3.0 h");
   EXPECT_EQ(words(0), "F3|" + RiskText(scene.spec, device, ", ")) << "the shortest if nothing fits";
 }
 

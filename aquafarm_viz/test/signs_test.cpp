@@ -144,6 +144,29 @@ TEST(Layout, HasAPanelOfAQuarterOfAWidePicture) {
   }
 }
 
+TEST(Layout, HasTheLegendBelowAWideMapThatIsMuchLowerThanItsPlace) {
+  const Layout layout = MakeLayout(20, 14, {1920, 1280});
+  EXPECT_GE(layout.key.y, layout.map.br().y + layout.Px(18.0)) << "below the axis";
+  EXPECT_LE(layout.key.br().y, layout.bottom.y);
+  EXPECT_TRUE((layout.key & layout.panel).empty());
+  EXPECT_TRUE(MakeLayout(25, 25, {1680, 1280}).key.empty()) << "the map leaves no space";
+  EXPECT_TRUE(MakeLayout(25, 25, {640, 640}).key.empty()) << "too narrow";
+  // All signs at once, in at most three rows below the key of risks.
+  std::vector<Sign> signs;
+  for (int sign = 0; sign <= int(Sign::kHealth); ++sign) signs.push_back(Sign(sign));
+  cv::Mat image(1280, 1920, CV_8UC3, cv::Scalar::all(0));
+  const RiskKey key{{34, -5.0, aquafarm_msgs::DisasterState::TYPHOON},
+                    {64, -20.0, aquafarm_msgs::DisasterState::TYPHOON}};
+  const Fonts fonts(layout.unit);
+  DrawSigns(image, key, signs, {}, layout, fonts);
+  DrawRiskKey(image, key, /*is_filled=*/true, signs, layout, fonts);
+  EXPECT_GT(cv::norm(image(layout.key)), 1000.0);
+  const cv::Point margin(layout.Px(3.0), layout.Px(3.0));  // symbols may be a little wider
+  image(cv::Rect(layout.key.tl() - margin, layout.key.br() + margin)).setTo(cv::Scalar::all(0));
+  EXPECT_EQ(cv::norm(image), 0.0) << "nothing is drawn elsewhere";
+  EXPECT_EQ(LegendPx(key, signs, layout), 0) << "the panel has no legend";
+}
+
 TEST(Signs, OfAShipStandNextToThePortInItsCell) {
   auto spec = test::MakeSpec();
   spec.ports[2].cell = test::MakeCell(12, 15);  // next to each other
@@ -390,6 +413,21 @@ TEST(Paths, OppositeWaysAreOnBothSidesOfTheCells) {
   EXPECT_TRUE(moves[2].is_dashed);
   EXPECT_FALSE(moves[4].is_dashed);
   EXPECT_NE(MovesOf(way, 1, /*are_several=*/true, layout)[0].from.y, moves[0].from.y);
+}
+
+TEST(Paths, KnowWhichTripsArePast) {
+  const Layout layout = MakeLayout(25, 25, {800, 640});
+  ShipTrail way;
+  way.places = {{5, 5}, {6, 5}, {7, 5}, {8, 5}};
+  way.loaded = {false, false, true, true};
+  const auto count_past = [&] {
+    const auto moves = MovesOf(way, 0, /*are_several=*/true, layout);
+    return std::count_if(moves.begin(), moves.end(), [](const Moved& one) { return one.is_past; });
+  };
+  EXPECT_EQ(count_past(), 0) << "the first trip";
+  way.places.push_back({9, 5});
+  way.loaded.push_back(false);
+  EXPECT_EQ(count_past(), 3) << "all moves before the drop-off at (8, 5)";
 }
 
 }  // namespace

@@ -18,9 +18,10 @@ constexpr double kMaxPanelWidth = 276.0;  // max width; the panel takes what the
 constexpr double kAxisLeft = 52.0;
 constexpr double kAxisBottom = 18.0;
 constexpr double kGap = 10.0;
-constexpr double kKeyBelow = 72.0;  // height of a legend below the map
-constexpr int kSmallest = 300;      // min side of a picture with texts around the map [pixels]
-constexpr double kWholePixels = 6;  // from this size [pixels] on, the size of a cell is an integer
+constexpr double kKeyBelow = 72.0;   // height of a legend below the map, four rows
+constexpr double kKeyWidth = 450.0;  // its min width
+constexpr int kSmallest = 300;       // min side of a picture with texts around the map [pixels]
+constexpr double kWholePixels = 6;   // from this size [pixels] on, the size of a cell is an integer
 
 }  // namespace
 
@@ -67,8 +68,9 @@ Layout MakeLayout(int width, int height, ImageSize size, const Style& style) {
     layout.panel.width += spare;
     room.width -= spare;
   }
-  // A map that is much lower than its place has the legend below it.
-  if (short_side >= kSmallest && room.height - map.height >= layout.Px(kKeyBelow)) {
+  // A wide map that is much lower than its place has the legend below it.
+  if (short_side >= kSmallest && room.width >= layout.Px(kKeyWidth) &&
+      room.height - map.height >= layout.Px(kKeyBelow)) {
     room.height -= layout.Px(kKeyBelow);
     layout.key = {room.x, room.br().y + layout.Px(kAxisBottom + 4.0), room.width,
                   layout.Px(kKeyBelow - 4.0)};

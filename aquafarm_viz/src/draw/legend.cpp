@@ -41,28 +41,43 @@ int KeyPx(const RiskKey& key, const Layout& layout) {
   return (has_rows ? static_cast<int>(key.size()) : 1) * layout.Px(kKeyRow);
 }
 
-int SignColumns(const Layout& layout) {
-  if (IsBelowMap(layout)) {
-    return std::max(2, (layout.key.width - layout.Px(kScale)) / layout.Px(kSign));
-  }
-  return layout.panel.width >= layout.Px(245.0) ? 3 : 2;
+// Returns the width of the north arrow and the scale bar below the map [pixels].
+int ScalePx(const Layout& layout) {
+  return std::min(layout.Px(kScale), cvRound(0.36 * layout.key.width));
 }
 
-// Returns the column and row of each sign in the key. A sign that does not fit into the rest of a
-// row begins the next row.
-std::vector<cv::Point> SignCells(const std::vector<Sign>& signs, const Layout& layout) {
-  std::vector<cv::Point> cells;
+// The places of the signs in the key.
+struct SignGrid {
+  int columns{};
+  std::vector<cv::Point> cells;  // column and row of each sign
+
+  int rows() const { return cells.empty() ? 0 : cells.back().y + 1; }
+};
+
+// Returns a grid with a number of columns. A sign that does not fit into the rest of a row begins
+// the next row.
+SignGrid GridOf(const std::vector<Sign>& signs, int columns) {
+  SignGrid grid{columns, {}};
   cv::Point next;
   for (const Sign sign : signs) {
-    if (next.x + SignSpan(sign) > SignColumns(layout)) next = {0, next.y + 1};
-    cells.push_back(next);
+    if (next.x + SignSpan(sign) > columns) next = {0, next.y + 1};
+    grid.cells.push_back(next);
     next.x += SignSpan(sign);
   }
-  return cells;
+  return grid;
+}
+
+// Returns the grid in the panel, or that below the map, which has at most three rows.
+SignGrid MakeSignGrid(const std::vector<Sign>& signs, const Layout& layout) {
+  if (!IsBelowMap(layout)) return GridOf(signs, layout.panel.width >= layout.Px(245.0) ? 3 : 2);
+  constexpr int kMaxRows = 3;
+  int columns = std::max(2, (layout.key.width - ScalePx(layout)) / layout.Px(kSign));
+  while (GridOf(signs, columns).rows() > kMaxRows) ++columns;
+  return GridOf(signs, columns);
 }
 
 int SignsPx(const std::vector<Sign>& signs, const Layout& layout) {
-  return signs.empty() ? 0 : (SignCells(signs, layout).back().y + 1) * layout.Px(kKeyRow);
+  return MakeSignGrid(signs, layout).rows() * layout.Px(kKeyRow);
 }
 
 // Draws a scale bar with a round length of at most `room_px` pixels.
@@ -105,7 +120,7 @@ void DrawNorthArrow(cv::Mat& image, cv::Point at, const Layout& layout, const Fo
 void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
   if (!HasLegend(layout)) return;
   const cv::Rect place = IsBelowMap(layout) ? layout.key : layout.panel;
-  const int width = IsBelowMap(layout) ? layout.Px(kScale) : place.width - layout.Px(16);
+  const int width = IsBelowMap(layout) ? ScalePx(layout) : place.width - layout.Px(16);
   const int left = place.br().x - width - (IsBelowMap(layout) ? 0 : layout.Px(6));
   const int foot = place.br().y - layout.Px(14);
   DrawNorthArrow(image, {left + layout.Px(8), foot - layout.Px(6)}, layout, fonts);
@@ -382,12 +397,11 @@ void DrawSigns(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& sign
   const cv::Rect rows = RowsOf(key, signs, layout);
   const int left = rows.x;
   const int top = rows.y + KeyPx(key, layout);
-  const int width =
-      (rows.width - (IsBelowMap(layout) ? layout.Px(kScale) : 0)) / SignColumns(layout);
-  const std::vector<cv::Point> cells = SignCells(signs, layout);
+  const SignGrid grid = MakeSignGrid(signs, layout);
+  const int width = (rows.width - (IsBelowMap(layout) ? ScalePx(layout) : 0)) / grid.columns;
   for (std::size_t i = 0; i < signs.size(); ++i) {
-    const int x = left + cells[i].x * width;
-    const int y = top + cells[i].y * layout.Px(kKeyRow) + layout.Px(kKeyRow / 2);
+    const int x = left + grid.cells[i].x * width;
+    const int y = top + grid.cells[i].y * layout.Px(kKeyRow) + layout.Px(kKeyRow / 2);
     const Sign sign = signs[i];
     DrawSign(image, sign, cv::Point2d(x + layout.Px(7), y), state, layout);
     fonts.small.Draw(

@@ -378,8 +378,9 @@ std::pair<std::string, std::string> NameAndDanger(
   std::string danger = DangerText(spec, device);
   if (fits(full, danger)) return {full, danger};
   // The kind can be left out, because the symbol next to the name shows it.
-  for (const std::string& shorter : {NowAndWorstText(spec, device), WorstText(spec, device),
-                                     RiskText(spec, device), RiskText(spec, device, ", ")}) {
+  for (const std::string& shorter :
+       {WithKnots(danger), NowAndWorstText(spec, device), WorstText(spec, device),
+        WithKnots(WorstText(spec, device)), RiskText(spec, device), RiskText(spec, device, ", ")}) {
     if (fits(label, danger)) break;
     danger = shorter;
   }

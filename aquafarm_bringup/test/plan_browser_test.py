@@ -66,6 +66,7 @@ return {clock: document.getElementById("clock").textContent,
         home: [...document.querySelectorAll(".device.home")].map(one => one.id).sort(),
         aboard: [...document.querySelectorAll(".device.aboard:not(.home)")].map(
             one => one.id).sort(),
+        explained: !document.getElementById("hatching").hidden,
         areas: document.querySelectorAll("#hazard path").length,
         cursor: document.getElementById("cursor").getAttribute("transform")};
 """
@@ -182,9 +183,10 @@ class BrowserTest(unittest.TestCase):
         self.assertIn("device1", home["home"])
         self.assertNotEqual(before["ships"][0], towing["ships"][0])
         self.assertNotEqual(before["cursor"], home["cursor"])
-        self.assertEqual(0, before["areas"])
+        self.assertEqual((0, False), (before["areas"], before["explained"]))
         late = self.move_slider(86400)
         self.assertGreater(late["areas"], 2)
+        self.assertTrue(late["explained"])
         timeline = {
             self.seconds(one["time"]): one["probability"] for one in self.plan["hazard"]["timeline"]
         }

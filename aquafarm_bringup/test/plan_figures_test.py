@@ -208,6 +208,66 @@ class PlanFiguresTest(unittest.TestCase):
         self.assertGreaterEqual(math.dist(moved, frame.px(*plan["devices"][0]["cell"])), 45.0)
         self.assertLess(abs(moved[0] - free[0]), 81.0)
 
+    def test_no_label_of_the_region_lies_on_a_ring(self):
+        region = figures.region(plan_sample.sample(members=100))
+        self.assertEqual(3, len(region["rings"]))
+        for label in region["labels"]:
+            for ring in region["rings"]:
+                far = [math.dist((x, y), ring["xy"]) for x in (label.x, label.x + label.width)
+                       for y in (label.y - label.height, label.y)]
+                crosses = min(far) < ring["r"] < max(far)
+                self.assertFalse(crosses, (label.lines, ring["ring"]))
+
+    def test_a_gale_at_the_start_is_explained_by_the_spread_of_its_radius(self):
+        plan = plan_sample.sample(members=100)
+        plan["hazard"]["timeline"][0]["probability"] = [0.0, 0.0, 0.0]
+        self.assertIsNone(words.early_wind(plan), "no ring is over the ranch at the start")
+        start, cell_km = plan["clock"]["start"], plan["ranch"]["cell_size_m"] / 1000
+        at, = (one for one in plan["storm"]["points"] if one["time"] == start)
+        middle = (plan["ranch"]["width"] - 1) / 2
+        at.update(at=[middle + 560.0 / cell_km, middle], radii_km=[49.0, 107.0, 279.0])
+        plan["ensemble"]["errors"][0]["size_log"] = 0.36  # 279 km * exp(1.645 * 0.36) = 504 km
+        plan["hazard"]["timeline"][0]["probability"] = [0.0, 0.0, 0.039]
+        text = words.early_wind(plan)
+        for part in ("gale (34 kt) is 4 % at the start", "560 km away",
+                     "279 km (recorded), but more than about 500 km in one future of twenty"):
+            self.assertIn(part, text)
+        self.assertNotIn("leave", text, "the ships of this plan leave later")
+        plan["plan"]["routes"][0]["orders"][0].update(time=start, probability=0.967)
+        self.assertIn("leave port A, 97 %", words.early_wind(plan))
+        plan["hazard"]["timeline"][0]["probability"] = [0.0, 0.02, 0.039]
+        self.assertNotIn("leave port", words.early_wind(plan), "another ring may be the cause")
+        at["radii_km"][2] = 600.0
+        self.assertIsNone(words.early_wind(plan), "the ring is over the ranch")
+
+    def test_the_shares_of_losses_follow_the_exceedance_curve(self):
+        plan = plan_sample.sample(members=100)
+        plan["loss"]["insured"] = 305.0
+        plan["loss"]["with_plan"]["exceedance"] = [[0.0, 0.09], [70.0, 0.08], [125.0, 0.06],
+                                                   [305.0, 0.0]]
+        shares = figures.loss_shares(plan)
+        self.assertEqual(["almost nothing", "a part", "everything"], [name for name, _ in shares])
+        for expected, (_, share) in zip((0.91, 0.03, 0.06), shares):
+            self.assertAlmostEqual(expected, share)
+        self.assertIsNone(figures.loss_shares(plan_sample.storm_unknown()))
+
+    def test_a_departure_at_once_is_part_of_the_delivery(self):
+        plan = plan_sample.sample(members=100)
+        leave = {"action": "leave", "time": plan_sample.stamp(9), "port": 1, "device": None,
+                 "probability": 0.942}
+        deliver = {**leave, "action": "deliver", "device": 0, "probability": 0.943}
+        route = {"orders": [leave, deliver, leave]}
+        orders = words.merged_orders(plan, route)
+        self.assertEqual(["leave port B", "deliver F1 at port B and leave"],
+                         [words.order_text(plan, one) for one in orders])
+        for change in ({"probability": 0.9}, {"time": plan_sample.stamp(10)}):
+            route["orders"][2] = {**leave, **change}
+            self.assertEqual(3, len(words.merged_orders(plan, route)), change)
+
+    def test_the_storm_s_name_has_a_capital_after_a_hyphen(self):
+        for name in ("In-fa", "In-Fa"):
+            self.assertEqual("In-Fa", words.storm_name({"storm": {"name": name}}))
+
     def test_no_more_than_everything_can_be_lost(self):
         plan = plan_sample.sample(members=100)
         insured = plan["loss"]["insured"]

@@ -9,7 +9,7 @@ from scipy.ndimage import gaussian_filter
 
 from .document import Clock
 from .labels import Label, place
-from .words import chance, compass, kind_name, left_reason, left_word, letter
+from .words import chance, compass, kind_name, left_reason, left_word, letter, storm_name
 
 WIDTH, MAX_HEIGHT = 760.0, 860.0  # max width and height of the drawing [px]
 LEVELS = (10, 50, 90)  # levels of the isolines [%]
@@ -79,7 +79,7 @@ def storm_pointer(plan, frame):
         return None
     bearing = math.degrees(math.atan2(east, north)) % 360
     km = math.hypot(east, north) * ranch["cell_size_m"] / 1000
-    name = plan["storm"]["name"] or plan["storm"]["kind"]
+    name = storm_name(plan) or plan["storm"]["kind"]
     return {"xy": (frame.width / 2 + east * frame.scale / reach,
                    frame.height / 2 - north * frame.scale / reach), "bearing": bearing,
             "words": f"{name}: centre {km:,.0f} km {compass(bearing)} "

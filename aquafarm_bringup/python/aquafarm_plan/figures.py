@@ -10,7 +10,7 @@ from .document import Clock, amount, parse_time
 from .labels import Label, place, shorten
 from .words import compass, is_unknown, letter, numbered_name, order_text
 
-REGION = 330.0  # side of the drawing of the region [px]
+REGION = 400.0  # side of the drawing of the region [px]
 REGION_LABELS = 4  # max number of labelled positions of the storm
 LINE = (1100.0, 104.0)  # width and left margin of the timeline [px]
 TOP, HAZARD_HEIGHT, ROW, AXIS = 20.0, 50.0, 27.0, 48.0  # heights in the timeline [px]
@@ -103,12 +103,13 @@ def _region_labels(plan, drawn, rings, box):
                             name=one["source"]))
     for ring in rings:
         x, y = ring["xy"][0], ring["xy"][1] + ring["r"]
-        labels.append(Label([plan["rings"][ring["ring"]]["name"]], (x, y), 3, 12, name="ring"))
+        name = plan["rings"][ring["ring"]]["name"].partition(" (")[0]  # the timeline has the wind
+        labels.append(Label([name], (x, y), 3, 12, name="ring"))
     points = [(*one["xy"], 30.0) for one in drawn] + [(*centre, 90.0)]
-    points += [(ring["xy"][0] + ring["r"] * math.cos(math.tau * i / 90),
-                ring["xy"][1] + ring["r"] * math.sin(math.tau * i / 90), 2.0)
-               for ring in rings for i in range(90)]
-    points += [(x, y, 3.0) for a, b in zip(drawn, drawn[1:])
+    points += [(ring["xy"][0] + ring["r"] * math.cos(math.tau * i / 180),
+                ring["xy"][1] + ring["r"] * math.sin(math.tau * i / 180), 8.0)
+               for ring in rings for i in range(180)]
+    points += [(x, y, 8.0) for a, b in zip(drawn, drawn[1:])
                for x, y in samples([a["xy"], b["xy"]])]
     return place(labels, points, REGION, REGION - 36)
 
@@ -296,6 +297,18 @@ def _dates(clock, end, x_of):
             dates.insert(0, {"x": x, "text": f"{day:%a} {day.day} {day:%b}",
                              "is_midnight": day is not first})
     return dates
+
+
+def loss_shares(plan):
+    """Returns (name, share of the futures) of the losses with the plan: below 1 % of the insured
+    value, above 99 %, and between. The shares are exact to about 1 %. None if they are unknown."""
+    insured, steps = plan["loss"]["insured"], plan["loss"]["with_plan"]["exceedance"]
+    if is_unknown(plan) or not steps or not insured:
+        return None
+    above = [next((p for x, p in reversed(steps) if x < share * insured), 1.0)
+             for share in (0.01, 0.99)]
+    return [("almost nothing", 1 - above[0]), ("a part", above[0] - above[1]),
+            ("everything", above[1])]
 
 
 def curve(plan):

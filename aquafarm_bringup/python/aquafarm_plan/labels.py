@@ -49,6 +49,11 @@ class Label:
         return (0.75 * len(self.badge) + 0.8) * self.size if self.badge else 0.0
 
     @property
+    def is_left(self):
+        """Returns whether the label is to the left of its anchor; its text then ends at it."""
+        return self.x + self.width < self.anchor[0]
+
+    @property
     def height(self):
         return len(self.lines) * self.size * 1.15
 

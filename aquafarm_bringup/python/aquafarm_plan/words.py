@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sentences of the page: orders, and the answers to the five questions at its top."""
+import math
+import re
+
 from .document import Clock, amount, percent, sampling_error
 
 KINDS = {
@@ -29,6 +32,12 @@ def letter(number):
         text = chr(ord("A") + number % 26) + text
         number = number // 26 - 1
     return text
+
+
+def storm_name(plan):
+    """Returns the name of the storm with a capital after each hyphen, such as In-Fa: archives and
+    bulletins write the same name with different capitals."""
+    return re.sub(r"-(.)", lambda found: found[0].upper(), plan["storm"]["name"])
 
 
 def compass(bearing_deg):
@@ -117,8 +126,52 @@ def order_text(plan, order):
         return f"fetch {plan['devices'][order['device']]['name']}"
     if order["action"] == "deliver":
         ids = order.get("devices") or [i for i in [order["device"]] if i is not None]
-        return f"deliver {device_names(plan, ids)} at {port}" if ids else f"return to {port}"
+        text = f"deliver {device_names(plan, ids)} at {port}" if ids else f"return to {port}"
+        return f"{text} and leave" if order.get("leaves") else text
     return f"wait in {port}" if order["port"] is not None else "wait"
+
+
+def merged_orders(plan, route):
+    """Returns the orders of a route for a table. An order to leave a port at the time of a delivery
+    there, with the same chance, is part of the delivery, which then has the key `leaves`."""
+    merged = []
+    for order in route["orders"]:
+        last = merged[-1] if merged else None
+        if (last and (last["action"], order["action"]) == ("deliver", "leave")
+                and (last["time"], last["port"]) == (order["time"], order["port"])
+                and chance(plan, last["probability"]) == chance(plan, order["probability"])):
+            merged[-1] = {**last, "leaves": True}
+        else:
+            merged.append(order)
+    return merged
+
+
+def early_wind(plan):
+    """Returns why the widest ring may be over the ranch at the start of the plan, although its
+    radius is smaller than the distance of the storm's centre. None if that is not so."""
+    clock, ranch, times = Clock(plan["clock"]), plan["ranch"], plan["hazard"]["timeline"]
+    at = [one for one in plan["storm"]["points"] if abs(clock.seconds(one["time"])) < 60.0]
+    spread = [one for one in plan["ensemble"]["errors"] if abs(clock.seconds(one["time"])) < 60.0]
+    if is_unknown(plan) or not (at and spread and times) or times[0]["probability"][-1] < 0.005:
+        return None
+    radius, share = at[0]["radii_km"][-1], times[0]["probability"][-1]
+    km = math.dist(at[0]["at"], [(ranch["width"] - 1) / 2, (ranch["height"] - 1) / 2])
+    km *= ranch["cell_size_m"] / 1000
+    if not radius or radius >= km:
+        return None
+    wide = radius * math.exp(1.645 * (spread[0]["size_log"] or 0.0))  # a twentieth is above it
+    name = plan["rings"][-1]["name"]
+    text = (f"The chance of {name} is {percent(share)} at the start, although the centre is "
+            f"{km:,.0f} km away, because the radius of this wind is uncertain: {radius:,.0f} km "
+            f"({at[0]['radii_source']}), but more than about {round(wide, -1):,.0f} km in one future "
+            "of twenty.")
+    leave = next((one for route in plan["plan"]["routes"] for one in route["orders"][:1]
+                  if one["action"] == "leave" and abs(clock.seconds(one["time"])) < 60.0), None)
+    is_only = max(times[0]["probability"][:-1], default=0.0) < 0.005
+    if leave and is_only and leave["probability"] < 0.995:
+        text += (" A ship does not leave a port that this wind has reached: "
+                 f"{order_text(plan, leave)}, {percent(leave['probability'])}.")
+    return text
 
 
 def no_rings(plan):

@@ -49,6 +49,11 @@
 
   function drawHazard(seconds) {
     hazard.replaceChildren();
+    drawOutlines(seconds);
+    document.getElementById("hatching").hidden = !hazard.childElementCount;
+  }
+
+  function drawOutlines(seconds) {
     if (!data.hazard.length) return;
     const frame = nearest(data.hazard, seconds, one => one.s);
     frame.rings.map((outlines, ring) => [outlines, ring]).reverse().forEach(([outlines, ring]) => {

@@ -119,7 +119,7 @@ class CompareBrowserTest(unittest.TestCase):
                 one.getBoundingClientRect().bottom < innerHeight).map(one => one.textContent)
                 .join(" | ");""")
             self.assertIn(words, seen, page.name)
-            self.assertRegex(seen, r"[−-]?[\d.]+( \| 95 %: | )\[[−-]?[\d.]+, [−-]?[\d.]+\]", page.name)
+            self.assertRegex(seen, r"[−-]?[\d.,]+( \| 95 %: | )\[[−-]?[\d.,]+, [−-]?[\d.,]+\]", page.name)
 
     def test_numbers_of_episodes_have_thousands_separators(self):
         self.show()
@@ -130,18 +130,18 @@ class CompareBrowserTest(unittest.TestCase):
         self.assertIn("2,000", labels)
         self.assertNotIn("2000", labels)
 
-    def test_tiles_show_both_runs_between_the_references(self):
+    def test_tiles_show_runs_and_references_by_return(self):
         self.show()
         tiles = [one.text.splitlines() for one in
                  self.browser.find_elements(By.CSS_SELECTOR, ".wide-tiles .tile")]
-        self.assertEqual(["RANDOM (all actions)", "table: q_learning", "other: sarsa", "planner",
-                          "clairvoyant"],
-                         [tile[0] for tile in tiles])
+        self.assertEqual({"RANDOM (all actions)", "table: q_learning", "other: sarsa", "planner",
+                          "clairvoyant"}, {tile[0] for tile in tiles})
+        means = [float(tile[1].replace("−", "-").replace(",", "")) for tile in tiles]
+        self.assertEqual(sorted(means, reverse=True), means)
         for tile in tiles:
-            self.assertRegex(tile[2], r"^95 %: \[−?[\d.]+, −?[\d.]+\]$")
+            self.assertRegex(tile[2], r"^95 %: \[−?[\d.,]+, −?[\d.,]+\]$")
             self.assertRegex(tile[3], r"^success \d+ % \[\d+ %, \d+ %\]$")
-            self.assertRegex(tile[5], rf"^{EPISODES} episodes, \d+ distinct$")
-        self.assertEqual("100.0 % of clairvoyant", tiles[-1][4])
+        self.assertIn("100.0 % of clairvoyant", [tile[4] for tile in tiles])
 
     def test_the_pointer_shows_the_value_of_every_run(self):
         self.show()

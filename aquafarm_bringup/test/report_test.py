@@ -161,15 +161,17 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(0, code, words)
         summary = json.loads(prefix.with_suffix(".json").read_text())
         mean, distinct = summary["return_per_episode"], summary["distinct_episodes"]
-        self.assertIn(f"<b>{mean:.1f}", self.page.text)
+        self.assertRegex(self.page.text, rf"<b>({mean:.1f}|{mean:.0f})</b>")
         self.assertIn(f"{summary['episodes']} episodes, {distinct} distinct", self.page.words)
 
     def test_the_policy_stands_next_to_the_references_with_intervals(self):
         section = self.page.text[self.page.text.index("Return of the policy and of the references"):]
         section = section[:section.index("</section>")]
-        labels = ["RANDOM (all actions)", "q_learning", "planner", "clairvoyant"]
-        places = [section.index(f"<span>{label}</span>") for label in labels]
-        self.assertEqual(sorted(places), places)
+        shown = re.findall(r"<span>([^<]*)</span><b>(−?[\d.,]+)</b>", section)
+        self.assertEqual({"RANDOM (all actions)", "q_learning", "planner", "clairvoyant"},
+                         {label for label, _ in shown})
+        means = [float(value.replace("−", "-").replace(",", "")) for _, value in shown]
+        self.assertEqual(sorted(means, reverse=True), means, "the highest return first")
         self.assertEqual(4, len(re.findall(r"<span>success \d+ % \[\d+ %, \d+ %\]</span>", section)))
         self.assertIn("<span>100.0 % of clairvoyant</span>", section)  # of itself
         self.assertEqual(3, section.count("<span>100 episodes, "))
@@ -195,11 +197,24 @@ class ReportTest(unittest.TestCase):
     def test_the_interval_of_the_return_is_of_distinct_starts(self):
         player = references.Player("dqn", [{"return": value} for value in
                                            ("90", "110", "90", "110")], distinct=4)
-        self.assertEqual("100.0 [88.7, 111.3]", references.return_text(player))
+        self.assertEqual("100 [89, 111]", references.return_text(player))
         player.distinct = 2  # the other two are repetitions
-        self.assertEqual("100.0 [84.0, 116.0]", references.return_text(player))
+        self.assertEqual("100 [84, 116]", references.return_text(player))
         player.distinct = 1
         self.assertEqual("100.0", references.return_text(player))
+        self.assertEqual("−3,723 [−3,795, −3,651]", references.text((-3722.9, -3795.2, -3650.7)))
+        self.assertEqual("1,276.0 [1,274.5, 1,277.6]", references.text((1276.0, 1274.5, 1277.6)))
+
+    def test_the_number_of_episodes_is_stated_once_if_it_is_the_same(self):
+        def shown(*counts):
+            row = {"episode": "0", "return": "1", "success": "1"}
+            return references.show_tiles([references.Player("a", [row] * episodes, distinct)
+                                          for episodes, distinct in counts])
+
+        self.assertIn("1000: 4 for each, all with a start of their own.", shown((4, 4), (4, 4)))
+        self.assertIn("1000: 4 for each, 2 with a start of their own.", shown((4, 2), (4, 2)))
+        self.assertNotIn("distinct", shown((4, 4), (4, 4)))
+        self.assertIn("3 episodes, 2 distinct", shown((4, 4), (3, 2)))
 
     def test_a_run_that_plays_worse_than_it_trained_has_a_sentence(self):
         columns = {"return": np.full(120, 150.0), "success": np.ones(120)}
@@ -209,7 +224,7 @@ class ReportTest(unittest.TestCase):
             return curves.gap_note("a", columns, references.Player("a", rows, len(rows)))
 
         self.assertEqual(
-            "a: the mean return is 150.0 at the end of the training and −160.0 [−454.2, 134.2] in "
+            "a: the mean return is 150.0 at the end of the training and −160 [−454, 134] in "
             "greedy play, which has no random moves: 2 of 4 episodes end with devices at sea; "
             "train longer.",
             note(-420.0, 100.0, -420.0, 100.0))
@@ -235,19 +250,22 @@ class ReportTest(unittest.TestCase):
                    for label, returns, own in (("RANDOM", (-1500, -1501), False), ("planner", (), False),
                                                ("a", (90, 110), True), ("best", (278.16,), False))]
 
-        def chart(columns):
+        def charts(columns):
             text = curves.show(["a"], [columns], players=players)
-            return json.loads(re.search(r"const CURVES=(.*?);\n", text).group(1))["charts"][0]
+            return json.loads(re.search(r"const CURVES=(.*?);\n", text).group(1))["charts"]
 
-        found = chart(columns)
-        self.assertEqual([("RANDOM", -1500.5), ("best", 278.2)],
+        found, end = charts(columns)
+        self.assertIn("the last 25 % of the training", end["title"])
+        self.assertEqual(found["rows"][-len(found["rows"]) // 4:], end["rows"])
+        self.assertEqual((None, found["lines"]), (end["bend"], end["lines"]))
+        self.assertEqual([("RANDOM", -1500.5, "−1,500.5"), ("best", 278.2, "278.2")],
                          [tuple(line.values()) for line in found["lines"]])
         self.assertEqual([[100.0, 80.4, 119.6]], found["marks"])
         self.assertAlmostEqual(np.mean(columns["return"][-50:]) / 3.0, found["bend"], delta=0.01)
-        self.assertEqual("return per episode (curves: means of 50 training episodes; right: greedy "
+        self.assertEqual("Return per episode (curves: means of 50 training episodes; right: greedy "
                          "play with 95 % intervals)", found["title"])
-        self.assertIn("means of 30 training", chart({"return": columns["return"][:30]})["title"])
-        self.assertIsNone(chart({"return": columns["return"] - 1000.0})["bend"], "below 0")
+        self.assertIn("means of 30 training", charts({"return": columns["return"][:30]})[0]["title"])
+        self.assertIsNone(charts({"return": columns["return"] - 1000.0})[0]["bend"], "below 0")
 
     def test_one_sentence_says_how_good_a_run_is(self):
         def player(label, *returns, is_run=False):
@@ -384,8 +402,8 @@ class ReportTest(unittest.TestCase):
         other = self.folder / "without_metrics"
         shutil.copytree(self.trained, other)
         (other / "metrics.csv").unlink()
-        page = Page(report.make([self.trained, other], self.folder / "c.html", 10))
-        self.assertIn("Greedy play, 95 % intervals", page.words)
+        path = report.make([self.trained, other], self.folder / "c.html", 10)
+        self.assertIn("Greedy play, 95 % intervals", Page(path).words)
 
     def test_with_money_it_shows_losses_next_to_the_references(self):
         self.assertNotIn("Losses", self.page.words, "the scenario of the other tests has no money")

@@ -15,8 +15,9 @@ LIBRARY = pathlib.Path("/usr/share/javascript/dygraphs")  # Debian's libjs-dygra
 POINTS = 1000  # max number of points of a curve
 # Colours of Okabe and Ito (2008), Color universal design.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
-CURVES = (("return", "return per episode"), ("success", "success rate"),
-          ("loss", "mean square error [reward²]"))
+CURVES = (("return", "Return per episode"), ("success", "Success rate"),
+          ("loss", "Mean square error [reward²]"))
+PART = 4  # the enlarged chart shows the last 1 / PART of the rows
 
 
 def smooth(values):
@@ -57,7 +58,7 @@ def gap_note(label, columns, player):
     failed = sum(not float(row["success"]) for row in player.rows)
     what = (f"{failed} of {len(player.rows)} episodes end with devices at sea" if failed else
             "its return is lower")
-    return (f"{label}: the mean return is {means[-1]:.1f} at the end of the training and "
+    return (f"{label}: the mean return is {means[-1]:,.1f} at the end of the training and "
             f"{references.text((mean, low, high))} in greedy play, which has no random moves: "
             f"{what}; train longer.")
 
@@ -91,7 +92,8 @@ def show(labels, columns, notes=(), players=()):
         of the references
     """
     lines = [{"label": one.label,
-              "value": round(float(np.mean(references.column(one, "return"))), 1)}
+              "value": round(float(np.mean(references.column(one, "return"))), 1),
+              "text": references.return_text(one).partition(" ")[0]}
              for one in players if one.rows and not one.is_run]
     marks = [[round(value, 1) if math.isfinite(value) else None for value in
               references.mean_interval(references.column(one, "return"), one.distinct)]
@@ -110,6 +112,10 @@ def show(labels, columns, notes=(), players=()):
                 chart["title"] += (f" (curves: means of {window} training episodes; right: greedy "
                                    "play with 95 % intervals)")
         charts.append(chart)
+        if chart.get("bend"):
+            charts.append({**chart, "id": "curve_return_end", "rows": rows[-len(rows) // PART:],
+                           "bend": None, "title": f"Return per episode, the last {1 / PART:.0%} "
+                           "of the training".replace("%", " %")})
     if not charts:
         return ""
     settings = {"labels": ["episode", *labels], "charts": charts, "window": window,

@@ -62,9 +62,12 @@ def mean_interval(values, distinct):
     return float(values.mean()), float(values.mean() - margin), float(values.mean() + margin)
 
 
-def text(interval, form="{:.1f}"):
-    """Returns an interval as "160.2 [157.0, 163.4]"; without bounds only the mean."""
+def text(interval, form="{:,.1f}"):
+    """Returns an interval as "160.2 [157.0, 163.4]"; without bounds only the mean. In the default
+    form, an interval wider than 10 has no decimals."""
     mean, low, high = interval
+    if form == "{:,.1f}" and high - low > 10.0:
+        form = "{:,.0f}"
     found = form.format(mean)
     if not math.isnan(low):
         found += f" [{form.format(low)}, {form.format(high)}]"
@@ -161,22 +164,39 @@ def optimum_of(players):
     return next((one for one in players if one.label == OPTIMUM and one.rows), None)
 
 
+def _rank(player):
+    """Returns the sort key of a tile: the highest mean return first, players without one last."""
+    return -np.mean(column(player, "return")) if player.rows else math.inf
+
+
+def _same_starts(counts):
+    """Returns the end of a sentence: how many episodes all players play, and how many of these
+    start differently. Empty if the players differ. counts: {(episodes, distinct starts)}"""
+    if len(counts) != 1:
+        return ""
+    (episodes, distinct), = counts
+    same = "all" if distinct == episodes else f"{distinct:,}"
+    return f": {episodes:,} for each, {same} with a start of their own"
+
+
 def show_tiles(players):
-    """Returns a sentence (verdict), a note, and a tile for each player: return, share of
-    clairvoyant's return, success, number of episodes."""
+    """Returns a sentence (verdict), a note, and a tile for each player, the highest return first:
+    return, share of clairvoyant's return, success, and the number of episodes if it differs."""
     optimum = optimum_of(players)
+    counts = {(len(one.rows), one.distinct) for one in players if one.rows}
     shown = []
-    for one in players:
+    for one in sorted(players, key=_rank):
         if not one.rows:
             shown.append((one.label, "–", [one.fault], False))
             continue
         mean, _, interval = return_text(one).partition(" ")
         lines = [interval and f"95 %: {interval}", f"success {success_text(one)}",
-                 share_text(one, optimum), f"{len(one.rows)} episodes, {one.distinct} distinct"]
+                 share_text(one, optimum),
+                 "" if len(counts) == 1 else f"{len(one.rows)} episodes, {one.distinct} distinct"]
         shown.append((one.label, mean, [line for line in lines if line], one.is_run))
     note = ("<p>Return per episode, success and their 95 % intervals in evaluation episodes of "
-            f"seed {videos.SEED}. The planner uses the issued forecast, or the present headings if "
-            "there is none. clairvoyant uses the storm's whole track; for one ship its return is "
-            "the optimum.</p>")
+            f"seed {videos.SEED}{_same_starts(counts)}. The planner uses the issued forecast, or the "
+            "present headings if there is none. The clairvoyant uses the storm's whole track; for "
+            "one ship its return is the optimum.</p>")
     said = verdict(players)
     return (f"<p><b>{blocks.escape(said)}</b></p>" if said else "") + blocks.players(shown) + note

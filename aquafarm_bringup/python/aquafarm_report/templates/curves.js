@@ -13,7 +13,7 @@ let moving = false;
 for (const chart of CURVES.charts) {
   const unit = chart.bend;
   const onScale = value => value === null ? null : toScale(value, unit);
-  const returns = chart.id === "curve_return";
+  const returns = chart.id.startsWith("curve_return");
   window.charts.push(new Dygraph(document.getElementById(chart.id),
     chart.rows.map(([episode, ...means]) => [episode, ...means.map(onScale)]), {
     labels: CURVES.labels,
@@ -21,7 +21,7 @@ for (const chart of CURVES.charts) {
     series: Object.fromEntries(CURVES.labels.slice(1).map(
       (label, i) => [label, {strokePattern: DASHES[i % DASHES.length]}])),
     labelsDiv: chart.id + "_legend",
-    legend: "always",
+    legend: CURVES.labels.length > 2 ? "always" : "onmouseover",  // a tile names one run
     labelsSeparateLines: false,
     connectSeparatedPoints: true,
     strokeWidth: 2,
@@ -49,9 +49,11 @@ for (const chart of CURVES.charts) {
     zoomCallback: (from, to) => {
       if (moving) return;
       moving = true;
+      const isPart = window.charts.some(one => one.isZoomed("x") &&
+        one.xAxisRange()[0] === from && one.xAxisRange()[1] === to);
       for (const other of window.charts) {
         if (other.xAxisRange()[0] !== from || other.xAxisRange()[1] !== to) {
-          other.updateOptions({dateWindow: [from, to]});
+          other.updateOptions({dateWindow: isPart ? [from, to] : null});
         }
       }
       moving = false;
@@ -146,22 +148,22 @@ function reference(canvas, area, dygraph, lines, onScale) {
     canvas.moveTo(area.x, line.y);
     canvas.lineTo(area.x + area.w, line.y);
     canvas.stroke();
-    const name = `${line.label} ${inWords(line.value, 1)}`;
+    const name = `${line.label} ${line.text}`;
     const last = names[names.length - 1];
-    if (last && line.y - last.y < 16) last.text += `, ${name}`;
-    else names.push({y: line.y, text: name});
+    if (last && line.y - last.y < 16) Object.assign(last, {low: line.y, text: `${last.text}, ${name}`});
+    else names.push({y: line.y, low: line.y, text: name});
   }
   for (const name of names) {
     // At the left or the right end, above or below its line, where it covers the fewest points.
     const width = canvas.measureText(name.text).width + 12;
     const end = area.x + area.w - PAD;
     const places = [[area.x, -5], [end - width, -5], [area.x, 16], [end - width, 16]]
-      .filter(([, by]) => name.y + by - 14 > area.y && name.y + by + 4 < area.y + area.h)
-      .map(([x, by]) => ({x, by, points: pointsIn(dygraph, x, x + width, name.y + by - 14,
-        name.y + by + 4)}));
+      .map(([x, by]) => [x, by + (by > 0 ? name.low : name.y)])
+      .filter(([, y]) => y - 14 > area.y && y + 4 < area.y + area.h)
+      .map(([x, y]) => ({x, y, points: pointsIn(dygraph, x, x + width, y - 14, y + 4)}));
     if (!places.length) continue;
     const best = places.reduce((a, b) => b.points < a.points ? b : a);
-    canvas.fillText(name.text, best.x + 6, name.y + best.by);
+    canvas.fillText(name.text, best.x + 6, best.y);
   }
   canvas.restore();
 }
@@ -188,6 +190,10 @@ function mark(canvas, area, dygraph, marks, onScale) {
     if (mean === null) return;
     const x = middle + STEP * (i - (marks.length - 1) / 2);
     canvas.strokeStyle = canvas.fillStyle = CURVES.colours[i];
+    if (at(mean) > area.y + area.h) {  // below an enlarged part
+      canvas.fillText(`${inWords(mean, 0)} \u2193`, x, area.y + area.h - 8);
+      return;
+    }
     canvas.beginPath();
     canvas.arc(x, at(mean), 4, 0, 2 * Math.PI);
     canvas.fill();
@@ -214,9 +220,12 @@ function mark(canvas, area, dygraph, marks, onScale) {
 function visible(chart) {
   const values = chart.rows.flatMap(row => row.slice(1)).filter(value => value !== null)
     .sort((a, b) => a - b);
+  const isEnd = chart.id === "curve_return_end";
   const others = [...chart.lines.map(line => line.value),
-    ...chart.marks.flat().filter(value => value !== null)];
-  const low = Math.min(values[chart.bend ? 0 : Math.floor(0.1 * (values.length - 1))], ...others);
+    ...chart.marks.flat().filter(value => value !== null)]
+    .filter(value => !isEnd || value >= values[0]);
+  const first = chart.bend || isEnd ? 0 : Math.floor(0.1 * (values.length - 1));
+  const low = Math.min(values[first], ...others);
   const high = Math.max(values[values.length - 1], ...others);
   const margin = 0.08 * (high - low || 1);
   return chart.bend ? [1.3 * low, 1.16 * high] : [low - margin, high + margin];

@@ -8,7 +8,7 @@
 
 namespace aquafarm::agents {
 
-/// Hyperparameters of MADDPG. docs/several_agents.md gives reasons for the defaults.
+/// Hyperparameters of MADDPG. docs/several_agents.md explains the defaults.
 struct MaddpgOptions {
   std::int32_t hidden_size{256};  ///< units of each hidden layer, and of the LSTM
   Schedule actor_rate{ScheduleKind::kLinear, 1e-3, 1e-5, 1.0};   ///< learning rate of the actors
@@ -31,7 +31,7 @@ struct MaddpgOptions {
   bool best_response{true};    ///< true: targets use the agent's best response to the others'
                                ///< target actors; false: its own target actor (Lowe et al. 2017)
   bool mask_illegal{true};     ///< exclude illegal actions when acting and bootstrapping
-  bool mask_blocked{true};     ///< also exclude moves onto a rock, an island or off the map
+  bool mask_blocked{true};     ///< also exclude moves onto a charted rock, an island or off the map
   bool shared{true};           ///< one network for all actors; false: one network per actor
   bool recurrent{false};       ///< actors with an LSTM
   std::int32_t window{4};      ///< time steps of a training sequence; 1 without `recurrent`

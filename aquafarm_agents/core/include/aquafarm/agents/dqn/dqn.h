@@ -33,8 +33,9 @@ std::uint8_t DqnObservationTypes(const std::string& options);
 std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
 /// Returns a learner with value decomposition (VDN, Sunehag et al. 2018): one network computes the
-/// values of each agent, and their sum is the value of the team. The sum is trained with the sum of
-/// the agents' rewards. The policy is a DQN policy.
+/// values of each agent, and their sum is the value of the team. It is trained with the reward of
+/// the team: the sum of the agents' rewards or, if each agent already receives the team's reward,
+/// that reward once. The policy is a DQN policy.
 ///
 ///   Q_team(s, a) = Σ over agents i of Q(o_i, a_i)
 ///

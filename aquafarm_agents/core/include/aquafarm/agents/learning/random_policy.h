@@ -12,8 +12,8 @@ namespace aquafarm::agents {
 /// The actions among which the policy RANDOM draws (paper §4.2, see docs/model.md).
 enum class RandomActions : std::uint8_t {
   kAll,  ///< all actions except kHold, legal or not
-  /// The legal actions, without moves onto a rock, onto an island or off the map. If every legal
-  /// move is such a move, no move is excluded.
+  /// The legal actions, without moves onto a charted rock, onto an island or off the map. If every
+  /// legal move is such a move, no move is excluded.
   kReachable,
 };
 inline constexpr int kRandomActionsCount = 2;

@@ -18,6 +18,7 @@ set(AQUAFARM_DRAWING_SOURCES
   src/draw/layout.cpp
   src/draw/legend.cpp
   src/draw/map_labels.cpp
+  src/draw/device_list.cpp
   src/draw/panel_text.cpp
   src/draw/paths.cpp
   src/draw/policy_layers.cpp

@@ -144,6 +144,8 @@ TEST(OutlookText, HasHeadlinesWithAndWithoutDirectionsAndAShortOne) {
   const std::vector<std::string> expected{
       "Typhoon in the E: risk -5 reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
       "Typhoon: risk -5 reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
+      "Typhoon in the E: risk -5 reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
+      "Typhoon: risk -5 reaches F3 in about 1.0 h, risk -20 in about 1.2 h",
       "F3: risk -5 in 1.0 h, -20 in 1.2 h"};
   EXPECT_EQ(Headlines(scene.spec, scene.state, scene.outlook()), expected);
   scene.state.disasters[0].x = 212.0F;
@@ -193,6 +195,7 @@ TEST(OutlookText, StatesFromIfSomeDevicesAreReachedLater) {
   Outlook outlook;
   outlook.is_known = true;
   outlook.names = {"typhoon"};
+  outlook.directions = {""};
   outlook.devices = {{1, 0.0, 0U, 0, {{240.0, -5.0, 0U, 34}}},
                      {2, 0.0, 0U, 0, {{240.0, -5.0, 0U, 34}}}};
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
@@ -200,6 +203,9 @@ TEST(OutlookText, StatesFromIfSomeDevicesAreReachedLater) {
   outlook.devices[1].arrivals[0].steps = 245.0;  // a quarter of an hour later, also "12 h"
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
             "typhoon: gale reaches F1 and F2 in 12 h (from Thu 12:51 UTC)");
+  EXPECT_EQ(Headlines(scene.spec, scene.state, outlook)[3],
+            "Typhoon: gale reaches F1 and F2 in 12 h")
+      << "a headline for little space has no times of day";
 }
 
 TEST(OutlookText, NamesTheNearestRingIfNoDeviceIsInDanger) {
@@ -210,7 +216,10 @@ TEST(OutlookText, NamesTheNearestRingIfNoDeviceIsInDanger) {
             "no known danger to devices for the next 3.0 h");
   const std::vector<std::string> headlines = Headlines(scene.spec, scene.state, scene.outlook());
   EXPECT_EQ(headlines.front().substr(0, 36), "Typhoon in the ENE: risk -5 passes a");
-  EXPECT_EQ(headlines[2],
+  EXPECT_EQ(
+      headlines[3],
+      "Typhoon: risk -5 passes about 2.0 km from F3 in about 1.5 h; no danger known for 3.0 h");
+  EXPECT_EQ(headlines[4],
             "Risk -5 passes about 2.0 km from F3 in about 1.5 h; "
             "no known danger to devices for the next 3.0 h");
   EXPECT_EQ(headlines.back(),

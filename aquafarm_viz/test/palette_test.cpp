@@ -102,8 +102,11 @@ TEST(LightStyle, HasRisksThatGetDarkerInGreyPrint) {
 }
 
 TEST_P(Colours, OfTextHaveTheContrastOfWcagAA) {
-  std::vector<Rgb> texts{style_.words, style_.faint, style_.good, style_.bad, style_.alarm};
+  std::vector<Rgb> texts{style_.words, style_.faint, style_.good, style_.bad};
   texts.insert(texts.end(), style_.grades.begin(), style_.grades.end());
+  for (const double severity : {0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0}) {
+    texts.push_back(style_.RiskText(severity));
+  }
   for (std::size_t i = 0; i < texts.size(); ++i) {
     EXPECT_GE(Contrast(texts[i], style_.panel), 4.5) << i;
   }

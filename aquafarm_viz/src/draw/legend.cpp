@@ -247,7 +247,11 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
   add(layers.sight && spec.view_mode == FarmSpec::PARTIAL, Sign::kSight);
   add(!spec.ports.empty(), Sign::kPort);
   add(!spec.rocks.empty(), Sign::kRock);
-  add(!state.devices.empty(), Sign::kHealth);
+  add(std::any_of(state.devices.begin(), state.devices.end(),
+                  [](const auto& device) {
+                    return device.status != aquafarm_msgs::DeviceState::DELIVERED;
+                  }),
+      Sign::kHealth);
   return signs;
 }
 

@@ -23,7 +23,7 @@ constexpr double kBetweenHeads = 50.0;  // min distance between arrowheads [desi
 Rgb PathColor(const FarmState& state, std::int32_t ship, double age, bool is_faded,
               const Style& style) {
   if (state.ships.size() == 1) return Mix(style.good, style.sea_south, 0.4 * age);
-  return Mix(Mix(style.label, ShipColor(ship), 0.6), style.sea_south, is_faded ? 0.35 : 0.25 * age);
+  return Mix(Mix(style.label, ShipColor(ship), 0.6), style.sea_south, is_faded ? 0.2 : 0.25 * age);
 }
 
 // Draws one move of a path: a line or, on a dashed path, a shorter line as one dash.
@@ -123,7 +123,7 @@ void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, bool is_da
 
 void DrawPaths(cv::Mat& map, const FarmState& state, const Trail& paths, const Layout& layout) {
   constexpr double kCasing = 1.2;  // added to the width of a path on each side [design units]
-  constexpr double kFaded = -0.4;  // the same for a faded path
+  constexpr double kFaded = -0.3;  // the same for a faded path
   const cv::Scalar casing = Bgr(Mix(layout.style->halo, layout.style->sea_south, 0.35));
   for (const auto& ship : state.ships) {
     const ShipTrail* way = ship.visible ? paths.Find(ship.id) : nullptr;

@@ -12,6 +12,8 @@ Rgb Style::Risk(double severity) const {
   return Mix(risks[i], risks[i + 1], at - static_cast<double>(i));
 }
 
+Rgb Style::RiskText(double severity) const { return Mix(Risk(severity), words, 0.25); }
+
 Rgb Style::GradeText(std::uint8_t grade) const {
   return grade >= 1 && grade <= grades.size() ? grades[grade - 1U] : faint;
 }
@@ -24,7 +26,6 @@ const Style& DarkStyle() {
       /*faint=*/{0x9a, 0xa9, 0xb8},
       /*good=*/{0x5f, 0xe0, 0x8a},
       /*bad=*/{0xff, 0x7b, 0x72},
-      /*alarm=*/{0xff, 0xb3, 0x47},
       /*sea_north=*/{0x24, 0x60, 0x8c},
       kSeaDeep,
       kSeaShallow,
@@ -49,7 +50,6 @@ const Style& LightStyle() {
       /*faint=*/{0x52, 0x60, 0x6d},
       /*good=*/{0x12, 0x6b, 0x3a},
       /*bad=*/{0xb0, 0x1e, 0x1e},
-      /*alarm=*/{0xa8, 0x3a, 0x00},
       /*sea_north=*/{0xd3, 0xe7, 0xf5},
       /*sea_south=*/{0xc6, 0xdf, 0xf0},
       /*sea_shallow=*/{0xea, 0xf5, 0xfb},

@@ -80,6 +80,11 @@ inline Rgb RiskColor(double risk, const Layout& layout) {
   return layout.style->Risk(Severity(risk));
 }
 
+/// Returns the colour of a text about a risk.
+inline Rgb RiskTextColor(double risk, const Layout& layout) {
+  return layout.style->RiskText(Severity(risk));
+}
+
 /// Returns whether a disaster is drawn: it is known and has not ended.
 inline bool IsDrawn(const aquafarm_msgs::DisasterState& disaster) {
   return disaster.known && disaster.steps_left > 0;

@@ -40,13 +40,14 @@ class Line {
 };
 
 // Draws the danger in the first row: the longest headline that fits, in the largest font in which
-// it fits. Returns false if there is nothing to draw.
+// it fits, in the colour of the worst ring. Returns false if there is nothing to draw.
 bool DrawDanger(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                 const Outlook& outlook, cv::Point at, int width, const Layout& layout,
                 const Fonts& fonts) {
   const std::vector<std::string> lines = Headlines(spec, state, outlook);
   if (lines.empty()) return false;
-  const cv::Scalar color = Bgr(IsInDanger(outlook) ? layout.style->alarm : layout.style->words);
+  const double worst = WorstRisk(outlook);
+  const cv::Scalar color = Bgr(worst < 0.0 ? RiskTextColor(worst, layout) : layout.style->words);
   for (const std::string& line : lines) {
     for (const Font* font : {&fonts.title, &fonts.headline, &fonts.bold}) {
       if (font->Width(line) > width) continue;

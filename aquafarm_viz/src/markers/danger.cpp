@@ -33,7 +33,6 @@ using visualization_msgs::MarkerArray;
 constexpr std::size_t kMaxLabels = 40;  // more labels would be hard to read and slow
 constexpr double kRim = 0.2;            // min distance of a label from the edge of the farm [cells]
 constexpr double kMaxLine = 0.98;       // max width of a line of text [longer sides of the farm]
-constexpr Rgb kAlarm{0xff, 0xb4, 0x54};
 
 // A rectangle that a label covers [cells].
 struct Plate {
@@ -368,7 +367,8 @@ MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state, cons
   const bool is_over = state.terminated || state.truncated;
   const std::vector<std::string> headlines = Headlines(spec, state, outlook);
   AddLines(array, maker, spec, "alarm", 1.0, is_over || headlines.empty() ? "" : headlines[1],
-           IsInDanger(outlook) ? kAlarm : kPaper);
+           IsInDanger(outlook) ? Mix(SeverityColor(Severity(WorstRisk(outlook))), kPaper, 0.25)
+                               : kPaper);
   AddLines(array, maker, spec, "outside", -1.0, OutsideText(spec, state, courses, outside), kPaper);
   bool has_rings = false;
   for (std::size_t i = 0; i < courses.size(); ++i) {

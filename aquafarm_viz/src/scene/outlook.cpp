@@ -218,6 +218,12 @@ double WorstRisk(const DeviceOutlook& device) {
   return device.arrivals.empty() ? device.risk_now : device.arrivals.back().risk;
 }
 
+double WorstRisk(const Outlook& outlook) {
+  double worst = 0.0;
+  for (const DeviceOutlook& one : outlook.devices) worst = std::min(worst, WorstRisk(one));
+  return worst;
+}
+
 const char* WindOverFarm(const FarmSpec& spec, const Course& course, const TrackPoint& at) {
   const std::optional<std::size_t> ring = WorstOverFarm(spec, at);
   const std::int32_t wind_kt = ring ? WindOf(course, *ring) : 0;

@@ -89,6 +89,10 @@ std::string OverFarmText(const aquafarm_msgs::FarmSpec& spec, const Course& cour
 /// Returns the risk of the worst ring that covers a device now or reaches it later; 0 if none does.
 double WorstRisk(const DeviceOutlook& device);
 
+/// Returns the risk of the worst ring that covers any device now or reaches one later; 0 if none
+/// does.
+double WorstRisk(const Outlook& outlook);
+
 /// Returns whether a ring covers any device now or reaches one later.
 bool IsInDanger(const Outlook& outlook);
 

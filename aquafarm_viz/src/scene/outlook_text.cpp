@@ -165,9 +165,14 @@ std::string SafeText(const FarmSpec& spec, const Outlook& outlook, bool is_brief
 class Sentence {
  public:
   /// @param has_directions  true: the direction follows the name of a disaster outside the farm
+  /// @param is_brief  true: without times of day, and with the brief SafeText
   Sentence(const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
-           bool has_directions)
-      : spec_(spec), state_(state), outlook_(outlook), has_directions_(has_directions) {}
+           bool has_directions, bool is_brief)
+      : spec_(spec),
+        state_(state),
+        outlook_(outlook),
+        has_directions_(has_directions),
+        is_brief_(is_brief) {}
 
   std::string Write() {
     if (outlook_.devices.empty()) {
@@ -181,10 +186,10 @@ class Sentence {
     const RingArrival* worst = Extreme(outlook_, [](const auto& a, const auto& b) {
       return a.risk < b.risk || (a.risk == b.risk && a.steps < b.steps);
     });
-    const std::string clock = ClockAhead(spec_, state_, outlook_, *next, /*has_zone=*/true);
+    const std::string clock = Clock(*next, /*has_zone=*/true);
     Add(*next, clock);
     if (worst->risk < next->risk) {
-      Add(*worst, ClockAhead(spec_, state_, outlook_, *worst, /*has_zone=*/clock.empty()));
+      Add(*worst, Clock(*worst, /*has_zone=*/clock.empty()));
     } else {
       AddOthers(*next);
     }
@@ -202,6 +207,11 @@ class Sentence {
     return HasDirection(disaster) ? name + " in the " + outlook_.directions[disaster] : name;
   }
 
+  // Returns ClockAhead; empty in a brief sentence.
+  std::string Clock(const RingArrival& ring, bool has_zone) const {
+    return is_brief_ ? "" : ClockAhead(spec_, state_, outlook_, ring, has_zone);
+  }
+
   // Returns a time ahead, with "about" if a course is extrapolated.
   std::string When(double steps) const {
     return (outlook_.is_extrapolated ? "about " : "") + AheadText(spec_, steps);
@@ -211,7 +221,7 @@ class Sentence {
   std::string WriteSafe() const {
     const bool is_near = std::isfinite(outlook_.miss.cells);
     return (is_near ? Name(outlook_.miss.disaster) + ": " : "") +
-           SafeText(spec_, outlook_, /*is_brief=*/false);
+           SafeText(spec_, outlook_, is_brief_);
   }
 
   // Adds the ring that covers the most urgent device now, if there is one.
@@ -273,6 +283,7 @@ class Sentence {
   const FarmState& state_;
   const Outlook& outlook_;
   bool has_directions_;
+  bool is_brief_;
   std::string text_;
   std::string whom_;          // devices of the previous part
   std::string ring_;          // RingText of the previous part
@@ -282,15 +293,20 @@ class Sentence {
 }  // namespace
 
 std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outlook& outlook) {
-  return Sentence(spec, state, outlook, /*has_directions=*/false).Write();
+  return Sentence(spec, state, outlook, /*has_directions=*/false, /*is_brief=*/false).Write();
 }
 
 std::vector<std::string> Headlines(const FarmSpec& spec, const FarmState& state,
                                    const Outlook& outlook) {
   const std::string brief = ShortOutlookText(spec, outlook);
   if (brief.empty()) return {};
-  std::vector<std::string> lines{Sentence(spec, state, outlook, /*has_directions=*/true).Write(),
-                                 OutlookText(spec, state, outlook), brief};
+  std::vector<std::string> lines;
+  for (const bool is_brief : {false, true}) {
+    for (const bool has_directions : {true, false}) {
+      lines.push_back(Sentence(spec, state, outlook, has_directions, is_brief).Write());
+    }
+  }
+  lines.push_back(brief);
   if (!IsInDanger(outlook)) lines.push_back(SafeText(spec, outlook, /*is_brief=*/true));
   for (std::string& line : lines) {
     line[0] = char(std::toupper(static_cast<unsigned char>(line[0])));

@@ -40,10 +40,14 @@ std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
 
-/// Returns the outlook as headlines, the longest first: OutlookText with the direction of each
-/// disaster outside the farm, OutlookText, ShortOutlookText and, without a danger, a text of the
-/// same content with fewer words: "Risk -5 is 900 m from F2 now; no danger known for 3.0 h". Each
-/// begins with a capital letter. Empty if ShortOutlookText is empty.
+/// Returns the outlook as headlines. Each begins with a capital letter. Empty if ShortOutlookText
+/// is empty. The order is:
+///
+/// 1. OutlookText with the direction of each disaster outside the farm, and OutlookText;
+/// 2. the same two without times of day, and with "no danger known for 3.0 h" instead of "no known
+///    danger to devices for the next 3.0 h";
+/// 3. ShortOutlookText and, without a danger, its form with fewer words: "Risk -5 is 900 m from F2
+///    now; no danger known for 3.0 h".
 std::vector<std::string> Headlines(const aquafarm_msgs::FarmSpec& spec,
                                    const aquafarm_msgs::FarmState& state, const Outlook& outlook);
 

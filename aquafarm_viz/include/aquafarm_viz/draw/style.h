@@ -20,7 +20,6 @@ struct Style {
   Rgb faint;        ///< secondary text
   Rgb good;         ///< reward above 0, return of 0 or more, safe device, path of the only ship
   Rgb bad;          ///< a reward or a return below 0
-  Rgb alarm;        ///< text about devices in danger
   Rgb sea_north;    ///< water away from the coast, at the upper end of the map
   Rgb sea_south;    ///< water away from the coast, at the lower end of the map
   Rgb sea_shallow;  ///< water at the coast and around rocks
@@ -37,6 +36,8 @@ struct Style {
   /// Returns the colour of a severity, interpolated between `risks`; values outside [0, 1] are
   /// clamped.
   Rgb Risk(double severity) const;
+  /// Returns the text colour of a severity: Risk with more contrast to `panel`.
+  Rgb RiskText(double severity) const;
   /// Returns the text colour of a grade, 1 to 4; `faint` for an unknown grade.
   Rgb GradeText(std::uint8_t grade) const;
 };

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "aquafarm_viz/base/text.h"
+#include "aquafarm_viz/scene/labels.h"
+#include "draw/panel.h"
+#include "draw/symbols.h"
+#include "scene/nautical.h"
+#include "scene/outlook_text.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::DeviceState;
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+
+// Returns when a device was fetched, and its port: "fetched 0:27", "port B". Unknown parts are
+// empty.
+std::pair<std::string, std::string> TripOf(const FarmSpec& spec, const DeviceState& device,
+                                           const Trail* trail) {
+  const auto at = trail == nullptr ? std::nullopt : trail->FetchedAt(device.id);
+  const std::string fetched = at ? "fetched " + TimeOfDay(spec, *at) : "";
+  for (const auto& port : spec.ports) {
+    const bool is_there = port.cell.x == device.x && port.cell.y == device.y;
+    if (is_there && device.status == DeviceState::DELIVERED) {
+      return {fetched, "port " + PortLetter(port.id)};
+    }
+  }
+  return {fetched, ""};
+}
+
+// Returns the health and the value of a device: "health 88 %", "value 80".
+std::pair<std::string, std::string> HealthAndValue(const DeviceState& device) {
+  const std::string health = Number(100.0 * double(device.health), 0) + " %";
+  return {device.health_known ? "health " + health : "",
+          "value " + Number(double(device.value), 0)};
+}
+
+// Returns the parts of a text about the danger to a device, each with the colour of its ring. If it
+// is unclear which ring a part describes, all have the colour of the worst ring.
+ColoredTexts InRingColors(const std::string& text, const DeviceOutlook& outlook,
+                          const Layout& layout) {
+  ColoredTexts parts;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t comma = text.find(", ", from);
+    const std::size_t end = comma == std::string::npos ? text.size() : comma + 2;
+    parts.push_back({text.substr(from, end - from), RiskTextColor(WorstRisk(outlook), layout)});
+    from = end;
+  }
+  std::vector<double> risks;  // of the ring that covers the device, the next and the worst ring
+  if (outlook.risk_now < 0.0) risks.push_back(outlook.risk_now);
+  if (!outlook.arrivals.empty()) risks.push_back(outlook.arrivals.front().risk);
+  if (outlook.arrivals.size() > 1) risks.push_back(outlook.arrivals.back().risk);
+  if (parts.size() == risks.size() || (parts.size() == 2 && risks.size() == 3)) {
+    parts.front().color = RiskTextColor(risks.front(), layout);
+    if (parts.size() == 3) parts[1].color = RiskTextColor(risks[1], layout);
+  }
+  return parts;
+}
+
+// Draws two rows for a device in danger: the first ring in the first row, worse ones in the second.
+void ListDanger(Panel& panel, const FarmSpec& spec, const DeviceState& device,
+                const DeviceOutlook& outlook, const Layout& layout) {
+  const auto [first, worse] = FirstAndWorse(
+      spec, outlook, [&panel](const std::string& text) { return panel.Fits("", text); });
+  const std::string name = DeviceLabel(device.id) + " " + DeviceName(device.kind);
+  const ColoredTexts parts =
+      InRingColors(first + (worse.empty() ? "" : ", " + worse), outlook, layout);
+  panel.Item(name, first, parts.front().color);
+  if (worse.empty()) {
+    panel.Detail("", HealthAndValue(device).first, layout.style->faint);
+  } else {
+    panel.Detail("", ColoredTexts(parts.begin() + 1, parts.end()));
+  }
+}
+
+// Draws one row for each device with its symbol, its kind, and its danger or status.
+// @param has_details  true: draws a second row for each device
+void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
+                    const Outlook& outlook, bool has_details, const Layout& layout) {
+  for (const auto& device : state.devices) {
+    const bool done = device.status == DeviceState::DELIVERED;
+    DrawDeviceSymbol(panel.image(), device.kind, {panel.SymbolAt(), 6.0 * layout.unit, 0.0},
+                     done ? 0.5 : 0.0);
+    std::string status = done ? "safe" : StatusName(device.status);
+    if (const auto at = trail == nullptr ? std::nullopt : trail->ChangedAt(device.id)) {
+      status += " " + TimeOfDay(spec, *at);
+    }
+    const Rgb color = done ? layout.style->good : layout.style->faint;
+    const std::string name = DeviceLabel(device.id) + " " + DeviceName(device.kind);
+    const DeviceOutlook* danger = nullptr;
+    for (const DeviceOutlook& one : outlook.devices) {
+      if (one.id == device.id && !DangerText(spec, one).empty()) danger = &one;
+    }
+    if (danger != nullptr && has_details) {
+      ListDanger(panel, spec, device, *danger, layout);
+      continue;
+    }
+    if (danger != nullptr) {
+      const auto [label, text] = NameAndDanger(
+          spec, DeviceName(device.kind), *danger,
+          [&panel](const auto& left, const auto& right) { return panel.Fits(left, right); });
+      panel.Item(label, InRingColors(text, *danger, layout));
+      continue;
+    }
+    panel.Item(name, status, color);
+    if (!has_details) continue;
+    const auto [left, right] = device.status == DeviceState::DEPLOYED ? HealthAndValue(device)
+                                                                      : TripOf(spec, device, trail);
+    panel.Detail(left, right, layout.style->faint);
+  }
+}
+
+// Returns the label of a device with its danger or status: the longest text that fits in half a
+// row.
+ColoredTexts DeviceInHalf(const Panel& panel, const FarmSpec& spec, const DeviceState& device,
+                          const Trail* trail, const Outlook& outlook, const Layout& layout) {
+  const bool done = device.status == DeviceState::DELIVERED;
+  const std::string status = done ? "safe" : StatusName(device.status);
+  const auto at = trail == nullptr ? std::nullopt : trail->ChangedAt(device.id);
+  for (const DeviceOutlook& one : outlook.devices) {
+    if (one.id != device.id || !(WorstRisk(one) < 0.0)) continue;
+    const auto [name, danger] = NameAndDanger(spec, DeviceName(device.kind), one,
+                                              [&panel](const auto& left, const auto& right) {
+                                                return panel.FitsInHalf(left + " " + right);
+                                              });
+    ColoredTexts parts = InRingColors(danger, one, layout);
+    parts.insert(parts.begin(), {name + " ", parts.front().color});
+    return parts;
+  }
+  const std::string text = DeviceLabel(device.id) + " " + status;
+  const std::string longer = at ? text + " " + TimeOfDay(spec, *at) : text;
+  return {
+      {panel.FitsInHalf(longer) ? longer : text, done ? layout.style->good : layout.style->faint}};
+}
+
+// Draws two devices in each row. The left column contains the first half of the devices.
+void ListInHalves(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
+                  const Outlook& outlook, const Layout& layout) {
+  const std::size_t rows = (state.devices.size() + 1) / 2;
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::array<ColoredTexts, 2> halves;
+    const std::array<cv::Point2d, 2> symbols{panel.SymbolAt(), panel.SecondSymbolAt()};
+    for (std::size_t half = 0; half < 2; ++half) {
+      if (row + half * rows >= state.devices.size()) continue;
+      const DeviceState& device = state.devices[row + half * rows];
+      DrawDeviceSymbol(panel.image(), device.kind, {symbols[half], 6.0 * layout.unit, 0.0},
+                       device.status == DeviceState::DELIVERED ? 0.5 : 0.0);
+      halves[half] = DeviceInHalf(panel, spec, device, trail, outlook, layout);
+    }
+    panel.Pair(halves[0], halves[1]);
+  }
+}
+
+void ListKinds(Panel& panel, const FarmState& state, const Layout& layout) {
+  constexpr std::size_t kKinds = 4;
+  std::array<int, kKinds> total{};
+  std::array<int, kKinds> delivered{};
+  for (const auto& device : state.devices) {
+    if (device.kind >= kKinds) continue;
+    ++total[device.kind];
+    delivered[device.kind] += device.status == DeviceState::DELIVERED ? 1 : 0;
+  }
+  for (std::uint8_t kind = 0; kind < kKinds; ++kind) {
+    DrawDeviceSymbol(panel.image(), kind, {panel.SymbolAt(), 6.0 * layout.unit, 0.0},
+                     total[kind] == 0 ? 0.75 : 0.0);
+    panel.Item(DeviceName(kind),
+               std::to_string(delivered[kind]) + " / " + std::to_string(total[kind]),
+               layout.style->faint);
+  }
+}
+
+}  // namespace
+
+void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
+                 const Outlook& outlook, const Layout& layout) {
+  constexpr std::size_t kMaxRows = 6;
+  constexpr int kRowsBelow = 8;      // kept free for disasters and ships
+  constexpr int kRowsOfRegion = 12;  // kept free for headings and the region
+  const auto delivered = std::count_if(
+      state.devices.begin(), state.devices.end(),
+      [](const DeviceState& device) { return device.status == DeviceState::DELIVERED; });
+  const std::string zone = spec.has_start_time && trail != nullptr ? ", " + ZoneText(spec) : "";
+  panel.Heading("DEVICES" + zone,
+                std::to_string(delivered) + " / " + std::to_string(state.devices.size()) + " safe");
+  if (state.devices.size() <= kMaxRows) {
+    const auto rows = 2 * state.devices.size() + 3 * state.disasters.size() + state.ships.size();
+    const bool has_details = panel.RowsLeft() >= static_cast<int>(rows) + kRowsOfRegion;
+    ListEachDevice(panel, spec, state, trail, outlook, has_details, layout);
+  } else if (state.devices.size() <= 2 * kMaxRows &&
+             panel.RowsLeft() >= int(kMaxRows) + kRowsBelow) {
+    ListInHalves(panel, spec, state, trail, outlook, layout);
+  } else {
+    ListKinds(panel, state, layout);
+  }
+}
+
+}  // namespace aquafarm_viz

@@ -169,8 +169,9 @@ def early_wind(plan):
                   if one["action"] == "leave" and abs(clock.seconds(one["time"])) < 60.0), None)
     is_only = max(times[0]["probability"][:-1], default=0.0) < 0.005
     if leave and is_only and leave["probability"] < 0.995:
-        text += (" A ship does not leave a port that this wind has reached: "
-                 f"{order_text(plan, leave)}, {percent(leave['probability'])}.")
+        text += (" A ship does not leave a port that this wind has reached, as in "
+                 f"{percent(1.0 - leave['probability'])} of the futures: {order_text(plan, leave)}, "
+                 f"{percent(leave['probability'])}.")
     return text
 
 

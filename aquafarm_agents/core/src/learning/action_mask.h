@@ -13,8 +13,8 @@ inline ActionMask LegalMask(ActionMask legal, bool mask_illegal) {
   return mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
 }
 
-/// Returns the allowed actions. With options.mask_blocked, moves onto a charted rock, onto an island
-/// or off the map are excluded, too, unless this excludes every move.
+/// Returns the allowed actions. With options.mask_blocked, moves onto a charted rock, onto an
+/// island or off the map are excluded, too, unless this excludes every move.
 /// @param features of the ship, a row of StepResults::features
 /// @tparam Options a type with the members mask_illegal and mask_blocked, such as DeepOptions
 template <typename Options>

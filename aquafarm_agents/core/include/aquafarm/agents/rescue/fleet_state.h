@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Replaces the layout, ships and devices of a case by those of a running ranch, to make a new plan.
+/// Replaces the layout, ships and devices of a case by those of a running ranch, to make a new
+/// plan.
 
 #include <cmath>
 #include <cstdint>

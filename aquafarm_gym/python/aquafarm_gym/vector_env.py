@@ -71,10 +71,11 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
                              "autoreset_mode": gymnasium.vector.AutoresetMode(self._mode)}
         self._copy = copy
         self._episodes = Episodes()
-        self._own_sequences = False  # True if the farms may have different sequences
+        # False: all farms play one sequence of episodes. True: each farm may have its own.
+        self._own_sequences = False
         self._seeds = [0] * self.num_envs  # seed of the sequence of each farm
-        self._is_listed = np.zeros(self.num_envs, bool)  # whether a farm's seed comes from a list
-        # Number of episodes that each farm has started since all farms last started together.
+        self._is_listed = np.zeros(self.num_envs, bool)  # whether a farm's seed was passed in a list
+        # Number of next episodes that each farm has started since all farms last started together.
         self._begun = np.zeros(self.num_envs, np.int64)
         self._attach()
 
@@ -108,9 +109,11 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
               options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Starts episodes. seed: a number starts one sequence for all farms, with farm i at episode
         i. A list starts one sequence per farm, at episode 0. A farm without a seed (or with None in
-        the list) starts the next episode of its sequence. options: with `episode` k, farm i starts
-        at episode k + i of its sequence, or at episode k if its seed comes from a list.
-        `reset_mask` (bool [N]) selects the farms that start; the other farms do not change."""
+        the list) starts the next episode of its sequence. If all farms start together, a farm that
+        is behind skips episodes, so that all new episodes follow the latest one. options: with
+        `episode` k, farm i starts at episode k + i of its sequence, or at episode k if its seed
+        comes from a list; without effect on a farm with None in the list. `reset_mask` (bool [N])
+        selects the farms that start; the other farms do not change."""
         options = check_options(options, ("episode", "reset_mask"))
         mask = self._mask_of(options)
         seeds = self._seeds_of(seed)
@@ -365,9 +368,7 @@ class TeamVectorEnv(VectorBase):
         rewards = self._all_rewards
         if not self.farms.has_team_rewards:
             return np.asarray(rewards.sum(axis=1))
-        # All agents have the same reward, also those that are not active.
-        playing = np.abs(rewards).argmax(axis=1)
-        return np.asarray(np.take_along_axis(rewards, playing[:, None], axis=1)[:, 0])
+        return np.asarray(rewards[:, 0].copy())  # every agent has the reward of the team
 
     def _more_infos(self) -> dict[str, Any]:
         active = self.farms.buffers["active"].astype(bool)

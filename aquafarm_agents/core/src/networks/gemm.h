@@ -4,12 +4,12 @@
 /// Products of row-major float matrices. If GCC 12 or later compiled this code for x86-64, the
 /// program selects code for AVX-512 or AVX2 when it runs; both give the same bits. With other
 /// compilers and on other processors, BLAS computes the products. The environment variable
-/// AQUAFARM_PRODUCTS (avx512, avx2 or blas) overrides this choice. The functions of this file
-/// throw InputError if the variable has another value, or one that the processor does not support.
-/// Code from other compilers ignores the variable. docs/decisions/fused_updates.md has
-/// measurements. If AQUAFARM_GEMM_BY_EIGEN is defined, Eigen replaces BLAS, and the variable has
-/// the value eigen instead of blas. A Python package that must not depend on BLAS is built this
-/// way.
+/// AQUAFARM_PRODUCTS (avx512, avx2 or blas) overrides this choice. All functions of this file
+/// except Transpose throw InputError if the variable has another value, or one that the processor
+/// does not support. An empty variable is ignored. Code from other compilers or for other
+/// processors ignores the variable. docs/decisions/fused_updates.md has measurements. If
+/// AQUAFARM_GEMM_BY_EIGEN is defined, Eigen replaces BLAS, and the variable accepts eigen instead
+/// of blas. A Python package that must not depend on BLAS is built this way.
 ///
 /// In each product, c = product + beta · c. If beta is 0, the old values of c are not read.
 

@@ -52,7 +52,7 @@ class Font {
 };
 
 /// Returns the file of DejaVu Sans or, if that is not installed, of Liberation Sans, regular or
-/// bold; empty if neither is installed.
+/// bold. Looks in /usr/share/fonts/truetype; returns an empty string if neither is there.
 std::string FindFontFile(bool bold);
 
 /// Formats a number with `decimals` decimal places, or with an exponent if its magnitude is at

@@ -47,7 +47,8 @@ class FetchByValue {
 
   std::uint64_t seed_{};
   std::uint64_t episode_{};
-  std::int32_t next_step_{kNone};      ///< Act keeps errands_ only at this step
+  /// Step of the farm that Act expects in its next call. At any other step it clears `errands_`.
+  std::int32_t next_step_{kNone};
   std::vector<Errand> errands_;        ///< by ship
   std::vector<std::int32_t> to_port_;  ///< [H, W] moves by water to the nearest port
   std::vector<Cell> cells_;            ///< cells of the ships after the actions chosen so far

@@ -3,7 +3,7 @@
 
 /// The processes of one training, possibly on several hosts. Each process is a *rank*. The ranks
 /// find each other with the store of c10d, the communication library of PyTorch. They exchange sums
-/// and bytes with Gloo, a transport of c10d (docs/decisions/ranks.md). The virtual functions of
+/// and bytes with Gloo, a backend of c10d (docs/decisions/ranks.md). The virtual functions of
 /// ProcessGroup are collective: all ranks must call the same functions in the same order.
 
 #include <functional>
@@ -16,8 +16,8 @@
 
 namespace aquafarm::agents {
 
-/// Thrown when another rank of the training is missing, has ended or does not answer, or when the
-/// ranks cannot connect. what() is one line.
+/// Thrown when another rank of the training is missing, has ended or does not answer, when the
+/// ranks cannot connect, or when rank 0 cannot open its port. what() is one line.
 class RankLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -53,8 +53,8 @@ struct FleetState {
 /// Devices keep their names F0, F1, … by id. Devices that are in port or self-propelled are left
 /// out; notes (RescueWarning) name them. A device aboard gets the cell of its ship. A ship with
 /// devices aboard may leave at the start of the plan, even before `request.depart_s`. A
-/// RescueWarning states whether this ship reaches an open port: a note if it does, a stop if not.
-/// `damage_before` is 1 minus the health of the device.
+/// RescueWarning states whether this ship reaches an open port. Its severity is `note` if the ship
+/// does, and `stop` if it does not. `damage_before` is 1 minus the health of the device.
 ///
 /// @param request request of the case; must not name files of devices or ships
 /// @throws InputError if the state does not fit the scenario, or if the request names such files

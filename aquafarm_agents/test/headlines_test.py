@@ -117,6 +117,9 @@ class HeadlinesTest(unittest.TestCase):
         self.runs["lstm_dqn"] = [slow]
         self.assertEqual(f"SARSA learns fastest: 980 {fastest} LSTM-DQN needs 3 times as many.",
                          self.times())
+        for steps, ratio in ((10.2, "1.02"), (14, "1.4"), (2000, "204"), (15000, "1,531")):
+            self.runs["lstm_dqn"] = [run_of(RISING, steps)]
+            self.assertIn(f"LSTM-DQN needs {ratio} times as many.", self.times())
         self.runs = {"sarsa": [learnt, learnt, slow], "lstm_dqn": [slow, slow, slow]}
         self.assertTrue(self.times().endswith(
             "3 times as many. The range of its runs overlaps that of LSTM-DQN."), self.times())

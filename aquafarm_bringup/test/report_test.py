@@ -161,7 +161,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(0, code, words)
         summary = json.loads(prefix.with_suffix(".json").read_text())
         mean, distinct = summary["return_per_episode"], summary["distinct_episodes"]
-        self.assertRegex(self.page.text, rf"<b>({mean:.1f}|{mean:.0f})</b>")
+        self.assertRegex(self.page.text, f"<b>({mean:,.1f}|{mean:,.0f})</b>".replace("-", "−"))
         self.assertIn(f"{summary['episodes']} episodes, {distinct} distinct", self.page.words)
 
     def test_the_policy_stands_next_to_the_references_with_intervals(self):
@@ -195,8 +195,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual("", outcomes.summary_table({}), "an evaluation of version 0.1.0")
 
     def test_the_interval_of_the_return_is_of_distinct_starts(self):
-        player = references.Player("dqn", [{"return": value} for value in
-                                           ("90", "110", "90", "110")], distinct=4)
+        player = references.Player("dqn", [{"return": one} for one in (90, 110) * 2], distinct=4)
         self.assertEqual("100 [89, 111]", references.return_text(player))
         player.distinct = 2  # the other two are repetitions
         self.assertEqual("100 [84, 116]", references.return_text(player))
@@ -204,6 +203,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual("100.0", references.return_text(player))
         self.assertEqual("−3,723 [−3,795, −3,651]", references.text((-3722.9, -3795.2, -3650.7)))
         self.assertEqual("1,276.0 [1,274.5, 1,277.6]", references.text((1276.0, 1274.5, 1277.6)))
+        self.assertEqual("0 [−11, 10]", references.text((-0.3, -11.0, 10.0)))
 
     def test_the_number_of_episodes_is_stated_once_if_it_is_the_same(self):
         def shown(*counts):

@@ -247,8 +247,9 @@ void RenderPicture(const Request& request) {
   const std::vector<std::uint64_t> steps =
       request.steps.empty() ? std::vector<std::uint64_t>{0} : request.steps;
   aquafarm_viz::ImageSize size = request.size;
-  // Pictures next to each other are usually shown smaller.
-  if (!request.at_end && steps.size() > 1 && !request.is_stacked) size.text_scale = 1.2;
+  // Pictures next to each other are usually shown smaller, so their texts are larger.
+  constexpr double kScaleOfSeveral = 1.2;
+  if (!request.at_end && steps.size() > 1 && !request.is_stacked) size.text_scale = kScaleOfSeveral;
   aquafarm_viz::FarmPainter painter(size, aquafarm_viz::StyleByName(request.style));
   std::vector<cv::Mat> pictures(request.at_end ? 1 : steps.size());
   std::optional<std::uint64_t> episode;  // the first episode that has one of the steps

@@ -19,7 +19,6 @@ TEST(OutlookText, NamesTheWindsOfRingsThatTheScenarioGives) {
   EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
             "typhoon: gale reaches F3 in 30 min");
   EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "gale in 30 min");
-  EXPECT_EQ(RiskText(scene.spec, scene.outlook().devices[0]), "-5 in 30 min");
   scene.state.step = 8;
   scene.state.disasters[0].x = 24.0F;
   scene.state.devices[0].x = 17;
@@ -78,19 +77,27 @@ TEST(OutlookText, NamesTheNextAndTheWorstArrivalOfAllDevices) {
             "gale now, 64 kt in 3.0 h");
 }
 
-TEST(OutlookText, DividesADangerIntoTheFirstRingAndTheWorseOnes) {
+TEST(OutlookText, HasAPartForEachRing) {
   const Outlooks scene;
-  const auto words = [&](const DeviceOutlook& device, bool is_wide) {
-    const auto [first, worse] =
-        FirstAndWorse(scene.spec, device, [is_wide](const std::string&) { return is_wide; });
-    return first + "|" + worse;
+  const auto words = [&](const DeviceOutlook& device, bool is_brief) {
+    std::string text;
+    for (const DangerPart& part : PartsOf(scene.spec, device, is_brief)) {
+      text += part.text + " (" + std::to_string(int(part.risk)) + ")|";
+    }
+    return text;
   };
-  DeviceOutlook device{3, -5.0, 0U, 34, {{10.0, -10.0, 0U, 50}, {60.0, -20.0, 0U, 64}}};
-  EXPECT_EQ(words(device, true), "gale now|storm in 30 min, hurricane force in 3.0 h");
-  EXPECT_EQ(words(device, false), "gale now|storm in 30 min, 64 kt in 3.0 h");
-  EXPECT_EQ(words({3, -5.0, 0U, 0, {{60.0, -20.0, 0U, 0}}}, true), "risk -5 now|risk -20 in 3.0 h");
+  DeviceOutlook device{3, -5.0, 0U, 34, {{10.0, -10.0, 0U, 50}, {60.0, -20.0, 0U, 90}}};
+  EXPECT_EQ(words(device, false),
+            "gale now (-5)|storm in 30 min (-10)|hurricane force in 3.0 h (-20)|");
+  EXPECT_EQ(words(device, true), "gale now (-5)|storm in 30 min (-10)|90 kt in 3.0 h (-20)|")
+      << "the wind of the ring";
+  EXPECT_EQ(words({3, -5.0, 0U, 0, {{60.0, -20.0, 0U, 0}}}, true),
+            "risk -5 now (-5)|-20 in 3.0 h (-20)|");
   device.arrivals.clear();
-  EXPECT_EQ(words(device, true), "gale now|");
+  EXPECT_EQ(words(device, true), "gale now (-5)|");
+  device.arrivals = {{10.0, -10.0, 0U, 50}, {60.0, -20.0, 0U, 60}};
+  EXPECT_EQ(words(device, true), "gale now (-5)|storm in 30 min (-10)|")
+      << "the worst ring has the same name";
 }
 
 TEST(OutlookText, ShortensTheNameAndTheDangerOfADeviceUntilTheyFit) {
@@ -102,7 +109,7 @@ TEST(OutlookText, ShortensTheNameAndTheDangerOfADeviceUntilTheyFit) {
                                               [letters](const auto& left, const auto& right) {
                                                 return left.size() + right.size() <= letters;
                                               });
-    return name + "|" + danger;
+    return name + "|" + Joined(danger);
   };
   EXPECT_EQ(words(60), "F3 release|gale in 30 min, hurricane force in 3.0 h");
   EXPECT_EQ(words(43), "F3 release|gale in 30 min, 64 kt in 3.0 h");
@@ -110,7 +117,7 @@ TEST(OutlookText, ShortensTheNameAndTheDangerOfADeviceUntilTheyFit) {
   EXPECT_EQ(words(30), "F3 release|64 kt in 3.0 h") << "the kind rather than the second word";
   EXPECT_EQ(words(26), "F3 release|64 kt in 3.0 h");
   EXPECT_EQ(words(17), "F3|64 kt in 3.0 h");
-  EXPECT_EQ(words(0), "F3|" + RiskText(scene.spec, device, ", ")) << "the shortest if nothing fits";
+  EXPECT_EQ(words(0), "F3|-5, 30 min, -20, 3.0 h") << "the shortest if nothing fits";
 }
 
 TEST(OutlookText, StrengthHasMetresPerSecondAndKnots) {

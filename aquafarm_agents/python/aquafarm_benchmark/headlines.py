@@ -21,9 +21,9 @@ def learners_of(contestants):
 
 
 def failed_learners(contestants, runs):
-    """Returns the labels of the learners that do not learn the task. Two things count: in each run,
-    less than _FAILED of the last 50 episodes succeed; or the mean return of the last 50 episodes,
-    in the median of the runs, is below that of RANDOM."""
+    """Returns the labels of the learners that do not learn the task. These are learners with less
+    than _FAILED successes in the last 50 episodes of every run, and those whose mean return of the
+    last 50 episodes, in the median of the runs, is below that of RANDOM."""
     def last(one, column):
         return columns_of_runs(runs[one.name], column)[:, -measures.WINDOW:].mean(axis=1)
 
@@ -168,6 +168,15 @@ def learning_times(contestants, runs, references):
     return _as_printed(" ".join(said), steps_of)
 
 
+def _ratio(ratio):
+    """Returns a ratio above 1 as "1.02 times", "1.4 times", "3 times" or "21 times"."""
+    if ratio < 1.095:
+        return f"{max(ratio, 1.01):.2f} times"
+    if ratio < 9.95:
+        return f"{ratio:.1f}".removesuffix(".0") + " times"
+    return f"{ratio:,.0f} times"
+
+
 def _fastest_sentences(known, steps_of, goal):
     """Returns the sentences of learning_times about learners that reach the goal.
 
@@ -178,7 +187,7 @@ def _fastest_sentences(known, steps_of, goal):
         return []
     steps = known[0][0]
     first = [name for value, name in known if value == steps]
-    ratios = [(name, f"{value / steps:.2g} times") for value, name in known[len(first):]]
+    ratios = [(name, _ratio(value / steps)) for value, name in known[len(first):]]
     if len(steps_of) == 1:
         return [f"{first[0]} needs {steps:,.0f} time steps to {goal}."]
     said = [f"{joined(first)} {'learns' if len(first) == 1 else 'learn'} fastest: {steps:,.0f} "

@@ -48,11 +48,12 @@ def draw_route(path, label, route_file, best_file=None):
     is_same = best and all(best[key] == route[key]
                            for key in ("scenario_hash", "farm_seed", "episode"))
     loaded = next((at for at, step in enumerate(route["steps"]) if step["aboard"]), 0)
-    panels = [("best_moves_at_start", f"(a) Best move at step 0, nothing aboard\narrows: every "
+    panels = [("best_moves_at_start", f"Best move at step 0, nothing aboard\narrows: every "
                f"{_EVERY}nd column and row; yellow: pickup"),
-              ("best_moves_after_pickup", f"(b) Best move at step {loaded}, a device aboard\n"
+              ("best_moves_after_pickup", f"Best move at step {loaded}, a device aboard\n"
                "yellow: drop-off")]
-    panels = [panel for panel in panels if route[panel[0]]]
+    panels = [(name, f"({letter}) {title}") for letter, (name, title) in
+              zip("ab", [panel for panel in panels if route[panel[0]]])]
     rows = 2 if panels else 1
     figure, all_axes = plt.subplots(rows, 2, figsize=(10.5, 5.4 * rows), squeeze=False,
                                     layout="constrained")
@@ -79,7 +80,8 @@ def draw_route(path, label, route_file, best_file=None):
     for shown in all_axes[:len(panels) + 1]:
         shown.set_xlabel("cells to the east")
         shown.set_ylabel("cells to the north")
-    axes.set_title(f"{'(c) ' if panels else ''}Route in this episode", fontsize=11.5)
+    letter = f"({'abc'[len(panels)]}) " if panels else ""
+    axes.set_title(f"{letter}Route in this episode", fontsize=11.5)
     figure.suptitle(f"{label}: {route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} "
                     f"steps, return {route['return']:.1f}" +
                     (f" (clairvoyant: {best['return']:.1f})" if is_same else ""), fontsize=13.5,

@@ -7,7 +7,7 @@ import json
 from aquafarm_report import blocks, curves, outcomes, references, videos
 from aquafarm_report.videos import ReportError
 
-MEASURES = (("return", "return", "{:,.1f}"), ("steps", "steps", "{:.1f}"),
+MEASURES = (("return", "return", None), ("steps", "steps", "{:.1f}"),
             ("delivered", "devices home", "{:.2f}"),
             ("delivered_health", "health of devices brought home", "{:.3f}"),
             ("crashes", "crashes", "{:.2f}"), ("collisions", "collisions", "{:.2f}"),

@@ -62,12 +62,16 @@ def mean_interval(values, distinct):
     return float(values.mean()), float(values.mean() - margin), float(values.mean() + margin)
 
 
-def text(interval, form="{:,.1f}"):
-    """Returns an interval as "160.2 [157.0, 163.4]"; without bounds only the mean. In the default
-    form, an interval wider than 10 has no decimals."""
+def text(interval, form=None):
+    """Returns an interval as "160.2 [157.0, 163.4]"; without bounds only the mean.
+
+    form: format of each number; None: one decimal, or none if the interval is wider than 10
+    """
     mean, low, high = interval
-    if form == "{:,.1f}" and high - low > 10.0:
-        form = "{:,.0f}"
+    if form is None:
+        decimals = 0 if high - low > 10.0 else 1
+        form, mean = f"{{:,.{decimals}f}}", round(mean, decimals) + 0.0  # + 0.0: no "-0"
+        low, high = round(low, decimals) + 0.0, round(high, decimals) + 0.0
     found = form.format(mean)
     if not math.isnan(low):
         found += f" [{form.format(low)}, {form.format(high)}]"

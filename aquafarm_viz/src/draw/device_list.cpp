@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "aquafarm_viz/base/text.h"
@@ -40,41 +41,34 @@ std::pair<std::string, std::string> HealthAndValue(const DeviceState& device) {
           "value " + Number(double(device.value), 0)};
 }
 
-// Returns the parts of a text about the danger to a device, each with the colour of its ring. If it
-// is unclear which ring a part describes, all have the colour of the worst ring.
-ColoredTexts InRingColors(const std::string& text, const DeviceOutlook& outlook,
-                          const Layout& layout) {
-  ColoredTexts parts;
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t comma = text.find(", ", from);
-    const std::size_t end = comma == std::string::npos ? text.size() : comma + 2;
-    parts.push_back({text.substr(from, end - from), RiskTextColor(WorstRisk(outlook), layout)});
-    from = end;
+// Returns the parts of a danger with commas between them, each in the colour of its ring.
+ColoredTexts InRingColors(const DangerParts& parts, const Layout& layout) {
+  ColoredTexts colored;
+  for (const DangerPart& part : parts) {
+    if (!colored.empty()) colored.back().text += ", ";
+    colored.push_back({part.text, RiskTextColor(part.risk, layout)});
   }
-  std::vector<double> risks;  // of the ring that covers the device, the next and the worst ring
-  if (outlook.risk_now < 0.0) risks.push_back(outlook.risk_now);
-  if (!outlook.arrivals.empty()) risks.push_back(outlook.arrivals.front().risk);
-  if (outlook.arrivals.size() > 1) risks.push_back(outlook.arrivals.back().risk);
-  if (parts.size() == risks.size() || (parts.size() == 2 && risks.size() == 3)) {
-    parts.front().color = RiskTextColor(risks.front(), layout);
-    if (parts.size() == 3) parts[1].color = RiskTextColor(risks[1], layout);
-  }
-  return parts;
+  return colored;
 }
 
 // Draws two rows for a device in danger: the first ring in the first row, worse ones in the second.
 void ListDanger(Panel& panel, const FarmSpec& spec, const DeviceState& device,
                 const DeviceOutlook& outlook, const Layout& layout) {
-  const auto [first, worse] = FirstAndWorse(
-      spec, outlook, [&panel](const std::string& text) { return panel.Fits("", text); });
-  const std::string name = DeviceLabel(device.id) + " " + DeviceName(device.kind);
-  const ColoredTexts parts =
-      InRingColors(first + (worse.empty() ? "" : ", " + worse), outlook, layout);
-  panel.Item(name, first, parts.front().color);
+  DangerParts parts = PartsOf(spec, outlook, /*is_brief=*/false);
+  DangerParts worse(parts.begin() + 1, parts.end());
+  if (!panel.Fits("", Joined(worse))) {
+    parts = PartsOf(spec, outlook, /*is_brief=*/true);
+    worse.assign(parts.begin() + 1, parts.end());
+  }
+  const std::string label = DeviceLabel(device.id);
+  const std::string full = label + " " + DeviceName(device.kind);
+  const bool has_kind = panel.Fits(full, parts.front().text);
+  panel.Item(has_kind ? full : label, InRingColors({parts.front()}, layout));
   if (worse.empty()) {
-    panel.Detail("", HealthAndValue(device).first, layout.style->faint);
+    const auto [health, value] = HealthAndValue(device);
+    panel.Detail(health, value, layout.style->faint);
   } else {
-    panel.Detail("", ColoredTexts(parts.begin() + 1, parts.end()));
+    panel.Detail("", InRingColors(worse, layout));
   }
 }
 
@@ -101,10 +95,10 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
       continue;
     }
     if (danger != nullptr) {
-      const auto [label, text] = NameAndDanger(
+      const auto [label, parts] = NameAndDanger(
           spec, DeviceName(device.kind), *danger,
           [&panel](const auto& left, const auto& right) { return panel.Fits(left, right); });
-      panel.Item(label, InRingColors(text, *danger, layout));
+      panel.Item(label, InRingColors(parts, layout));
       continue;
     }
     panel.Item(name, status, color);
@@ -128,7 +122,7 @@ ColoredTexts DeviceInHalf(const Panel& panel, const FarmSpec& spec, const Device
                                               [&panel](const auto& left, const auto& right) {
                                                 return panel.FitsInHalf(left + " " + right);
                                               });
-    ColoredTexts parts = InRingColors(danger, one, layout);
+    ColoredTexts parts = InRingColors(danger, layout);
     parts.insert(parts.begin(), {name + " ", parts.front().color});
     return parts;
   }

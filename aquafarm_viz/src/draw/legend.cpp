@@ -18,13 +18,14 @@ using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
 // Sizes in design units.
-constexpr double kFoot = 45.0;       // height of the north arrow and the scale bar
-constexpr double kHeading = 18.0;    // height of the heading
-constexpr double kKeyRow = 16.0;     // height of a row of the keys
-constexpr double kKeyScale = 24.0;   // height of the scale of risks with its texts
-constexpr double kSign = 84.0;       // min width of a sign with its text below the map
-constexpr double kMaxRisks = 260.0;  // max width of the key of risks without names below the map
-constexpr double kScale = 205.0;     // width of the north arrow and the scale bar below the map
+constexpr double kFoot = 45.0;         // height of the north arrow and the scale bar
+constexpr double kHeading = 18.0;      // height of the heading
+constexpr double kKeyRow = 16.0;       // height of a row of the keys
+constexpr double kKeyScale = 24.0;     // height of the scale of risks with its texts
+constexpr double kLowKeyScale = 20.0;  // the same below the map
+constexpr double kSign = 84.0;         // min width of a sign with its text below the map
+constexpr double kMaxRisks = 260.0;    // max width of the key of risks without names below the map
+constexpr double kScale = 205.0;       // width of the north arrow and the scale bar below the map
 
 constexpr std::size_t kMaxColors = 4;  // max number of risks in the key
 constexpr double kMildRisk = -5.0;     // risk of the sample for Sign::kAtRisk
@@ -36,7 +37,7 @@ bool IsBelowMap(const Layout& layout) { return !layout.key.empty(); }
 // Returns the height of the key of risks [pixels]. Rings with names have a row each in the panel,
 // and a common row below the map.
 int KeyPx(const RiskKey& key, const Layout& layout) {
-  if (key.empty()) return layout.Px(kKeyScale);
+  if (key.empty()) return layout.Px(IsBelowMap(layout) ? kLowKeyScale : kKeyScale);
   const bool has_rows = HasNames(key) && !IsBelowMap(layout);
   return (has_rows ? static_cast<int>(key.size()) : 1) * layout.Px(kKeyRow);
 }

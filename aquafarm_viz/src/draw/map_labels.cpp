@@ -459,10 +459,10 @@ void LabelShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, Labe
     const cv::Point2d at = ShipPlace(spec, state, ship, layout);
     // A label next to its ship may cover a path, so that it is not next to another symbol.
     const double above = layout.ship_radius_px() + size.height + 8.0 * layout.unit;
-    const double farthest = layout.ship_radius_px() + size.width / 2.0 + 6.0 * layout.unit;
+    const double aside = 2.0 * layout.ship_radius_px() + size.width / 2.0 + 6.0 * layout.unit;
     auto place = space.Take(Cover::kNothing, size, at, above);
     if (!place) place = space.Take(Cover::kPaths, size, at, above);
-    if (!place) place = space.Take(size, at, farthest + layout.ship_radius_px());
+    if (!place) place = space.Take(size, at, aside);
     if (!place) continue;
     const Rgb color = Mix(ShipColor(ship.id), layout.style->label, 0.7);
     DrawLeader(map, at, layout.ship_radius_px(), *place, color, space, layout);

@@ -13,6 +13,7 @@
 
 #include "aquafarm_viz/scene/trail.h"
 #include "draw/symbols.h"
+#include "scene/outlook.h"
 
 namespace aquafarm_viz {
 
@@ -144,8 +145,9 @@ class Panel {
   int end_;
 };
 
-/// Draws the list of devices: each device with its symbol, and its danger or status. With many
-/// devices, draws the number of devices of each kind.
+/// Draws the list of devices: each device with its symbol, and its danger or status, in one or two
+/// rows. If there is little space, draws two devices in each row, else the number of devices of each
+/// kind.
 /// @param trail  null: times are left out
 void ListDevices(Panel& panel, const aquafarm_msgs::FarmSpec& spec,
                  const aquafarm_msgs::FarmState& state, const Trail* trail, const Outlook& outlook,

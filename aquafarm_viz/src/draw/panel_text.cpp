@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <opencv2/imgproc.hpp>
-#include <tuple>
 
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"

@@ -33,7 +33,8 @@ std::vector<Moved> MovesOf(const ShipTrail& way, std::int32_t ship, bool are_sev
                            const Layout& layout);
 
 /// Draws the trails or routes of the ships. Older parts have a colour that is closer to that of the
-/// sea. If there are several ships, their past trips are thinner until the episode ends.
+/// sea. If there are several ships, their past trips are instead thinner, in one colour and without
+/// arrowheads, until the episode ends.
 /// Moves of a rescue ship with nothing aboard are dashed.
 void DrawPaths(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& paths,
                const Layout& layout);

@@ -365,8 +365,8 @@ MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state, cons
   const std::vector<std::size_t> outside = AddPointers(array, maker, spec, state, labels);
   AddDevices(array, maker, spec, state, outlook, labels);
   const bool is_over = state.terminated || state.truncated;
-  const std::vector<std::string> headlines = Headlines(spec, state, outlook);
-  AddLines(array, maker, spec, "alarm", 1.0, is_over || headlines.empty() ? "" : headlines[1],
+  AddLines(array, maker, spec, "alarm", 1.0,
+           is_over ? "" : Capitalized(OutlookText(spec, state, outlook)),
            IsInDanger(outlook) ? Mix(SeverityColor(Severity(WorstRisk(outlook))), kPaper, 0.25)
                                : kPaper);
   AddLines(array, maker, spec, "outside", -1.0, OutsideText(spec, state, courses, outside), kPaper);
@@ -374,7 +374,7 @@ MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state, cons
   for (std::size_t i = 0; i < courses.size(); ++i) {
     const DisasterState& disaster = state.disasters[i];
     has_rings = has_rings || (disaster.known && disaster.steps_left > 0 &&
-                              StepsToFarm(spec, disaster, courses[i]) == 0.0);
+                              !OverFarmText(spec, courses[i]).empty());
   }
   AddSignLegend(array, spec,
                 {IsInDanger(outlook), !outside.empty(), has_rings,

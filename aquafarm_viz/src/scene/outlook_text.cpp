@@ -82,11 +82,6 @@ std::string WhomText(const FarmSpec& spec, const Outlook& outlook, const RingArr
   });
 }
 
-// Returns "gale in 2.0 h"; the wind must be given.
-std::string NamedArrival(const FarmSpec& spec, const RingArrival& ring) {
-  return NameOf(ring.wind_kt) + std::string(" in ") + AheadText(spec, ring.steps);
-}
-
 // Returns the local time `steps` steps from now, such as "Sun 06:24".
 std::string DayAndClock(const FarmSpec& spec, const FarmState& state, double steps) {
   const double then_s = double(state.world_time.sec) + steps * spec.step_duration_s;
@@ -108,16 +103,6 @@ std::string ClockAhead(const FarmSpec& spec, const FarmState& state, const Outlo
       });
   return (are_others_later ? " (from " : " (") + clock + (has_zone ? " " + ZoneText(spec) : "") +
          ")";
-}
-
-// Shortens "hurricane force in 9.0 h" to "64 kt in 9.0 h".
-std::string WithKnots(std::string text) {
-  constexpr std::int32_t kHurricane_kt = 64;
-  const std::string word = NameOf(kHurricane_kt);
-  const std::size_t at = text.find(word);
-  return at == std::string::npos
-             ? text
-             : text.replace(at, word.size(), std::to_string(kHurricane_kt) + " kt");
 }
 
 // Returns "no known danger to devices for the next 12 h"; empty if all courses are known to their
@@ -296,6 +281,11 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
   return Sentence(spec, state, outlook, /*has_directions=*/false, /*is_brief=*/false).Write();
 }
 
+std::string Capitalized(std::string text) {
+  if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
 std::vector<std::string> Headlines(const FarmSpec& spec, const FarmState& state,
                                    const Outlook& outlook) {
   const std::string brief = ShortOutlookText(spec, outlook);
@@ -308,9 +298,7 @@ std::vector<std::string> Headlines(const FarmSpec& spec, const FarmState& state,
   }
   lines.push_back(brief);
   if (!IsInDanger(outlook)) lines.push_back(SafeText(spec, outlook, /*is_brief=*/true));
-  for (std::string& line : lines) {
-    line[0] = char(std::toupper(static_cast<unsigned char>(line[0])));
-  }
+  for (std::string& line : lines) line = Capitalized(line);
   return lines;
 }
 
@@ -330,78 +318,110 @@ bool IsHitFirst(const FarmSpec& spec, const Outlook& outlook, const DeviceOutloo
   return WorstRisk(device) < 0.0 && first_ring(device) == first_ring(outlook.devices.front());
 }
 
-std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
+namespace {
+
+// Returns the name of a wind; in a brief text, "64 kt" instead of "hurricane force".
+std::string WindIn(std::int32_t wind_kt, bool is_brief) {
+  return is_brief && wind_kt >= aquafarm::kHurricaneForce_kt ? std::to_string(wind_kt) + " kt"
+                                                             : NameOf(wind_kt);
+}
+
+DangerPart NamedPart(const FarmSpec& spec, const RingArrival& ring, bool is_brief) {
+  return {WindIn(ring.wind_kt, is_brief) + " in " + AheadText(spec, ring.steps), ring.risk};
+}
+
+// Returns the parts with risks instead of names of winds: "-5 now", "-20 in 6.5 h".
+// @param between  text between risk and time
+DangerParts RiskParts(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {
+  DangerParts parts;
+  if (device.risk_now < 0.0)
+    parts.push_back({Number(device.risk_now, 0) + " now", device.risk_now});
+  const auto add = [&](const RingArrival& ring) {
+    parts.push_back({Number(ring.risk, 0) + between + AheadText(spec, ring.steps), ring.risk});
+  };
+  if (!device.arrivals.empty()) add(device.arrivals.front());
+  if (device.arrivals.size() > 1) add(device.arrivals.back());
+  return parts;
+}
+
+// Returns the worst ring to come, or all parts if its wind is not given.
+DangerParts WorstPart(const FarmSpec& spec, const DeviceOutlook& device, bool is_brief) {
+  const bool is_named = !device.arrivals.empty() && device.arrivals.back().wind_kt > 0;
+  return is_named ? DangerParts{NamedPart(spec, device.arrivals.back(), is_brief)}
+                  : PartsOf(spec, device, is_brief);
+}
+
+// Returns the ring that covers the device now and the worst ring to come; WorstPart if one of them
+// is missing or has no wind, or if both winds have the same name.
+DangerParts NowAndWorst(const FarmSpec& spec, const DeviceOutlook& device, bool is_brief) {
+  const bool is_named =
+      device.risk_now < 0.0 && device.wind_now_kt > 0 && !device.arrivals.empty() &&
+      device.arrivals.back().wind_kt > 0 &&
+      std::string(NameOf(device.wind_now_kt)) != NameOf(device.arrivals.back().wind_kt);
+  if (!is_named) return WorstPart(spec, device, is_brief);
+  return {{WindIn(device.wind_now_kt, is_brief) + " now", device.risk_now},
+          NamedPart(spec, device.arrivals.back(), is_brief)};
+}
+
+}  // namespace
+
+std::string Joined(const DangerParts& parts) {
+  std::string text;
+  for (const DangerPart& part : parts) text += (text.empty() ? "" : ", ") + part.text;
+  return text;
+}
+
+DangerParts PartsOf(const FarmSpec& spec, const DeviceOutlook& device, bool is_brief) {
   const std::string before = device.risk_now < 0.0 ? NameOf(device.wind_now_kt) : "";
   const std::string after = device.arrivals.empty() ? "" : NameOf(device.arrivals.front().wind_kt);
   // If both rings have the same name, only their risks distinguish them.
   const bool has_names = (device.risk_now == 0.0 || !before.empty()) &&
                          (device.arrivals.empty() || !after.empty()) && before != after;
   if (!has_names) {
-    const std::string risk = RiskText(spec, device);
-    return risk.empty() ? "" : "risk " + risk;
+    DangerParts parts = RiskParts(spec, device, " in ");
+    if (!parts.empty()) parts.front().text = "risk " + parts.front().text;
+    return parts;
   }
-  const std::string now = before.empty() ? "" : before + " now";
-  if (after.empty()) return now;
-  const std::string next =
-      now + (now.empty() ? "" : ", ") + NamedArrival(spec, device.arrivals.front());
+  DangerParts parts;
+  if (!before.empty()) {
+    parts.push_back({WindIn(device.wind_now_kt, is_brief) + " now", device.risk_now});
+  }
+  if (after.empty()) return parts;
+  parts.push_back(NamedPart(spec, device.arrivals.front(), is_brief));
   const RingArrival& worst = device.arrivals.back();
   const std::string last = NameOf(worst.wind_kt);
-  return last.empty() || last == after ? next : next + ", " + NamedArrival(spec, worst);
+  if (!last.empty() && last != after) parts.push_back(NamedPart(spec, worst, is_brief));
+  return parts;
+}
+
+std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
+  return Joined(PartsOf(spec, device, /*is_brief=*/false));
 }
 
 std::string WorstText(const FarmSpec& spec, const DeviceOutlook& device) {
-  const bool is_named = !device.arrivals.empty() && device.arrivals.back().wind_kt > 0;
-  return is_named ? NamedArrival(spec, device.arrivals.back()) : DangerText(spec, device);
+  return Joined(WorstPart(spec, device, /*is_brief=*/false));
 }
 
 std::string NowAndWorstText(const FarmSpec& spec, const DeviceOutlook& device) {
-  const std::string worst = WorstText(spec, device);
-  const bool is_named =
-      device.risk_now < 0.0 && device.wind_now_kt > 0 && !device.arrivals.empty() &&
-      device.arrivals.back().wind_kt > 0 &&
-      std::string(NameOf(device.wind_now_kt)) != NameOf(device.arrivals.back().wind_kt);
-  return is_named ? NameOf(device.wind_now_kt) + (" now, " + WithKnots(worst)) : worst;
+  const DangerParts parts = NowAndWorst(spec, device, /*is_brief=*/true);
+  return Joined(parts.size() > 1 ? parts : WorstPart(spec, device, /*is_brief=*/false));
 }
 
-std::pair<std::string, std::string> FirstAndWorse(
-    const FarmSpec& spec, const DeviceOutlook& device,
-    const std::function<bool(const std::string& text)>& fits) {
-  const std::string danger = DangerText(spec, device);
-  const std::size_t comma = danger.find(", ");
-  if (comma == std::string::npos) return {danger, ""};
-  std::string worse = danger.substr(comma + 2);
-  if (danger.rfind("risk ", 0) == 0) worse = "risk " + worse;
-  return {danger.substr(0, comma), fits(worse) ? worse : WithKnots(worse)};
-}
-
-std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {
-  const std::string now = device.risk_now < 0.0 ? Number(device.risk_now, 0) + " now" : "";
-  if (device.arrivals.empty()) return now;
-  const RingArrival& next = device.arrivals.front();
-  const RingArrival& worst = device.arrivals.back();
-  const std::string then = device.arrivals.size() < 2 ? ""
-                                                      : ", " + Number(worst.risk, 0) + between +
-                                                            AheadText(spec, worst.steps);
-  return now + (now.empty() ? "" : ", ") + Number(next.risk, 0) + between +
-         AheadText(spec, next.steps) + then;
-}
-
-std::pair<std::string, std::string> NameAndDanger(
+std::pair<std::string, DangerParts> NameAndDanger(
     const FarmSpec& spec, const std::string& kind, const DeviceOutlook& device,
     const std::function<bool(const std::string& name, const std::string& danger)>& fits) {
   const std::string label = DeviceLabel(device.id);
-  const std::string full = label + " " + kind;
-  std::string danger = DangerText(spec, device);
-  if (fits(full, danger)) return {full, danger};
-  // The kind can be left out, because the symbol next to the name shows it.
-  for (const std::string& shorter :
-       {WithKnots(danger), NowAndWorstText(spec, device), WorstText(spec, device),
-        WithKnots(WorstText(spec, device)), RiskText(spec, device), RiskText(spec, device, ", ")}) {
-    if (fits(label, danger)) break;
-    danger = shorter;
+  for (const auto& form : {PartsOf, NowAndWorst, WorstPart}) {
+    // The kind can be left out, because the symbol next to the name shows it.
+    for (const std::string& name : {label + " " + kind, label}) {
+      for (const bool is_brief : {false, true}) {
+        const DangerParts danger = form(spec, device, is_brief);
+        if (fits(name, Joined(danger))) return {name, danger};
+      }
+    }
   }
-  const std::string brief = WithKnots(danger);
-  return fits(full, brief) ? std::pair(full, brief) : std::pair(label, danger);
+  const DangerParts risks = RiskParts(spec, device, " in ");
+  return {label, fits(label, Joined(risks)) ? risks : RiskParts(spec, device, ", ")};
 }
 
 std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,

@@ -40,6 +40,9 @@ std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
 
+/// Returns a text whose first letter is a capital.
+std::string Capitalized(std::string text);
+
 /// Returns the outlook as headlines. Each begins with a capital letter. Empty if ShortOutlookText
 /// is empty. The order is:
 ///
@@ -61,10 +64,25 @@ std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook&
 bool IsHitFirst(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook,
                 const DeviceOutlook& device);
 
+/// A ring in a text about the danger to a device.
+struct DangerPart {
+  std::string text;  ///< "storm in 6.5 h"
+  double risk{};     ///< risk within the ring
+};
+using DangerParts = std::vector<DangerPart>;
+
 /// Returns the danger to a device: the ring that covers it now, the next worse ring and the worst
-/// ring to come. Examples: "risk -10 in 6.5 h", "risk -5 now", "risk -5 now, -20 in 6.5 h". If the
-/// winds of the rings are given: "gale now, storm in 6.5 h, hurricane force in 9.0 h". Returns an
-/// empty text if no ring covers or reaches the device.
+/// ring to come. Examples: "risk -10 in 6.5 h", "risk -5 now", "-20 in 6.5 h". If the winds of the
+/// rings are given: "gale now", "storm in 6.5 h", "hurricane force in 9.0 h". Empty if no ring
+/// covers or reaches the device.
+/// @param is_brief  true: the wind replaces "hurricane force", "64 kt in 9.0 h"
+DangerParts PartsOf(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
+                    bool is_brief);
+
+/// Returns parts with commas between them.
+std::string Joined(const DangerParts& parts);
+
+/// Returns all PartsOf as one text: "gale now, storm in 6.5 h, hurricane force in 9.0 h".
 std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
 
 /// Returns the worst ring to come: "hurricane force in 9.0 h". Returns DangerText if no worse ring
@@ -77,24 +95,11 @@ std::string WorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& 
 /// have the same name.
 std::string NowAndWorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
 
-/// Returns DangerText in two parts, the first ring and the worse ones: "gale now", and "storm in
-/// 6.5 h, hurricane force in 9.0 h". The second part is empty if there is no worse ring. If `fits`
-/// refuses it, it contains "64 kt" instead of "hurricane force".
-std::pair<std::string, std::string> FirstAndWorse(
-    const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
-    const std::function<bool(const std::string& text)>& fits);
-
-/// Returns DangerText with risks instead of names of winds, and without the word "risk": "-5 now,
-/// -20 in 6.5 h".
-/// @param between  text between risk and time
-std::string RiskText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
-                     const char* between = " in ");
-
-/// Returns the two texts of a row about a device: its label, with its kind if there is space, and
-/// its danger. Tries texts of the danger from the longest to the shortest until `fits` accepts both
-/// texts. If `fits` accepts none, returns the label and the shortest text of the danger.
+/// Returns a row about a device: its label, with its kind if there is space, and its danger. Tries
+/// forms of the danger from the longest to the shortest until `fits` accepts both texts. If `fits`
+/// accepts none, returns the label and the shortest form.
 /// @param kind  DeviceName of the device
-std::pair<std::string, std::string> NameAndDanger(
+std::pair<std::string, DangerParts> NameAndDanger(
     const aquafarm_msgs::FarmSpec& spec, const std::string& kind, const DeviceOutlook& device,
     const std::function<bool(const std::string& name, const std::string& danger)>& fits);
 

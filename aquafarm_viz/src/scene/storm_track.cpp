@@ -184,11 +184,11 @@ StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m
 
 namespace {
 
-// Returns the name of a wind. That of the worst ring also has its wind, because lists of devices
-// contain "64 kt" instead of its name.
+// Returns the name of a wind. Hurricane force also has its wind, "hurricane force (64 kt)", because
+// lists of devices contain the wind instead of the name.
 std::string LegendName(std::int32_t wind_kt) {
-  constexpr std::int32_t kHurricane_kt = 64;
-  return wind_kt < kHurricane_kt ? aquafarm::WindName(wind_kt) : aquafarm::RingName(wind_kt);
+  return wind_kt < aquafarm::kHurricaneForce_kt ? aquafarm::WindName(wind_kt)
+                                                : aquafarm::RingName(wind_kt);
 }
 
 }  // namespace

@@ -52,6 +52,8 @@ for (const chart of CURVES.charts) {
       const isPart = window.charts.some(one => one.isZoomed("x") &&
         one.xAxisRange()[0] === from && one.xAxisRange()[1] === to);
       for (const other of window.charts) {
+        const [first, last] = other.xAxisExtremes();
+        if (isPart && (to <= first || from >= last)) continue;  // it has no curve there
         if (other.xAxisRange()[0] !== from || other.xAxisRange()[1] !== to) {
           other.updateOptions({dateWindow: isPart ? [from, to] : null});
         }
@@ -186,12 +188,14 @@ function mark(canvas, area, dygraph, marks, onScale) {
   canvas.fillText("greedy", middle, area.y + area.h - 40);  // above RANDOM
   canvas.fillText("play", middle, area.y + area.h - 26);
   canvas.lineWidth = 2;
+  let below = 0;
   marks.forEach(([mean, low, high], i) => {
     if (mean === null) return;
     const x = middle + STEP * (i - (marks.length - 1) / 2);
     canvas.strokeStyle = canvas.fillStyle = CURVES.colours[i];
     if (at(mean) > area.y + area.h) {  // below an enlarged part
-      canvas.fillText(`${inWords(mean, 0)} \u2193`, x, area.y + area.h - 8);
+      canvas.fillText(`${inWords(mean, 0)} \u2193`, x, area.y + area.h - 8 - 14 * (below % 2));
+      below += 1;
       return;
     }
     canvas.beginPath();

@@ -13,7 +13,7 @@ struct Force {
 
 // The strongest first.
 constexpr std::array<Force, 4> kForces{
-    {{64, "hurricane force"}, {48, "storm"}, {34, "gale"}, {28, "near gale"}}};
+    {{kHurricaneForce_kt, "hurricane force"}, {48, "storm"}, {34, "gale"}, {28, "near gale"}}};
 
 }  // namespace
 

@@ -8,6 +8,8 @@
 
 namespace aquafarm {
 
+inline constexpr std::int32_t kHurricaneForce_kt = 64;  ///< lowest wind of hurricane force
+
 /// Returns the name of a wind: "hurricane force" from 64 kt, "storm" from 48, "gale" from 34, "near
 /// gale" from 28, else "wind".
 const char* WindName(std::int32_t wind_kt);

@@ -237,6 +237,16 @@ void WarnOfMissing(const Request& request, const Found& found) {
                request.bag.c_str(), request.bag.c_str());
 }
 
+/// Returns the size of one picture. Pictures next to each other are usually shown smaller, so their
+/// texts are larger.
+aquafarm_viz::ImageSize SizeOfOne(const Request& request) {
+  constexpr double kTextScaleOfSeveral = 1.2;
+  aquafarm_viz::ImageSize size = request.size;
+  const bool are_several = !request.at_end && request.steps.size() > 1;
+  if (are_several && !request.is_stacked) size.text_scale = kTextScaleOfSeveral;
+  return size;
+}
+
 /// Draws the requested steps of one episode next to each other, or below each other if is_stacked.
 void RenderPicture(const Request& request) {
   if (!cv::haveImageWriter(request.output)) {
@@ -246,11 +256,7 @@ void RenderPicture(const Request& request) {
   }
   const std::vector<std::uint64_t> steps =
       request.steps.empty() ? std::vector<std::uint64_t>{0} : request.steps;
-  aquafarm_viz::ImageSize size = request.size;
-  // Pictures next to each other are usually shown smaller, so their texts are larger.
-  constexpr double kScaleOfSeveral = 1.2;
-  if (!request.at_end && steps.size() > 1 && !request.is_stacked) size.text_scale = kScaleOfSeveral;
-  aquafarm_viz::FarmPainter painter(size, aquafarm_viz::StyleByName(request.style));
+  aquafarm_viz::FarmPainter painter(SizeOfOne(request), aquafarm_viz::StyleByName(request.style));
   std::vector<cv::Mat> pictures(request.at_end ? 1 : steps.size());
   std::optional<std::uint64_t> episode;  // the first episode that has one of the steps
   std::size_t missing = pictures.size();

@@ -146,8 +146,8 @@ class Panel {
 };
 
 /// Draws the list of devices: each device with its symbol, and its danger or status, in one or two
-/// rows. If there is little space, draws two devices in each row, else the number of devices of each
-/// kind.
+/// rows. If there is little space, draws two devices in each row, else the number of devices of
+/// each kind.
 /// @param trail  null: times are left out
 void ListDevices(Panel& panel, const aquafarm_msgs::FarmSpec& spec,
                  const aquafarm_msgs::FarmState& state, const Trail* trail, const Outlook& outlook,

@@ -240,17 +240,6 @@ class PlanFiguresTest(unittest.TestCase):
         at["radii_km"][2] = 600.0
         self.assertIsNone(words.early_wind(plan), "the ring is over the ranch")
 
-    def test_the_shares_of_losses_follow_the_exceedance_curve(self):
-        plan = plan_sample.sample(members=100)
-        plan["loss"]["insured"] = 305.0
-        plan["loss"]["with_plan"]["exceedance"] = [[0.0, 0.09], [70.0, 0.08], [125.0, 0.06],
-                                                   [305.0, 0.0]]
-        shares = figures.loss_shares(plan)
-        self.assertEqual(["almost nothing", "a part", "everything"], [name for name, _ in shares])
-        for expected, (_, share) in zip((0.91, 0.03, 0.06), shares):
-            self.assertAlmostEqual(expected, share)
-        self.assertIsNone(figures.loss_shares(plan_sample.storm_unknown()))
-
     def test_a_departure_at_once_is_part_of_the_delivery(self):
         plan = plan_sample.sample(members=100)
         leave = {"action": "leave", "time": plan_sample.stamp(9), "port": 1, "device": None,

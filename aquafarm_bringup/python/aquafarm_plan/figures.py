@@ -299,18 +299,6 @@ def _dates(clock, end, x_of):
     return dates
 
 
-def loss_shares(plan):
-    """Returns (name, share of the futures) of the losses with the plan: below 1 % of the insured
-    value, above 99 %, and between. The shares are exact to about 1 %. None if they are unknown."""
-    insured, steps = plan["loss"]["insured"], plan["loss"]["with_plan"]["exceedance"]
-    if is_unknown(plan) or not steps or not insured:
-        return None
-    above = [next((p for x, p in reversed(steps) if x < share * insured), 1.0)
-             for share in (0.01, 0.99)]
-    return [("almost nothing", 1 - above[0]), ("a part", above[0] - above[1]),
-            ("everything", above[1])]
-
-
 def curve(plan):
     """Returns the data of two exceedance curves of the loss: with the plan, and if no ship
     leaves."""

@@ -49,7 +49,6 @@ def render(plan):
         map=drawing,
         timeline=line,
         storm_name=words.storm_name(plan),
-        losses=figures.loss_shares(plan),
         early_wind=words.early_wind(plan),
         orders_of=lambda route: words.merged_orders(plan, route),
         region=figures.region(plan),

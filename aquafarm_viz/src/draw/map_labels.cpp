@@ -259,8 +259,8 @@ struct TextPlace {
 std::optional<TextPlace> PlaceBesideRing(const std::vector<RingPoint>& points,
                                          const std::vector<cv::Size>& sizes, FreeSpace& space,
                                          const Layout& layout) {
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    for (const double side : {0.0, 1.0, -1.0}) {
+  for (const double side : {0.0, 1.0, -1.0}) {
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
       for (const RingPoint& point : points) {
         const double away = std::abs(point.outwards.x) * sizes[i].width / 2.0 +
                             std::abs(point.outwards.y) * sizes[i].height / 2.0 + 6.0 * layout.unit;

@@ -4,8 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <functional>
 #include <future>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "farm_server_fixture.h"
 
@@ -221,36 +225,34 @@ TEST(FarmServer, ANewerCommandOfTheSameShipSupersedesTheWaitingOne) {
   EXPECT_EQ(Outcome::HELD, newer.get().code);
 }
 
-/// Delays each step, so that other calls queue for the ranch before waiting calls get the result.
-class SlowRecorder : public FarmRecorder {
- public:
-  void OnStart(const aquafarm::Farm&, std::int32_t, const MessageContext&) override {}
-  void OnStep(const aquafarm::Farm&, std::int32_t, const std::uint8_t*) override {
-    std::this_thread::sleep_for(milliseconds(30));
-  }
-  void OnIntervention(const aquafarm::Farm&, std::int32_t) override {}
-};
-
 TEST(FarmServer, ACommandThatWasCarriedOutIsAnsweredSoWhateverCameAfterIt) {
-  SlowRecorder recorder;
+  // Sends the next commands of both ships in the middle of every second step. They queue for the
+  // ranch before the calls that wait for the step get its result.
+  struct Sender final : FarmRecorder {
+    void OnStart(const aquafarm::Farm&, std::int32_t, const MessageContext&) override {}
+    void OnStep(const aquafarm::Farm& farm, std::int32_t, const std::uint8_t*) override {
+      if (farm.step() % 2 == 0) return;
+      for (const std::int32_t ship : {0, 1}) next.push_back(send(ship));
+      std::this_thread::sleep_for(milliseconds(20));
+    }
+    void OnIntervention(const aquafarm::Farm&, std::int32_t) override {}
+    std::function<std::future<CommandResult>(std::int32_t)> send;
+    std::vector<std::future<CommandResult>> next;
+  } sender;
   const auto ranch = MakeRanch(TwoShips());
-  ranch->SetRecorder(&recorder);
-  for (std::uint64_t i = 0; i < 5; ++i) {
-    const auto start = [&](std::int32_t ship, std::uint8_t action, std::uint64_t token) {
-      auto result = std::async(std::launch::async, [=, &ranch] {
-        return ranch->Command({ship, action, 0, 0, token});
-      });
-      std::this_thread::sleep_for(milliseconds(10));
-      return result;
-    };
-    auto first = start(0, kHold, 4 * i + 1);
-    auto partner = start(1, kHold, 4 * i + 2);  // triggers a slow step
-    auto second = start(0, kHold, 4 * i + 3);   // this and the next command trigger the next step
-    auto last = start(1, kHold, 4 * i + 4);
+  std::atomic<std::uint64_t> token{0};
+  sender.send = [&](std::int32_t ship) {
+    return std::async(std::launch::async, [&ranch, ship, mark = ++token] {
+      return ranch->Command({ship, kHold, 0, 0, mark});
+    });
+  };
+  ranch->SetRecorder(&sender);
+  for (std::int32_t i = 0; i < 5; ++i) {
+    auto first = sender.send(0);
+    auto partner = sender.send(1);
     EXPECT_EQ(Outcome::HELD, first.get().code);
     EXPECT_EQ(Outcome::HELD, partner.get().code);
-    EXPECT_EQ(Outcome::HELD, second.get().code);
-    EXPECT_EQ(Outcome::HELD, last.get().code);
+    for (auto& answer : std::exchange(sender.next, {})) EXPECT_EQ(Outcome::HELD, answer.get().code);
   }
   EXPECT_EQ(10U, StateOf(*ranch).step);
   EXPECT_EQ(0U, ranch->counters().superseded);

@@ -115,7 +115,7 @@ TrialResult PlanTrials::Run(const TrialStorm& storm, bool reacts) const {
     const TripModel model(problem, truth);
     PlanAgain skipper;
     again = PlayBulletins(storm, model, skipper);
-    if (request_.devices.empty()) {
+    if (request_.devices.empty() && rescue.scenario->ships.count == 1) {
       PlannerSkipper farm(rescue);
       planner = PlayBulletins(storm, model, farm);
     }

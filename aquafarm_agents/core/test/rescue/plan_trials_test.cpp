@@ -178,6 +178,17 @@ TEST_F(Trials, OrdersThatReactToLaterBulletinsAreComparedInTheSameStorm) {
   EXPECT_LE(saved[planner], 1.02 * saved[best]);
 }
 
+TEST_F(Trials, ThePlannerIsNotPlayedOnARanchWithMoreShipsThanTheRequest) {
+  Scenario ranch = LoadScenario(AQUAFARM_SCENARIO_DIR "/zhoushan_storms.yaml");
+  ranch.ships.count = 2;
+  RescueRequest request = Request(1.0);
+  request.ships = 1;
+  const PlanTrials trials(std::make_shared<const Scenario>(ranch), request);
+  const TrialResult result = trials.Run(DrawTrial(tracks_, trials.place(), TrialOptions{}, 5));
+  EXPECT_TRUE(std::isnan(result.saved[static_cast<std::size_t>(TrialPolicy::kPlanner)]));
+  EXPECT_FALSE(std::isnan(result.saved[static_cast<std::size_t>(TrialPolicy::kPlanAgain)]));
+}
+
 // Without errors every bulletin states the same storm: nothing is learnt from the later ones.
 TEST_F(Trials, WithoutErrorsAPlanThatIsMadeAgainIsThePlan) {
   const PlanTrials trials = Make(0.0, 1);

@@ -54,7 +54,7 @@ TEST(OutlookText, NamesTheWorstRingToComeAfterTheNext) {
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
             "typhoon: gale reaches F3 in 30 min, hurricane force in 3.0 h");
   EXPECT_EQ(DangerText(scene.spec, device), "gale in 30 min, hurricane force in 3.0 h");
-  EXPECT_EQ(WorstText(scene.spec, device), "hurricane force in 3.0 h");
+  EXPECT_EQ(FirstAndWorstText(scene.spec, device), "gale in 30 min, 64 kt in 3.0 h");
 }
 
 TEST(OutlookText, NamesTheNextAndTheWorstArrivalOfAllDevices) {
@@ -73,8 +73,10 @@ TEST(OutlookText, NamesTheNextAndTheWorstArrivalOfAllDevices) {
             std::string::npos);
   outlook.devices.clear();
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "no device is deployed");
-  EXPECT_EQ(NowAndWorstText(scene.spec, {2, -5.0, 0U, 34, {{60.0, -20.0, 0U, 64}}}),
+  EXPECT_EQ(FirstAndWorstText(scene.spec, {2, -5.0, 0U, 34, {{60.0, -20.0, 0U, 64}}}),
             "gale now, 64 kt in 3.0 h");
+  EXPECT_EQ(FirstAndWorstText(scene.spec, {2, 0.0, 0U, 0, {{60.0, -20.0, 0U, 64}}}),
+            "hurricane force in 3.0 h");
 }
 
 TEST(OutlookText, HasAPartForEachRing) {
@@ -117,7 +119,7 @@ TEST(OutlookText, ShortensTheNameAndTheDangerOfADeviceUntilTheyFit) {
   EXPECT_EQ(words(30), "F3 release|64 kt in 3.0 h") << "the kind rather than the second word";
   EXPECT_EQ(words(26), "F3 release|64 kt in 3.0 h");
   EXPECT_EQ(words(17), "F3|64 kt in 3.0 h");
-  EXPECT_EQ(words(0), "F3|-5, 30 min, -20, 3.0 h") << "the shortest if nothing fits";
+  EXPECT_EQ(words(0), "F3|-5 in 30 min") << "the first risk if nothing fits";
 }
 
 TEST(OutlookText, StrengthHasMetresPerSecondAndKnots) {
@@ -295,8 +297,8 @@ TEST(OutlookText, DevicesAreHitFirstByTheTimeAndTheRiskOfTheirFirstRing) {
 
 TEST(OutlookText, DoesNotNameTheSameWindTwice) {
   const Outlooks scene;
-  EXPECT_EQ(NowAndWorstText(scene.spec, {2, -5.0, 0U, 34, {{60.0, -10.0, 0U, 34}}}),
-            "gale in 3.0 h");
+  EXPECT_EQ(FirstAndWorstText(scene.spec, {2, -5.0, 0U, 34, {{60.0, -10.0, 0U, 34}}}),
+            "risk -5 now, -10 in 3.0 h");
 }
 
 }  // namespace

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm_sim/plan_words.h"
 #include "aquafarm_viz/base/palette.h"
 #include "fit_screen.h"
 #include "fixture.h"
+#include "plan_fixture.h"
 #include "ranch_widget.h"
 
 namespace aquafarm_viz {
@@ -120,147 +120,9 @@ TEST(RanchModel, ADisasterBeginsAtTheShipWithRisksByItsGrade) {
   EXPECT_EQ(model.NextDisaster(), 1);
 }
 
-// Two ships and three devices; the plan starts on 2021-07-24 at 08:00 local time.
-aquafarm_msgs::RescuePlanPtr Plan() {
-  using aquafarm_msgs::RescueOrder;
-  auto plan = boost::make_shared<aquafarm_msgs::RescuePlan>();
-  plan->text = "1 of 2 ships leave.";
-  plan->utc_offset_min = 480;
-  plan->start = ros::Time(1627084800, 0);
-  plan->no_departure_after = plan->start + ros::Duration(5.5 * 3600.0);
-  plan->ports.resize(1);
-  plan->ports[0].name = "port A";
-  plan->ships.resize(2);
-  plan->devices.resize(3);
-  for (int i = 0; i < 3; ++i) {
-    auto& device = plan->devices[static_cast<std::size_t>(i)];
-    device.name = "D" + std::to_string(i + 1);
-    device.ship = i == 1 ? 0 : -1;
-    device.home = 0.874F;
-    device.left_reason = i == 0 ? "too_late" : i == 2 ? "safe_in_place" : "";
-    device.deadlines.resize(3);
-    for (std::size_t k = 0; k < 3; ++k) {
-      device.deadlines[k].probability = k == 0 ? 0.95F : k == 1 ? 0.8F : 0.5F;
-      device.deadlines[k].possible = k > 0;
-      device.deadlines[k].open = k == 2;
-      device.deadlines[k].leave = plan->start + ros::Duration(3600.0);
-    }
-  }
-  aquafarm_msgs::RescueRoute route;
-  for (const std::uint8_t action : {RescueOrder::LEAVE, RescueOrder::FETCH, RescueOrder::DELIVER}) {
-    RescueOrder order;
-    order.action = action;
-    order.stamp = plan->start + ros::Duration(8.0 * 3600.0 * action);
-    order.port = action == RescueOrder::FETCH ? -1 : 0;
-    order.device = action == RescueOrder::FETCH ? 1 : -1;
-    if (action == RescueOrder::DELIVER) order.devices = {1};
-    order.probability = 1.0F - 0.1F * static_cast<float>(action);
-    route.orders.push_back(order);
-  }
-  plan->routes = {route};
-  plan->ships[0].name = "ship 1";
-  plan->ships[1].id = 1;
-  plan->ships[1].name = "ship 2";
-  return plan;
-}
-
-TEST(PlanText, TheNextOrderIsThatOfTheTime) {
-  const auto plan = Plan();
-  using Rows = std::vector<PlanRow>;
-  const auto at = [&](double hours) {
-    return PlanShips(*plan, plan->start + ros::Duration(3600.0 * hours));
-  };
-  EXPECT_EQ(at(0.0),
-            (Rows{{"ship 1", "leave port A", "08:00", "> 99 %"}, {"ship 2", "stay", "", ""}}));
-  EXPECT_EQ(at(0.1)[0], (PlanRow{"ship 1", "fetch D2", "16:00", "90 %"}));
-  EXPECT_EQ(at(9.0)[0], (PlanRow{"ship 1", "deliver D2 at port A", "25 Jul 00:00", "80 %"}));
-  EXPECT_EQ(at(17.0)[0], (PlanRow{"ship 1", "all done", "", ""}));
-  EXPECT_EQ(at(0.0)[0].size(), PlanShipColumns().size());
-}
-
-TEST(PlanText, DevicesHaveTheirOddsAndDeadlines) {
-  const auto plan = Plan();
-  const auto rows = PlanDevices(*plan);
-  ASSERT_EQ(rows.size(), 3U);
-  EXPECT_EQ(rows[0], (PlanRow{"D1", "left behind", "none", "09:00", "not known beyond 09:00"}));
-  EXPECT_EQ(rows[1], (PlanRow{"D2", "87 %", "none", "09:00", "not known beyond 09:00"}));
-  EXPECT_EQ(rows[2][1], "stays");
-  EXPECT_EQ(rows[0].size(), PlanDeviceColumns().size());
-  plan->result = aquafarm_msgs::RescuePlan::STORM_UNKNOWN;
-  EXPECT_EQ(PlanDevices(*plan)[1], (PlanRow{"D2", "unknown", "unknown", "unknown", "unknown"}));
-}
-
-// A ship with a device aboard has orders even if the winds are unknown, but no chances.
-TEST(PlanText, ChancesAreUnknownIfTheWindsAre) {
-  const auto plan = Plan();
-  plan->result = aquafarm_msgs::RescuePlan::STORM_UNKNOWN;
-  plan->ships[0].aboard = {1};
-  plan->routes[0].orders.erase(plan->routes[0].orders.begin() + 1);
-  for (const float chance : {1.0F, std::numeric_limits<float>::quiet_NaN()}) {
-    for (auto& order : plan->routes[0].orders) order.probability = chance;
-    plan->devices[1].home = chance;
-    for (const double hours : {0.0, 9.0}) {
-      const PlanRow row = PlanShips(*plan, plan->start + ros::Duration(3600.0 * hours))[0];
-      EXPECT_EQ(row[3], "unknown") << row[1];
-    }
-    EXPECT_EQ(PlanDevices(*plan)[1][1], "unknown");
-  }
-  EXPECT_EQ(PlanHeadline(*plan, 0.0), "plan: 1 of 2 ships leave.") << "no deadline is known";
-}
-
-TEST(PlanText, TheHeadlineNamesWhatIsOutdated) {
-  const auto plan = Plan();
-  EXPECT_EQ(PlanHeadline(*plan, 0.0),
-            "plan: 1 of 2 ships leave. No ship should leave after 13:30.");
-  plan->fault = "b.json: bad; this plan uses a.json";
-  plan->warnings.resize(1);
-  plan->warnings[0].severity = "stop";
-  plan->warnings[0].text = "The bulletin is 14 hours old.";
-  EXPECT_EQ(PlanHeadline(*plan, 0.0),
-            "plan: 1 of 2 ships leave. No ship should leave after 13:30. The bulletin is 14 hours "
-            "old. OUTDATED: b.json: bad; this plan uses a.json");
-}
-
-TEST(PlanText, DeparturesMayFollowTheEndOfTheKnownTime) {
-  const auto plan = Plan();
-  plan->not_known_beyond = plan->no_departure_after;
-  plan->no_departure_after = ros::Time();
-  EXPECT_EQ(PlanHeadline(*plan, 0.0),
-            "plan: 1 of 2 ships leave. Ships may leave at least until 13:30. What follows is not "
-            "known: plan again at the next bulletin.");
-  plan->result = aquafarm_msgs::RescuePlan::STORM_UNKNOWN;
-  EXPECT_EQ(PlanHeadline(*plan, 0.0), "plan: 1 of 2 ships leave.");
-}
-
-TEST(PlanWords, SharesAreNeverCertainAndOtherDaysAreNamed) {
-  EXPECT_EQ(aquafarm_sim::PercentText(1.0), "> 99 %");
-  EXPECT_EQ(aquafarm_sim::PercentText(0.87), "87 %");
-  EXPECT_EQ(aquafarm_sim::PercentText(0.0), "< 1 %");
-  EXPECT_EQ(aquafarm_sim::PercentText(std::numeric_limits<double>::quiet_NaN()), "unknown");
-  aquafarm_msgs::RescuePlan plan;
-  plan.utc_offset_min = 480;
-  plan.start = ros::Time(1627084800, 0);  // 2021-07-24 00:00 UTC, 08:00 local time
-  EXPECT_EQ(aquafarm_sim::LocalText(plan, plan.start), "08:00");
-  EXPECT_EQ(aquafarm_sim::LocalText(plan, plan.start + ros::Duration(18.0 * 3600.0)),
-            "25 Jul 02:00");
-}
-
-TEST(PlanWords, AShipAtSeaIsNeverOrderedToStay) {
-  const auto plan = Plan();
-  aquafarm_msgs::RescueShip ship = plan->ships[1];
-  plan->ports[0].cell.x = 3;
-  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "return to port");
-  ship.cell.x = 3;
-  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "stay");
-  ship.aboard = {1};
-  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "stay, no safe way to a port");
-  ship.cell.x = 4;
-  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "no safe way to a port");
-}
-
 TEST(RanchModel, APlanThatFollowsTheRanchHasItsTime) {
   RanchModel model = Filled();
-  auto plan = Plan();
+  auto plan = test::MakePlan();
   model.Take(aquafarm_msgs::RescuePlanConstPtr(plan), ros::SteadyTime(1.0));
   EXPECT_EQ(model.PlanNow(), plan->start);
   auto state = boost::make_shared<aquafarm_msgs::FarmState>(test::MakeState());
@@ -323,7 +185,7 @@ TEST(RanchWidget, ShowsDeadlinesAndTheNextOrderOnceThereIsAPlan) {
   auto* line = widget.findChild<QLabel*>("plan");
   ASSERT_TRUE(ships != nullptr && devices != nullptr && line != nullptr);
   EXPECT_TRUE(ships->isHidden() && devices->isHidden() && line->isHidden());
-  const auto plan = Plan();
+  const auto plan = test::MakePlan();
   plan->text = "<b>1</b> of 2 ships leave.";
   model.Take(aquafarm_msgs::RescuePlanConstPtr(plan), ros::SteadyTime::now());
   widget.Refresh();
@@ -348,7 +210,7 @@ TEST(RanchWidget, SaysWithinFiveSecondsThatThePlanIsNoLongerRenewed) {
     return widget.findChild<QLabel*>("plan")->text().toStdString();
   };
   EXPECT_EQ(text(), "") << "without a plan nothing is missing";
-  model.Take(aquafarm_msgs::RescuePlanConstPtr(Plan()), now - ros::WallDuration(7.5));
+  model.Take(aquafarm_msgs::RescuePlanConstPtr(test::MakePlan()), now - ros::WallDuration(7.5));
   EXPECT_NE(
       text().find("NOT RENEWED: plan_node has sent nothing for 7 s; start it again, unless it is "
                   "still planning (that may take more than 60 s)."),
@@ -452,6 +314,28 @@ TEST(RanchWidget, ShowsTheSymbolOfEachDeviceNextToItsKind) {
     }
   }
   EXPECT_EQ(symbols, 4);
+}
+
+TEST(RanchWidget, ShowsTheRegionIfADisasterIsOutsideAndNoCurveNeedsTheSpace) {
+  RanchModel model = Filled();
+  Asked asked;
+  RanchWidget widget(model, asked.Buttons());
+  auto* region = widget.findChild<QWidget*>("region");
+  ASSERT_NE(region, nullptr);
+  EXPECT_TRUE(region->isHidden()) << "all disasters are inside the farm";
+  auto state = boost::make_shared<aquafarm_msgs::FarmState>(test::MakeState());
+  state->disasters = {test::MakeDisaster(0, 300.0F, 12.0F)};
+  ASSERT_EQ(model.Take(aquafarm_msgs::FarmStateConstPtr(state)), "");
+  widget.resize(500, 800);
+  widget.Refresh();
+  EXPECT_FALSE(region->isHidden());
+  const Rgb grade = GradeColor(state->disasters[0].grade);
+  EXPECT_GT(Count(region->grab().toImage(), qRgb(grade.r, grade.g, grade.b)), 20) << "the centre";
+  for (int episode = 1; episode < 9; ++episode) {
+    model.Take(Training(static_cast<std::uint64_t>(episode), 1.0F));
+  }
+  widget.Refresh();
+  EXPECT_TRUE(region->isHidden());
 }
 
 TEST(RanchWidget, TablesAreAsTallAsTheirRows) {

@@ -158,13 +158,12 @@ TEST(Layout, HasTheLegendBelowAWideMapThatIsMuchLowerThanItsPlace) {
   const RiskKey key{{34, -5.0, aquafarm_msgs::DisasterState::TYPHOON},
                     {64, -20.0, aquafarm_msgs::DisasterState::TYPHOON}};
   const Fonts fonts(layout.unit);
-  DrawSigns(image, key, signs, {}, layout, fonts);
-  DrawRiskKey(image, key, /*is_filled=*/true, signs, layout, fonts);
+  DrawKeys(image, &key, /*is_filled=*/true, signs, {}, layout, fonts);
   EXPECT_GT(cv::norm(image(layout.key)), 1000.0);
   const cv::Point margin(layout.Px(3.0), layout.Px(3.0));  // symbols may be a little wider
   image(cv::Rect(layout.key.tl() - margin, layout.key.br() + margin)).setTo(cv::Scalar::all(0));
   EXPECT_EQ(cv::norm(image), 0.0) << "nothing is drawn elsewhere";
-  EXPECT_EQ(LegendPx(key, signs, layout), 0) << "the panel has no legend";
+  EXPECT_EQ(LegendPx(&key, signs, layout), 0) << "the panel has no legend";
 }
 
 TEST(Signs, OfAShipStandNextToThePortInItsCell) {
@@ -213,6 +212,37 @@ cv::Mat FirstState(const aquafarm_msgs::FarmState& state, const Trail* trail = n
   Overlays overlays;
   overlays.trail = trail;
   return DrawFarm(test::MakeSpec(), state, kSignsSize, overlays)(cv::Rect(570, 74, 65, 16)).clone();
+}
+
+TEST(Layout, HasLargerTextsWithALargerTextScale) {
+  const ImageSize size{1280, 1280};
+  ImageSize large = size;
+  large.text_scale = 1.5;
+  EXPECT_DOUBLE_EQ(MakeLayout(25, 25, large).unit, 1.5 * MakeLayout(25, 25, size).unit);
+  EXPECT_LT(MakeLayout(25, 25, large).map.width, MakeLayout(25, 25, size).map.width);
+}
+
+TEST(Signs, OfDangersHaveTheColourOfEachRing) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  state.disasters = {test::MakeDisaster(0, 12.0F, 12.0F)};
+  state.devices = {test::MakeDevice(0, 1, 17, 12, 1.0F)};  // in the outermost ring
+  state.disasters[0].speed = 0.2F;  // eastwards, so that the inner rings reach the device later
+  const ImageSize size{1280, 1280};
+  const Layout layout = MakeLayout(spec.width, spec.height, size);
+  const auto count = [&](double risk) {
+    const cv::Mat list = DrawFarm(spec, state, size)(
+        cv::Rect(layout.panel.x, layout.panel.y, layout.panel.width, layout.Px(70.0)));
+    cv::Mat1b is_there;
+    const cv::Scalar color = Bgr(RiskTextColor(risk, layout));
+    cv::inRange(list, color, color, is_there);
+    return cv::countNonZero(is_there);
+  };
+  EXPECT_GT(count(-5.0), 20) << "now";
+  EXPECT_GT(count(-20.0), 20) << "later";
+  state.disasters[0].heading_deg = 270;  // away from the device
+  EXPECT_GT(count(-5.0), 20);
+  EXPECT_EQ(count(-20.0), 0);
 }
 
 TEST(Signs, OfADeviceThatNothingThreatensHaveItsState) {
@@ -401,7 +431,9 @@ TEST(Paths, OppositeWaysAreOnBothSidesOfTheCells) {
   ShipTrail way;
   way.places = {{5, 5}, {6, 5}, {7, 5}, {7, 6}, {7, 5}};
   way.loaded = {false, false, false, false, true};
-  const auto moves = MovesOf(way, 0, /*are_several=*/false, layout);
+  aquafarm_msgs::FarmState state;
+  state.ships.resize(1);
+  const auto moves = MovesOf(state, 0, way, layout);
   ASSERT_EQ(moves.size(), 5U) << "one joins the sides at the sharp turn";
   const cv::Point2d start = layout.view.ToPixel(5, 5);
   EXPECT_GT(moves[0].from.y, start.y) << "to the right of a move to the east is south";
@@ -412,22 +444,28 @@ TEST(Paths, OppositeWaysAreOnBothSidesOfTheCells) {
   EXPECT_LT(moves[4].from.x, layout.view.ToPixel(7, 6).x) << "the way back is on the other side";
   EXPECT_TRUE(moves[2].is_dashed);
   EXPECT_FALSE(moves[4].is_dashed);
-  EXPECT_NE(MovesOf(way, 1, /*are_several=*/true, layout)[0].from.y, moves[0].from.y);
+  state.ships.resize(2);
+  EXPECT_NE(MovesOf(state, 1, way, layout)[0].from.y, moves[0].from.y);
 }
 
-TEST(Paths, KnowWhichTripsArePast) {
+TEST(Paths, OfSeveralShipsShowThePresentTrip) {
   const Layout layout = MakeLayout(25, 25, {800, 640});
   ShipTrail way;
   way.places = {{5, 5}, {6, 5}, {7, 5}, {8, 5}};
   way.loaded = {false, false, true, true};
-  const auto count_past = [&] {
-    const auto moves = MovesOf(way, 0, /*are_several=*/true, layout);
-    return std::count_if(moves.begin(), moves.end(), [](const Moved& one) { return one.is_past; });
-  };
-  EXPECT_EQ(count_past(), 0) << "the first trip";
+  aquafarm_msgs::FarmState state;
+  state.ships.resize(2);
+  EXPECT_EQ(MovesOf(state, 0, way, layout).size(), 3U) << "the first trip";
   way.places.push_back({9, 5});
   way.loaded.push_back(false);
-  EXPECT_EQ(count_past(), 3) << "all moves before the drop-off at (8, 5)";
+  const auto moves = MovesOf(state, 0, way, layout);
+  ASSERT_EQ(moves.size(), 1U) << "without the moves before the drop-off at (8, 5)";
+  EXPECT_TRUE(moves[0].is_dashed);
+  state.terminated = true;
+  EXPECT_EQ(MovesOf(state, 0, way, layout).size(), 4U);
+  state.terminated = false;
+  state.ships.resize(1);
+  EXPECT_EQ(MovesOf(state, 0, way, layout).size(), 4U);
 }
 
 }  // namespace

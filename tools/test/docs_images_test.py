@@ -8,6 +8,8 @@ import subprocess
 import sys
 import time
 
+import numpy
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TOOL = ROOT / "tools" / "draw_docs_images"
 
@@ -34,6 +36,16 @@ def test_every_picture_is_on_a_page():
     unused = [path.name for path in (ROOT / "docs" / "images").glob("*.png")
               if f"images/{path.name}" not in text]
     assert not unused
+
+
+def test_an_alarm_is_a_headline_with_a_colour():
+    tool = load()
+    pixels = numpy.full((720, 1280, 3), 30, numpy.uint8)
+    assert not tool.has_alarm(pixels)
+    pixels[90:100, 700:800] = (255, 255, 255)  # "no known danger"
+    assert not tool.has_alarm(pixels)
+    pixels[90:100, 700:800] = (210, 120, 230)  # hurricane force
+    assert tool.has_alarm(pixels)
 
 
 def test_an_unknown_name_is_refused_with_the_known_ones():

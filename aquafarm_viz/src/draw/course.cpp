@@ -13,7 +13,7 @@ namespace aquafarm_viz {
 namespace {
 
 constexpr double kFar_px = 1.0e5;  // lines to points farther away are not drawn
-constexpr double kMinMark = 30.0;  // min mean distance of two marks [design units]
+constexpr double kMinMark = 24.0;  // min mean distance of two marks [design units]
 
 bool IsNear(cv::Point2d at) { return std::abs(at.x) < kFar_px && std::abs(at.y) < kFar_px; }
 

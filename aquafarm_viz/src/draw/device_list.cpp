@@ -19,17 +19,15 @@ using aquafarm_msgs::DeviceState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-// Returns when a device was fetched, and its port: "fetched 0:27", "port B". Unknown parts are
-// empty.
+// Returns when a delivered device was fetched, and its port: "fetched 0:27", "port B". Unknown
+// parts are empty.
 std::pair<std::string, std::string> TripOf(const FarmSpec& spec, const DeviceState& device,
                                            const Trail* trail) {
   const auto at = trail == nullptr ? std::nullopt : trail->FetchedAt(device.id);
   const std::string fetched = at ? "fetched " + TimeOfDay(spec, *at) : "";
   for (const auto& port : spec.ports) {
     const bool is_there = port.cell.x == device.x && port.cell.y == device.y;
-    if (is_there && device.status == DeviceState::DELIVERED) {
-      return {fetched, "port " + PortLetter(port.id)};
-    }
+    if (is_there) return {fetched, "port " + PortLetter(port.id)};
   }
   return {fetched, ""};
 }
@@ -103,8 +101,7 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
     }
     panel.Item(name, status, color);
     if (!has_details) continue;
-    const auto [left, right] = device.status == DeviceState::DEPLOYED ? HealthAndValue(device)
-                                                                      : TripOf(spec, device, trail);
+    const auto [left, right] = done ? TripOf(spec, device, trail) : HealthAndValue(device);
     panel.Detail(left, right, layout.style->faint);
   }
 }

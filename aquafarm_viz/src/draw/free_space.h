@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Finds places at which labels cover neither symbols nor other labels; private to this package.
+/// Finds positions at which labels cover neither symbols nor other labels; private to this package.
 
 #include <algorithm>
 #include <opencv2/core.hpp>
@@ -39,7 +39,8 @@ class FreeSpace {
   /// Marks a rectangle as used. Its part outside the map is ignored.
   void Block(cv::Rect part);
 
-  /// Marks a line as used. A line that is longer than 500 widths has gaps.
+  /// Marks squares along a line as used, at most 501 of them. If the line is longer than 500
+  /// widths, parts between the squares therefore stay free.
   /// @param width  width of the line [pixels]
   void BlockLine(cv::Point2d from, cv::Point2d to, int width);
 
@@ -49,7 +50,8 @@ class FreeSpace {
   /// Returns whether a line crosses a label that was added with Add or Take and is not `own`.
   bool CrossesLabel(cv::Point2d from, cv::Point2d to, cv::Rect own) const;
 
-  /// Finds the free rectangle of the given size whose middle is nearest to a point.
+  /// Finds the free rectangle of the given size whose middle is nearest to a point. Tries middles
+  /// that are 3 pixels apart.
   /// @param near       the point [pixels]
   /// @param farthest   the distance of the middle from the point must be below this [pixels]
   /// @return nullopt if no rectangle within this distance is free

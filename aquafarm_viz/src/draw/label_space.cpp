@@ -27,7 +27,7 @@ void LabelSpace::BlockPaths(const aquafarm_msgs::FarmState& state, const Trail& 
   for (const auto& ship : state.ships) {
     const ShipTrail* way = ship.visible ? paths.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
-    for (const Moved& move : MovesOf(*way, ship.id, state.ships.size() > 1, layout)) {
+    for (const Moved& move : MovesOf(state, ship.id, *way, layout)) {
       spaces_[std::size_t(Cover::kNothing)].BlockLine(move.from, move.to,
                                                       layout.Px(11));  // as wide as an arrowhead
     }

@@ -36,10 +36,11 @@ bool IsBelowMap(const Layout& layout) { return !layout.key.empty(); }
 
 // Returns the height of the key of risks [pixels]. Rings with names have a row each in the panel,
 // and a common row below the map.
-int KeyPx(const RiskKey& key, const Layout& layout) {
-  if (key.empty()) return layout.Px(IsBelowMap(layout) ? kLowKeyScale : kKeyScale);
-  const bool has_rows = HasNames(key) && !IsBelowMap(layout);
-  return (has_rows ? static_cast<int>(key.size()) : 1) * layout.Px(kKeyRow);
+int KeyPx(const RiskKey* key, const Layout& layout) {
+  if (key == nullptr) return 0;
+  if (key->empty()) return layout.Px(IsBelowMap(layout) ? kLowKeyScale : kKeyScale);
+  const bool has_rows = HasNames(*key) && !IsBelowMap(layout);
+  return (has_rows ? static_cast<int>(key->size()) : 1) * layout.Px(kKeyRow);
 }
 
 // Returns the width of the north arrow and the scale bar below the map [pixels].
@@ -75,10 +76,6 @@ SignGrid MakeSignGrid(const std::vector<Sign>& signs, const Layout& layout) {
   int columns = std::max(2, (layout.key.width - ScalePx(layout)) / layout.Px(kSign));
   while (GridOf(signs, columns).rows() > kMaxRows) ++columns;
   return GridOf(signs, columns);
-}
-
-int SignsPx(const std::vector<Sign>& signs, const Layout& layout) {
-  return MakeSignGrid(signs, layout).rows() * layout.Px(kKeyRow);
 }
 
 // Draws a scale bar with a round length of at most `room_px` pixels.
@@ -196,7 +193,8 @@ namespace {
 void AddPathSigns(std::set<Sign>& signs, const FarmState& state, const Trail& trail) {
   for (const auto& ship : state.ships) {
     const ShipTrail* way = ship.visible ? trail.Find(ship.id) : nullptr;
-    for (std::size_t i = 1; way != nullptr && i < way->loaded.size(); ++i) {
+    if (way == nullptr) continue;
+    for (std::size_t i = DrawnFrom(state, *way) + 1; i < way->loaded.size(); ++i) {
       signs.insert(ship.own_device >= 0 ? Sign::kPath
                    : way->loaded[i]     ? Sign::kLoadedPath
                                         : Sign::kEmptyPath);
@@ -379,34 +377,22 @@ void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
 
 }  // namespace
 
-int LegendPx(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout) {
+int LegendPx(const RiskKey* key, const std::vector<Sign>& signs, const Layout& layout) {
   if (IsBelowMap(layout)) return 0;
-  return layout.Px(kFoot) + SignsPx(signs, layout) + KeyPx(key, layout) + layout.Px(kHeading);
+  return layout.Px(kFoot) + MakeSignGrid(signs, layout).rows() * layout.Px(kKeyRow) +
+         KeyPx(key, layout) + layout.Px(kHeading);
 }
 
 namespace {
 
-// Returns the part of the picture that contains the rows of both keys.
-cv::Rect RowsOf(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout) {
-  if (IsBelowMap(layout)) return layout.key;
-  const int height = SignsPx(signs, layout) + KeyPx(key, layout);
-  const cv::Rect& panel = layout.panel;
-  return {panel.x + layout.Px(10), panel.br().y - layout.Px(kFoot) - height,
-          panel.width - layout.Px(16), height};
-}
-
-}  // namespace
-
-void DrawSigns(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
+// Draws the key of signs.
+// @param rows  place of the signs
+void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs, const SignGrid& grid, cv::Rect rows,
                const FarmState& state, const Layout& layout, const Fonts& fonts) {
-  const cv::Rect rows = RowsOf(key, signs, layout);
-  const int left = rows.x;
-  const int top = rows.y + KeyPx(key, layout);
-  const SignGrid grid = MakeSignGrid(signs, layout);
-  const int width = (rows.width - (IsBelowMap(layout) ? ScalePx(layout) : 0)) / grid.columns;
+  const int width = rows.width / grid.columns;
   for (std::size_t i = 0; i < signs.size(); ++i) {
-    const int x = left + grid.cells[i].x * width;
-    const int y = top + grid.cells[i].y * layout.Px(kKeyRow) + layout.Px(kKeyRow / 2);
+    const int x = rows.x + grid.cells[i].x * width;
+    const int y = rows.y + grid.cells[i].y * layout.Px(kKeyRow) + layout.Px(kKeyRow / 2);
     const Sign sign = signs[i];
     DrawSign(image, sign, cv::Point2d(x + layout.Px(7), y), state, layout);
     fonts.small.Draw(
@@ -414,8 +400,6 @@ void DrawSigns(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& sign
         {x + layout.Px(20), y + fonts.small.cap_height() / 2}, Bgr(layout.style->words));
   }
 }
-
-namespace {
 
 // Draws a sample of each ring, and the risk next to it.
 void DrawRisks(cv::Mat& image, const RiskKey& rings, bool is_filled, cv::Rect row,
@@ -464,32 +448,47 @@ void DrawRiskScale(cv::Mat& image, cv::Rect row, const Layout& layout, const Fon
                    Bgr(layout.style->faint));
 }
 
-}  // namespace
-
-void DrawRiskKey(cv::Mat& image, const RiskKey& key, bool is_filled, const std::vector<Sign>& signs,
+// Draws the key of risks.
+// @param row  place of its first row
+void DrawRiskKey(cv::Mat& image, const RiskKey& key, bool is_filled, cv::Rect row,
                  const Layout& layout, const Fonts& fonts) {
-  cv::Rect row = RowsOf(key, signs, layout);
-  row.height = layout.Px(kKeyRow);
-  if (IsBelowMap(layout)) {
-    if (HasNames(key)) row.width /= static_cast<int>(key.size());
-    if (!HasNames(key)) row.width = std::min(row.width, layout.Px(kMaxRisks));
-  } else {
-    row.width -= layout.Px(4);
-    fonts.bold.Draw(
-        image, "KEY",
-        {row.x, row.y - layout.Px(kHeading) + (layout.Px(kHeading) + fonts.bold.cap_height()) / 2},
-        Bgr(layout.style->faint));
-  }
   if (key.empty()) return DrawRiskScale(image, row, layout, fonts);
   if (!HasNames(key)) return DrawRisks(image, key, is_filled, row, layout, fonts);
+  const cv::Point next =
+      IsBelowMap(layout) ? cv::Point(row.width / int(key.size()), 0) : cv::Point(0, row.height);
+  if (next.x > 0) row.width = next.x;
   for (const KeyRing& ring : key) {
     DrawNamedRing(image, ring, is_filled, row, layout, fonts);
-    if (IsBelowMap(layout)) {
-      row.x += row.width;
-    } else {
-      row.y += row.height;
-    }
+    row += next;
   }
+}
+
+}  // namespace
+
+void DrawKeys(cv::Mat& image, const RiskKey* key, bool is_filled, const std::vector<Sign>& signs,
+              const FarmState& state, const Layout& layout, const Fonts& fonts) {
+  const SignGrid grid = MakeSignGrid(signs, layout);
+  const int row_px = layout.Px(kKeyRow);
+  const int key_px = KeyPx(key, layout);
+  cv::Rect risks = layout.key;
+  cv::Rect below;  // the signs
+  if (IsBelowMap(layout)) {
+    if (key != nullptr && !HasNames(*key))
+      risks.width = std::min(risks.width, layout.Px(kMaxRisks));
+    below = {risks.x, risks.y + key_px, layout.key.width - ScalePx(layout), 0};
+  } else {
+    const cv::Rect& panel = layout.panel;
+    const int top = panel.br().y - layout.Px(kFoot) - grid.rows() * row_px - key_px;
+    risks = {panel.x + layout.Px(10), top, panel.width - layout.Px(20), 0};
+    below = {risks.x, top + key_px, panel.width - layout.Px(16), 0};
+    const int heading_px = layout.Px(kHeading);
+    fonts.bold.Draw(image, "KEY",
+                    {risks.x, top - heading_px + (heading_px + fonts.bold.cap_height()) / 2},
+                    Bgr(layout.style->faint));
+  }
+  risks.height = row_px;
+  if (key != nullptr) DrawRiskKey(image, *key, is_filled, risks, layout, fonts);
+  DrawSigns(image, signs, grid, below, state, layout, fonts);
 }
 
 }  // namespace aquafarm_viz

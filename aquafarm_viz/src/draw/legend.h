@@ -30,7 +30,8 @@ struct KeyRing {
   std::uint8_t kind{};     ///< kind of the disaster (DisasterState.kind)
 };
 
-/// The rings that the key of risks shows. An empty list: the key shows the colours of all risks.
+/// The rings that the key of risks shows. If the list is empty, the key shows the colours of all
+/// risks.
 using RiskKey = std::vector<KeyRing>;
 
 /// Returns the rings that have a radius now or later, of all drawn disasters, each once. If every
@@ -79,21 +80,19 @@ int SignSpan(Sign sign);
 bool HasLegend(const Layout& layout);
 
 /// Returns the height of the whole legend in the panel [pixels]; 0 if the legend is below the map.
-int LegendPx(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout);
+/// @param key  null: no key of risks
+int LegendPx(const RiskKey* key, const std::vector<Sign>& signs, const Layout& layout);
 
 /// Draws the constant part of the legend: north arrow and scale bar.
 void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                 const Fonts& fonts);
 
-/// Draws the key of signs below the key of risks.
-void DrawSigns(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
-               const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
-
-/// Draws the key of risks above the key of signs, in the panel with a heading. Rings with winds
-/// have a row each in the panel, others are in one row. An empty key: draws the colour scale of all
-/// risks.
+/// Draws the key of risks and, below it, the key of signs. In the panel they have a heading. Rings
+/// with winds have a row each in the panel, others are in one row. If the key of risks is empty,
+/// draws the colour scale of all risks instead.
+/// @param key  null: no key of risks
 /// @param is_filled  see DrawRiskSample
-void DrawRiskKey(cv::Mat& image, const RiskKey& key, bool is_filled, const std::vector<Sign>& signs,
-                 const Layout& layout, const Fonts& fonts);
+void DrawKeys(cv::Mat& image, const RiskKey* key, bool is_filled, const std::vector<Sign>& signs,
+              const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
 
 }  // namespace aquafarm_viz

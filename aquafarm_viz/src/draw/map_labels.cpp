@@ -303,9 +303,9 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
       const std::string risk = Number(double(disaster.risks[ring]), 0);
       const std::string wind = ring < winds.size() ? aquafarm::RingName(winds[ring]) + ", " : "";
       // The second text is for a ring with little space. Rings of several disasters have no plates,
-      // because many plates would cover the rings.
+      // because many plates would cover the rings. Different rings often have the same risk.
       const std::vector<std::string> texts =
-          are_several ? std::vector<std::string>{DisasterName(disaster.kind) + " " + risk, risk}
+          are_several ? std::vector<std::string>{DisasterName(disaster.kind) + " " + risk}
                       : std::vector<std::string>{wind + "risk " + risk, "risk " + risk};
       std::vector<cv::Size> sizes;
       for (const std::string& text : texts) {
@@ -352,29 +352,35 @@ void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
     const DisasterState& disaster = state.disasters[i];
     const SignPlace& sign = signs[i];
     if (!IsDrawn(disaster) || sign.is_inside) continue;
+    const std::string centre = CentreText(spec, disaster, courses[i]);
+    const std::string closest = ClosestText(spec, courses[i]);
+    std::vector<std::string> texts{centre};
+    if (!closest.empty()) texts.insert(texts.begin(), centre + ", closest " + closest);
     // A place next to the pointer is tried first, because labels of other pointers may be above and
     // below it. If the text does not fit there, shorter lines are tried.
     std::vector<std::string> lines;
     cv::Size size;
     cv::Point2d place_aside;
     std::optional<cv::Rect> place;
-    const auto break_lines = [&](double width) {
-      lines = BrokenAtCommas(CentreText(spec, disaster, courses[i]), width, layout, fonts);
+    const auto break_lines = [&](const std::string& text, double width) {
+      lines = BrokenAtCommas(text, width, layout, fonts);
       if (layout.panel.empty()) lines.push_back(MotionNow(spec, disaster));
       size = PlateSize(lines, layout, fonts);
       const double aside = size.width / 2.0 + 15.0 * layout.unit;
       place_aside = {sign.at.x < map.cols / 2.0 ? sign.at.x + aside : sign.at.x - aside, sign.at.y};
     };
-    for (const double width : {kMaxLine, 0.0}) {
-      if (place) break;
-      break_lines(width);
-      place = space.Take(Cover::kNothing, size, place_aside, 24.0 * layout.unit);
+    for (const std::string& text : texts) {
+      for (const double width : {kMaxLine, 0.0}) {
+        if (place) break;
+        break_lines(text, width);
+        place = space.Take(Cover::kNothing, size, place_aside, 24.0 * layout.unit);
+      }
     }
     for (const double reach : {0.8, 1.2}) {  // still with short lines
       if (!place) place = TakeInSight(space, Cover::kNothing, size, sign.at, reach * size.width);
     }
     if (!place) place = space.Take(Cover::kPaths, size, place_aside, 24.0 * layout.unit);
-    if (!place) break_lines(kMaxLine);
+    if (!place) break_lines(centre, kMaxLine);
     if (!place) place = space.Take(Cover::kPaths, size, place_aside, 24.0 * layout.unit);
     if (!place) place = TakeInSight(space, Cover::kPaths, size, sign.at, 0.8 * size.width);
     if (!place) place = space.Take(size, place_aside, 24.0 * layout.unit);

@@ -43,15 +43,15 @@ std::set<std::int32_t> LabelDanger(cv::Mat& map, const aquafarm_msgs::FarmSpec& 
 /// Labels each ring that crosses the map: on the line of the ring or, if there is no free space on
 /// the line, next to it. Labels do not cover land. The text is "risk -5", or "gale (34 kt), risk
 /// -5" if the wind of the ring is given and there is space for it. If there are several disasters,
-/// the text is only the risk, "-5".
+/// the text is the kind of the disaster and the risk, "typhoon -5".
 /// @param courses  one per disaster of the state
 void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmState& state,
                 const std::vector<Course>& courses, LabelSpace& space, const Layout& layout,
                 const Fonts& fonts);
 
-/// Labels the pointers to disasters outside the map with CentreText. If the picture has no panel,
-/// the labels also contain MotionNow. If there is no free space near a pointer, its label may be
-/// anywhere on the map.
+/// Labels the pointers to disasters outside the map with CentreText and, if there is space next to
+/// the pointer, ClosestText. If the picture has no panel, the labels also contain MotionNow. If
+/// there is no free space near a pointer, its label may be anywhere on the map.
 void LabelPointers(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                    const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
                    LabelSpace& space, const Layout& layout, const Fonts& fonts);

@@ -145,9 +145,9 @@ class Panel {
   int end_;
 };
 
-/// Draws the list of devices: each device with its symbol, and its danger or status, in one or two
-/// rows. If there is little space, draws two devices in each row, else the number of devices of
-/// each kind.
+/// Draws the list of devices. Up to 6 devices are drawn in one or two rows each, with their symbols
+/// and their danger or status. If there is space, 7 to 12 devices are drawn two in each row. In all
+/// other cases, draws the number of delivered devices and of all devices of each kind.
 /// @param trail  null: times are left out
 void ListDevices(Panel& panel, const aquafarm_msgs::FarmSpec& spec,
                  const aquafarm_msgs::FarmState& state, const Trail* trail, const Outlook& outlook,

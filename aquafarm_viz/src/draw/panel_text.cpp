@@ -48,15 +48,10 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
         disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago";
     const std::string motion = MotionNow(spec, disaster);
     std::string wind = over ? "" : WindText(courses[i].ahead.front());
-    const std::string both = grade + (known.empty() ? "" : ", " + known);
-    if (wind.empty() && panel.Fits(motion, known)) {
-      panel.Item(kind, grade, color);
+    const std::string name = kind + (wind.empty() ? "" : " " + wind);
+    if (panel.Fits(name, grade) && panel.Fits(motion, known)) {
+      panel.Item(name, grade, color);
       panel.Detail(motion, known, layout.style->words);
-      continue;
-    }
-    if (panel.Fits(kind, both) && panel.Fits(motion, "wind " + wind)) {
-      panel.Item(kind, both, color);
-      panel.Detail(motion, "wind " + wind, layout.style->words);
       continue;
     }
     panel.Item(kind, grade, color);
@@ -67,8 +62,22 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
   if (shown == 0) panel.Detail("none known", "", layout.style->faint);
 }
 
+// Returns the place of a ship: "port B", else its cell, "(9, 9)". If HasGraticule is true, the axes
+// of the map do not number the cells, and the second text is empty.
+std::string PlaceOf(const FarmSpec& spec, const ShipState& ship) {
+  for (const auto& port : spec.ports) {
+    if (port.cell.x == ship.x && port.cell.y == ship.y) return "port " + PortLetter(port.id);
+  }
+  if (HasGraticule(spec)) return "";
+  return "(" + std::to_string(ship.x) + ", " + std::to_string(ship.y) + ")";
+}
+
 void ListShips(Panel& panel, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
+  constexpr int kRowsOfPolicy = 8;   // kept free
+  constexpr int kRowsOfRegion = 12;  // kept free if there is a region
   panel.Heading("SHIPS", "");
+  const int rows_kept = HasRegion(spec, state) ? kRowsOfRegion : kRowsOfPolicy;
+  const bool has_details = panel.RowsLeft() >= 3 * int(state.ships.size()) + rows_kept;
   int rows = panel.RowsLeft();
   std::size_t left_out = 0;
   for (const auto& ship : state.ships) {
@@ -90,10 +99,7 @@ void ListShips(Panel& panel, const FarmSpec& spec, const FarmState& state, const
     }
     const std::string name = ship.own_device >= 0 ? "device " + std::to_string(ship.own_device)
                                                   : "ship " + std::to_string(ship.id);
-    // If HasGraticule is true, the axes of the map do not number the cells.
-    const std::string cell =
-        HasGraticule(spec) ? ""
-                           : "(" + std::to_string(ship.x) + ", " + std::to_string(ship.y) + ")";
+    const std::string cell = PlaceOf(spec, ship);
     const std::string fault = OutcomeName(ship.outcome);
     const std::string action = ActionName(ship.action) + (fault.empty() ? "" : ": " + fault);
     const std::string load = ship.own_device >= 0 ? ""
@@ -103,10 +109,14 @@ void ListShips(Panel& panel, const FarmSpec& spec, const FarmState& state, const
     if (panel.Fits(name + ": " + action, where)) {
       panel.Item(name + ": " + action, where, layout.style->faint);
       ++rows;
-      continue;
+    } else {
+      panel.Item(name, cell, layout.style->faint);
+      panel.Detail(action, load, layout.style->faint);
     }
-    panel.Item(name, cell, layout.style->faint);
-    panel.Detail(action, load, layout.style->faint);
+    if (!has_details) continue;
+    const bool has_energy = ship.episode_energy > 0.0;  // 0 also if the scenario has no energy
+    panel.Detail("sailed " + DistanceText(1000.0 * ship.episode_distance),
+                 has_energy ? Number(ship.episode_energy, 0) + " kWh" : "", layout.style->faint);
   }
   if (left_out > 0 && rows > 0) {
     panel.Detail("and " + std::to_string(left_out) + " more", "", layout.style->faint);
@@ -195,11 +205,12 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                const Overlays& overlays, const Values* values, const Forecasts& forecasts,
                const std::vector<CoastRing>& coast, const Layout& layout, const Fonts& fonts) {
   if (!HasLegend(layout)) return false;
-  const RiskKey key = MakeRiskKey(state, forecasts.courses);
-  const std::vector<Sign> signs = SignsOf(spec, state, overlays, forecasts.outlook, key, layout);
-  DrawSigns(image, key, signs, state, layout, fonts);
+  const bool has_risk = overlays.layers.risk;
+  const RiskKey risks = has_risk ? MakeRiskKey(state, forecasts.courses) : RiskKey();
+  const RiskKey* key = has_risk ? &risks : nullptr;
+  const std::vector<Sign> signs = SignsOf(spec, state, overlays, forecasts.outlook, risks, layout);
   const bool has_values = overlays.layers.values && values != nullptr;
-  DrawRiskKey(image, key, /*is_filled=*/!has_values, signs, layout, fonts);
+  DrawKeys(image, key, /*is_filled=*/!has_values, signs, state, layout, fonts);
   if (layout.panel.empty()) return false;
   Panel panel(image, LegendPx(key, signs, layout), layout, fonts);
   const Trail* trail = overlays.trail != nullptr ? overlays.trail : overlays.route;

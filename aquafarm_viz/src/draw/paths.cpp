@@ -19,11 +19,9 @@ constexpr double kBetweenHeads = 50.0;  // min distance between arrowheads [desi
 // with the colour of labels. Older parts have a colour that is closer to that of the sea. Paths of
 // several ships fade less, so that their colours stay different.
 // @param age  0: now, 1: the oldest part
-// @param is_faded  see IsFaded
-Rgb PathColor(const FarmState& state, std::int32_t ship, double age, bool is_faded,
-              const Style& style) {
+Rgb PathColor(const FarmState& state, std::int32_t ship, double age, const Style& style) {
   if (state.ships.size() == 1) return Mix(style.good, style.sea_south, 0.4 * age);
-  return Mix(Mix(style.label, ShipColor(ship), 0.6), style.sea_south, is_faded ? 0.2 : 0.25 * age);
+  return Mix(Mix(style.label, ShipColor(ship), 0.6), style.sea_south, 0.25 * age);
 }
 
 // Draws one move of a path: a line or, on a dashed path, a shorter line as one dash.
@@ -57,48 +55,42 @@ double AsideOf(std::int32_t ship, bool are_several, const Layout& layout) {
   return std::min(units * layout.unit, 0.3 * layout.view.cell_px());
 }
 
-// Returns the index of the cell in which the last trip of a ship begins: the last cell that it left
-// with nothing aboard and reached with a device aboard; 0 if there is none.
-std::size_t TripBegin(const ShipTrail& way) {
+}  // namespace
+
+std::size_t DrawnFrom(const FarmState& state, const ShipTrail& way) {
+  if (state.ships.size() < 2 || state.terminated || state.truncated) return 0;
   for (std::size_t i = way.places.size(); i-- > 2;) {
     if (way.loaded[i - 1] && !way.loaded[i]) return i - 1;
   }
   return 0;
 }
 
-}  // namespace
-
-std::vector<Moved> MovesOf(const ShipTrail& way, std::int32_t ship, bool are_several,
+std::vector<Moved> MovesOf(const FarmState& state, std::int32_t ship, const ShipTrail& way,
                            const Layout& layout) {
-  const double aside = AsideOf(ship, are_several, layout);
+  const double aside = AsideOf(ship, state.ships.size() > 1, layout);
   const std::size_t count = way.places.size();
-  const std::size_t trip = TripBegin(way);
+  const std::size_t first = DrawnFrom(state, way) + 1;
   std::vector<cv::Point2d> points;
   points.reserve(count);
   for (const auto& place : way.places) points.push_back(layout.view.ToPixel(place.x, place.y));
   std::vector<Moved> moves;
-  for (std::size_t i = 1; i < count; ++i) {
+  for (std::size_t i = first; i < count; ++i) {
     if (Trail::IsGap(way.places[i - 1], way.places[i])) continue;
     const cv::Point2d own = RightOf(points[i] - points[i - 1]);
-    const bool has_before = i > 1 && !Trail::IsGap(way.places[i - 2], way.places[i - 1]);
+    const bool has_before = i > first && !Trail::IsGap(way.places[i - 2], way.places[i - 1]);
     const bool has_after = i + 1 < count && !Trail::IsGap(way.places[i], way.places[i + 1]);
     const cv::Point2d before = has_before ? RightOf(points[i - 1] - points[i - 2]) : own;
     const cv::Point2d after = has_after ? RightOf(points[i + 1] - points[i]) : own;
     const cv::Point2d from = Turn(points[i - 1], own, before, aside);
     const double age = 1.0 - double(i) / double(count);
     const bool is_sharp = has_before && cv::norm(moves.back().to - from) > 0.5;
-    if (is_sharp) moves.push_back({moves.back().to, from, false, age, i <= trip});  // around it
-    moves.push_back({from, Turn(points[i], own, after, aside), !way.loaded[i], age, i <= trip});
+    if (is_sharp) moves.push_back({moves.back().to, from, false, age});  // around it
+    moves.push_back({from, Turn(points[i], own, after, aside), !way.loaded[i], age});
   }
   return moves;
 }
 
 namespace {
-
-// Returns whether a move belongs to a past trip of one of several ships, during an episode.
-bool IsFaded(const FarmState& state, const Moved& move) {
-  return move.is_past && state.ships.size() > 1 && !state.terminated && !state.truncated;
-}
 
 // Draws an arrowhead between two points of a path, in the direction of the motion.
 void DrawDirection(cv::Mat& map, cv::Point2d from, cv::Point2d to, const cv::Scalar& color,
@@ -115,7 +107,7 @@ void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, bool is_da
                     const FarmState& state, const Layout& layout) {
   const Style& style = *layout.style;
   const cv::Scalar color =
-      Bgr(state.ships.size() > 1 ? style.words : PathColor(state, 0, 0.3, false, style));
+      Bgr(state.ships.size() > 1 ? style.words : PathColor(state, 0, 0.3, style));
   const cv::Point2d middle = (from + to) * 0.5;
   DrawMoved(image, from, middle, is_dashed, color, layout);
   DrawMoved(image, middle, to, is_dashed, color, layout);
@@ -123,22 +115,20 @@ void DrawPathSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, bool is_da
 
 void DrawPaths(cv::Mat& map, const FarmState& state, const Trail& paths, const Layout& layout) {
   constexpr double kCasing = 1.2;  // added to the width of a path on each side [design units]
-  constexpr double kFaded = -0.3;  // the same for a faded path
   const cv::Scalar casing = Bgr(Mix(layout.style->halo, layout.style->sea_south, 0.35));
   for (const auto& ship : state.ships) {
     const ShipTrail* way = ship.visible ? paths.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
-    const std::vector<Moved> moves = MovesOf(*way, ship.id, state.ships.size() > 1, layout);
+    const std::vector<Moved> moves = MovesOf(state, ship.id, *way, layout);
     // A casing below the path makes it visible on the colours of values and on other paths.
     for (const Moved& move : moves) {
       DrawMoved(map, move.from, move.to, move.is_dashed, casing, layout, kCasing);
     }
     double since_head_px = 0.0;
     for (const Moved& move : moves) {
-      const bool is_faded = IsFaded(state, move);
-      const cv::Scalar color = Bgr(PathColor(state, ship.id, move.age, is_faded, *layout.style));
-      DrawMoved(map, move.from, move.to, move.is_dashed, color, layout, is_faded ? kFaded : 0.0);
-      if (!is_faded) since_head_px += cv::norm(move.to - move.from);
+      const cv::Scalar color = Bgr(PathColor(state, ship.id, move.age, *layout.style));
+      DrawMoved(map, move.from, move.to, move.is_dashed, color, layout);
+      since_head_px += cv::norm(move.to - move.from);
       if (since_head_px < kBetweenHeads * layout.unit) continue;
       DrawDirection(map, move.from, move.to, color, layout);
       since_head_px = 0.0;

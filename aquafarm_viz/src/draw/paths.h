@@ -21,21 +21,22 @@ struct Moved {
   cv::Point2d to;
   bool is_dashed{};  ///< the ship had nothing aboard
   double age{};      ///< in (0, 1): lowest for the newest move, highest for the oldest
-  bool is_past{};    ///< a later move of the ship begins another trip, after a drop-off
 };
 
-/// Returns the moves of a ship, the oldest first. They run to the right of the cells' centres, so
-/// that moves in opposite directions do not cover each other. At a sharp turn, an additional short
-/// move joins the ends of the two moves.
-/// @param are_several  true: the farm has several ships, whose paths have different distances from
-///                     the centres
-std::vector<Moved> MovesOf(const ShipTrail& way, std::int32_t ship, bool are_several,
-                           const Layout& layout);
+/// Returns the index of the cell of a trail at which the drawn part begins. It is 0 if there is
+/// only one ship, or if the episode has ended. Else it is the cell of the last drop-off of the ship
+/// (0 before its first drop-off), because all trips of all ships would hide each other.
+std::size_t DrawnFrom(const aquafarm_msgs::FarmState& state, const ShipTrail& way);
 
-/// Draws the trails or routes of the ships. Older parts have a colour that is closer to that of the
-/// sea. If there are several ships, their past trips are instead thinner, in one colour and without
-/// arrowheads, until the episode ends.
-/// Moves of a rescue ship with nothing aboard are dashed.
+/// Returns the moves of a ship that are drawn (DrawnFrom), the oldest first. They run to the right
+/// of the cells' centres, so that moves in opposite directions do not cover each other. At a sharp
+/// turn, an additional short move joins the ends of the two moves. If there are several ships,
+/// their paths have different distances from the centres.
+std::vector<Moved> MovesOf(const aquafarm_msgs::FarmState& state, std::int32_t ship,
+                           const ShipTrail& way, const Layout& layout);
+
+/// Draws the trails or routes of the ships (MovesOf). Older parts have a colour that is closer to
+/// that of the sea. Moves of a rescue ship with nothing aboard are dashed.
 void DrawPaths(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& paths,
                const Layout& layout);
 

@@ -362,18 +362,59 @@ void DrawInset(Inset inset, const FarmSpec& spec, const FarmState& state,
   DrawScale(inset, spec, space, layout, fonts);
 }
 
+// Draws the inset in a part of the image, with a frame.
+void DrawFramed(cv::Mat& image, cv::Rect place, double farthest_m, const FarmSpec& spec,
+                const FarmState& state, const std::vector<Course>& courses,
+                const std::vector<CoastRing>& coast, const Layout& layout, const Fonts& fonts) {
+  place &= cv::Rect({0, 0}, image.size());
+  const cv::Rect2d part = ShownPart(spec, state, courses, farthest_m);
+  DrawInset(MakeInset(image(place), part), spec, state, courses, coast, layout, fonts);
+  cv::rectangle(image, place, Bgr(layout.style->rule), 1);
+}
+
+// Returns the distance of the farthest disaster outside the farm from the middle of the farm [m]; 0
+// if there is none.
+double FarthestOutside(const FarmSpec& spec, const FarmState& state) {
+  double farthest_m = 0.0;
+  for (const auto& disaster : state.disasters) {
+    if (!IsOutside(spec, disaster)) continue;
+    farthest_m = std::max(farthest_m, MetresFromFarm(spec, disaster.x, disaster.y));
+  }
+  return farthest_m;
+}
+
 }  // namespace
+
+bool HasRegion(const FarmSpec& spec, const FarmState& state) {
+  return FarthestOutside(spec, state) > 0.0;
+}
+
+void DrawRegionBeside(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
+                      const std::vector<Course>& courses, const std::vector<CoastRing>& coast,
+                      const Layout& layout, const Fonts& fonts) {
+  const double farthest_m = FarthestOutside(spec, state);
+  if (!(farthest_m > 0.0)) return;
+  const int width = image.cols * 9 / 20;
+  DrawFramed(image, {0, 0, width, image.rows}, farthest_m, spec, state, courses, coast, layout,
+             fonts);
+  const RegionWords words = RegionText(spec, state, courses);
+  const cv::Rect room(width + layout.Px(8), 0, image.cols - width - layout.Px(12), image.rows);
+  int y = layout.Px(8) + fonts.small.cap_height();
+  fonts.bold.Draw(image, fonts.bold.Fit(words.heading, room.width), {room.x, y},
+                  Bgr(layout.style->words));
+  for (const std::string& line : words.lines) {
+    y += layout.Px(17);
+    fonts.small.Draw(image, fonts.small.Fit(line, room.width), {room.x, y},
+                     Bgr(layout.style->words));
+  }
+}
 
 void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmState& state,
                 const std::vector<Course>& courses, const std::vector<CoastRing>& coast,
                 const Layout& layout, const Fonts& fonts) {
   const int row_px = layout.Px(15);
   if (room.height < 3 * row_px) return;
-  double farthest_m = 0.0;
-  for (const auto& disaster : state.disasters) {
-    if (!IsOutside(spec, disaster)) continue;
-    farthest_m = std::max(farthest_m, MetresFromFarm(spec, disaster.x, disaster.y));
-  }
+  const double farthest_m = FarthestOutside(spec, state);
   const RegionWords words = RegionText(spec, state, courses);
   const bool has_course = words.heading != RegionWords().heading;
   // If there is no space for both the lines and the inset, the lines are left out, unless they
@@ -393,11 +434,9 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
   int y = room.y + row_px;
   if (is_drawn) {
     // The inset is as wide as `room`, so that labels have space next to the course.
-    const cv::Rect place = cv::Rect(room.x, y, room.width, side) & cv::Rect({0, 0}, image.size());
-    const cv::Rect2d part = ShownPart(spec, state, courses, farthest_m);
-    DrawInset(MakeInset(image(place), part), spec, state, courses, coast, layout, fonts);
-    cv::rectangle(image, place, Bgr(layout.style->rule), 1);
-    y += place.height;
+    DrawFramed(image, {room.x, y, room.width, side}, farthest_m, spec, state, courses, coast,
+               layout, fonts);
+    y += side;
   }
   if (!has_lines) return;
   y += layout.Px(3) + fonts.small.cap_height();

@@ -54,4 +54,14 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const aquafarm_msgs::FarmSpec& sp
                 const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
                 const std::vector<CoastRing>& coast, const Layout& layout, const Fonts& fonts);
 
+/// Returns whether a disaster has its centre outside the farm (IsDrawn), so that an inset is drawn.
+bool HasRegion(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state);
+
+/// Draws the inset in the left part of an image that is wide and low, and the heading and the lines
+/// of RegionText in the right part. Draws nothing if HasRegion is false.
+void DrawRegionBeside(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
+                      const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
+                      const std::vector<CoastRing>& coast, const Layout& layout,
+                      const Fonts& fonts);
+
 }  // namespace aquafarm_viz

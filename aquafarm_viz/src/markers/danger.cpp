@@ -252,7 +252,7 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     AddCircle(array, maker, device, WorstRisk(one), is_first);
     circled.insert(one.id);
     if (labelled.size() == kMaxLabels) continue;
-    const std::string text = DeviceLabel(one.id) + ": " + NowAndWorstText(spec, one);
+    const std::string text = DeviceLabel(one.id) + ": " + FirstAndWorstText(spec, one);
     const auto plate = labels.Place(text, device.x, device.y, /*must_show=*/labelled.empty());
     if (!plate) continue;
     AddOnPlate(

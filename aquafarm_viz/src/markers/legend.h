@@ -27,8 +27,9 @@ void AddSignLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::
                    const MapSigns& signs);
 
 /// Adds a third line, in the namespaces `value_legend` and `value_legend_text`: the range and the
-/// colours of values, and the symbols of those best moves that occur. Deletes the markers of the
-/// others.
+/// colours of values, the arrow of a best move, and the frames of pickups and drop-offs. Deletes
+/// the markers of the values if all values are equal, and those of a frame whose action does not
+/// occur.
 void AddValueLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec,
                     const Values& values);
 

@@ -41,7 +41,7 @@ enum Layer {
 /// Distance of a ship from the port in its cell along each axis, so that both are visible, in units
 /// of Maker::thing_m().
 constexpr double kShipAside = 0.8;
-/// Line of text above the farm that contains the clock, see Maker::LineAbove.
+/// Number of the line above the farm in which the clock is written, see Maker::LineAbove.
 constexpr double kLineOfClock = 2.0;
 
 /// Returns a point of a marker [m].

@@ -129,11 +129,18 @@ void CurveWidget::paintEvent(QPaintEvent*) {
            (scale.Height(value) - lowest) / (scale.Height(returns.high) - lowest) * room.height();
   };
   const int decimals = returns.high - returns.low < 4.0 ? 2 : 0;
+  std::vector<double> used;  // heights of the ticks with a number
   for (const double tick : scale.Ticks(std::max(3, int(room.height()) / (2 * row)))) {
+    const double y = y_of(tick);
     painter.setPen(kGrid);
-    painter.drawLine(QPointF(room.left(), y_of(tick)), QPointF(room.right(), y_of(tick)));
+    painter.drawLine(QPointF(room.left(), y), QPointF(room.right(), y));
+    const bool is_crowded = std::any_of(used.begin(), used.end(), [y, row](double other) {
+      return std::abs(other - y) < 1.2 * row;
+    });
+    if (is_crowded) continue;
+    used.push_back(y);
     painter.setPen(kReturn);
-    DrawTick(painter, {room.left(), y_of(tick)}, Text(Number(tick, decimals)), -1);
+    DrawTick(painter, {room.left(), y}, Text(Number(tick, decimals)), -1);
   }
   painter.setPen(kSuccess);
   for (const double share : {0.0, 0.5, 1.0}) {

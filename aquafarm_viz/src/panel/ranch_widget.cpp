@@ -105,7 +105,10 @@ RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget*
   AddHelm(all);
   AddDisaster(all);
   message_ = AddLine(all);
+  all->addWidget(region_ = new RegionWidget(), 3);
+  region_->setObjectName("region");
   all->addStretch();
+  ShowMessage("");
   Refresh();
 }
 
@@ -135,11 +138,12 @@ void RanchWidget::AddTime(QBoxLayout* layout) {
   AddButton(row, "resume", [this] { buttons_.pause(false, 0); });
   AddButton(row, "step", [this] { buttons_.pause(true, 1); });
   auto* pace = new QComboBox();
-  pace->addItem("as is", "");
+  pace->addItem("keep", "");
   pace->addItem("paced", "paced");
   pace->addItem("lockstep", "lockstep");
   pace->setToolTip(
-      "paced: a step at fixed intervals. lockstep: a step when every ship has a command");
+      "keep: changes only the rate. paced: a step at fixed intervals. lockstep: a step when "
+      "every ship has a command");
   auto* rate = new QDoubleSpinBox();
   rate->setObjectName("rate");
   rate->setRange(0.1, 1000.0);
@@ -240,6 +244,7 @@ void RanchWidget::Refresh() {
   disasters_->setVisible(!has_curve && disasters_->rowCount() > 0);
   curve_->Show(model_.curve());
   curve_->setVisible(has_curve);
+  region_->Show(model_.shown(), !has_curve && model_.plan() == nullptr);  // there is space
   RefreshPlan();
 }
 
@@ -272,6 +277,9 @@ void RanchWidget::RefreshPlan() {
   Fill(plan_devices_, PlanDevices(*plan), 4);
 }
 
-void RanchWidget::ShowMessage(const std::string& line) { message_->setText(Text(line)); }
+void RanchWidget::ShowMessage(const std::string& line) {
+  message_->setText(Text(line));
+  message_->setVisible(!line.empty());
+}
 
 }  // namespace aquafarm_viz

@@ -15,6 +15,7 @@
 
 #include "aquafarm_viz/scene/ranch_model.h"
 #include "curve_widget.h"
+#include "region_widget.h"
 
 class QBoxLayout;
 
@@ -68,6 +69,7 @@ class RanchWidget : public QWidget {
   QTableWidget* plan_ships_;
   QTableWidget* plan_devices_;
   CurveWidget* curve_;
+  RegionWidget* region_;
   QSpinBox* ship_{};
   std::map<std::uint8_t, QIcon> icons_;  // by kind of device
 };

@@ -42,8 +42,8 @@ std::string TimeText(std::time_t utc, const char* format);
 std::string LocalTimeText(const aquafarm_msgs::FarmSpec& spec, std::time_t utc, const char* format);
 
 /// Returns the compass point and the speed of a motion, such as "NW at 18 km/h". If the steps of
-/// the farm have no duration, the text is such as "NW, 0.25 cells a step". At speed 0 it is "stands
-/// still".
+/// the farm have no duration, the text has the form "NW, 0.25 cells a step". At speed 0 it is
+/// "stands still".
 std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, double cells_a_step);
 
 /// Returns the max sustained wind of a disaster, such as "38 m/s"; empty if it is not given.
@@ -60,7 +60,7 @@ std::string NameNow(const aquafarm_msgs::DisasterState& disaster, const Course& 
 std::string StrengthText(const TrackPoint& point);
 
 /// Returns a world time in hours and minutes, such as "13:58". This is the local time
-/// (LocalTimeText) or, if the scenario has no start time, the time since its start.
+/// (LocalTimeText) or, if the scenario has no start time, the time since the start of the episode.
 /// @param at_s world time [s]
 std::string TimeOfDay(const aquafarm_msgs::FarmSpec& spec, std::int64_t at_s);
 

@@ -351,16 +351,10 @@ DangerParts WorstPart(const FarmSpec& spec, const DeviceOutlook& device, bool is
                   : PartsOf(spec, device, is_brief);
 }
 
-// Returns the ring that covers the device now and the worst ring to come; WorstPart if one of them
-// is missing or has no wind, or if both winds have the same name.
-DangerParts NowAndWorst(const FarmSpec& spec, const DeviceOutlook& device, bool is_brief) {
-  const bool is_named =
-      device.risk_now < 0.0 && device.wind_now_kt > 0 && !device.arrivals.empty() &&
-      device.arrivals.back().wind_kt > 0 &&
-      std::string(NameOf(device.wind_now_kt)) != NameOf(device.arrivals.back().wind_kt);
-  if (!is_named) return WorstPart(spec, device, is_brief);
-  return {{WindIn(device.wind_now_kt, is_brief) + " now", device.risk_now},
-          NamedPart(spec, device.arrivals.back(), is_brief)};
+// Returns the first and the last of PartsOf.
+DangerParts FirstAndWorst(const FarmSpec& spec, const DeviceOutlook& device, bool is_brief) {
+  const DangerParts parts = PartsOf(spec, device, is_brief);
+  return parts.size() > 2 ? DangerParts{parts.front(), parts.back()} : parts;
 }
 
 }  // namespace
@@ -398,20 +392,16 @@ std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
   return Joined(PartsOf(spec, device, /*is_brief=*/false));
 }
 
-std::string WorstText(const FarmSpec& spec, const DeviceOutlook& device) {
-  return Joined(WorstPart(spec, device, /*is_brief=*/false));
-}
-
-std::string NowAndWorstText(const FarmSpec& spec, const DeviceOutlook& device) {
-  const DangerParts parts = NowAndWorst(spec, device, /*is_brief=*/true);
-  return Joined(parts.size() > 1 ? parts : WorstPart(spec, device, /*is_brief=*/false));
+std::string FirstAndWorstText(const FarmSpec& spec, const DeviceOutlook& device) {
+  const DangerParts parts = FirstAndWorst(spec, device, /*is_brief=*/false);
+  return Joined(parts.size() > 1 ? FirstAndWorst(spec, device, /*is_brief=*/true) : parts);
 }
 
 std::pair<std::string, DangerParts> NameAndDanger(
     const FarmSpec& spec, const std::string& kind, const DeviceOutlook& device,
     const std::function<bool(const std::string& name, const std::string& danger)>& fits) {
   const std::string label = DeviceLabel(device.id);
-  for (const auto& form : {PartsOf, NowAndWorst, WorstPart}) {
+  for (const auto& form : {PartsOf, FirstAndWorst, WorstPart}) {
     // The kind can be left out, because the symbol next to the name shows it.
     for (const std::string& name : {label + " " + kind, label}) {
       for (const bool is_brief : {false, true}) {
@@ -420,8 +410,11 @@ std::pair<std::string, DangerParts> NameAndDanger(
       }
     }
   }
-  const DangerParts risks = RiskParts(spec, device, " in ");
-  return {label, fits(label, Joined(risks)) ? risks : RiskParts(spec, device, ", ")};
+  for (const char* between : {" in ", ", "}) {
+    const DangerParts risks = RiskParts(spec, device, between);
+    if (fits(label, Joined(risks))) return {label, risks};
+  }
+  return {label, {RiskParts(spec, device, " in ").front()}};
 }
 
 std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
@@ -441,7 +434,9 @@ std::string ClosestText(const FarmSpec& spec, const Course& course) {
   const double now = course.ahead.front().step;
   const TrackPoint nearest = ClosestApproach(spec, course.ahead, now);
   if (!(nearest.step > now)) return "";
-  return WhereText(spec, nearest.x, nearest.y) + " in " + AheadText(spec, nearest.step - now);
+  return WhereText(spec, nearest.x, nearest.y) +
+         (nearest.step > course.known_until ? " in about " : " in ") +
+         AheadText(spec, nearest.step - now);
 }
 
 std::string ApproachText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,

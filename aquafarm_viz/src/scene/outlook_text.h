@@ -85,19 +85,13 @@ std::string Joined(const DangerParts& parts);
 /// Returns all PartsOf as one text: "gale now, storm in 6.5 h, hurricane force in 9.0 h".
 std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
 
-/// Returns the worst ring to come: "hurricane force in 9.0 h". Returns DangerText if no worse ring
-/// comes, or if the wind of the worst ring is not given.
-std::string WorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
-
-/// Returns the ring that covers the device now and the worst ring to come: "gale now, storm in
-/// 9.0 h". Instead of "hurricane force" it contains the wind, "gale now, 64 kt in 9.0 h". Returns
-/// WorstText if one of the two rings is missing, if the wind of one is not given, or if both winds
-/// have the same name.
-std::string NowAndWorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
+/// Returns the first part of PartsOf and the worst ring to come: "gale now, storm in 9.0 h". With
+/// two parts, the wind replaces "hurricane force": "gale now, 64 kt in 9.0 h".
+std::string FirstAndWorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
 
 /// Returns a row about a device: its label, with its kind if there is space, and its danger. Tries
 /// forms of the danger from the longest to the shortest until `fits` accepts both texts. If `fits`
-/// accepts none, returns the label and the shortest form.
+/// accepts none, returns the label and the first risk.
 /// @param kind  DeviceName of the device
 std::pair<std::string, DangerParts> NameAndDanger(
     const aquafarm_msgs::FarmSpec& spec, const std::string& kind, const DeviceOutlook& device,
@@ -114,11 +108,12 @@ std::string MotionNow(const aquafarm_msgs::FarmSpec& spec,
                       const aquafarm_msgs::DisasterState& disaster);
 
 /// Returns the closest approach of a disaster: "29 km S in 11 h". Returns "" if its course is
-/// extrapolated or does not come nearer.
+/// extrapolated or does not come nearer. The text is "29 km S in about 11 h" if the course is known
+/// only until an earlier step.
 std::string ClosestText(const aquafarm_msgs::FarmSpec& spec, const Course& course);
 
-/// Returns the present motion of a disaster, "NW at 13 km/h". If its course is not extrapolated and
-/// comes nearer, the closest approach follows: "NW at 13 km/h, closest 29 km S in 11 h".
+/// Returns MotionNow of a disaster, "NW at 13 km/h now". If its course is not extrapolated and
+/// comes nearer, the closest approach follows: "NW at 13 km/h now, closest 29 km S in 11 h".
 std::string ApproachText(const aquafarm_msgs::FarmSpec& spec,
                          const aquafarm_msgs::DisasterState& disaster, const Course& course);
 

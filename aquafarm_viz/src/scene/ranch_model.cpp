@@ -166,7 +166,7 @@ std::vector<RanchModel::Row> RanchModel::Devices() const {
   std::map<std::int32_t, std::string> dangers;
   for (const DeviceOutlook& one :
        ComputeOutlook(spec, state, courses_->Read(spec, state)).devices) {
-    dangers[one.id] = NowAndWorstText(spec, one);
+    dangers[one.id] = FirstAndWorstText(spec, one);
   }
   for (const auto& device : state.devices) {
     const std::string& danger = dangers[device.id];

@@ -62,9 +62,9 @@ StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m
 /// rings, or with more than four risks, the risks are -5, -10, -15 and -20.
 std::vector<std::pair<double, std::string>> NamedRisks(const aquafarm_msgs::FarmSpec& spec);
 
-/// Returns the point of a track at a step. Between two points, position, rings and wind are
-/// interpolated, as in the farm. Returns the first point if `step` is before it, and the last point
-/// if `step` is after it; the result then has the step of that point.
+/// Returns the point of a track at a step. Between two points, position and rings are interpolated
+/// as in the farm, and the wind linearly. Returns the first point if `step` is before it, and the
+/// last point if `step` is after it; the result then has the step of that point.
 /// @param track  at least one point
 TrackPoint TrackAt(const Track& track, double step);
 
@@ -77,14 +77,18 @@ TrackPoint ClosestApproach(const aquafarm_msgs::FarmSpec& spec, const Track& tra
 /// The past and the expected motion of a disaster.
 struct Course {
   enum class Kind {
-    kRecorded,     ///< the track of the scenario
-    kPublished,    ///< the newest forecast of an authority, after its end continued as by the farm
+    kRecorded,  ///< the track of the scenario
+    /// The newest forecast of an authority. After its last point, the course continues as in the
+    /// farm (aquafarm/farm/forecast.h).
+    kPublished,
     kExtrapolated  ///< present speed and heading; the rings grow by radius_growth, never shrink
   };
   Kind kind{Kind::kExtrapolated};
-  Track ahead;           ///< from the present step on; at least two points
-  Track past;            ///< up to the present step; may be empty
-  double known_until{};  ///< step until which the course is recorded, published or extrapolated
+  Track ahead;  ///< from the present step on; at least two points
+  Track past;   ///< up to the present step; may be empty
+  /// Last step of the course that is known: that of the last point of a published forecast, after
+  /// which `ahead` may continue; for other kinds, that of the last point of `ahead`.
+  double known_until{};
   std::vector<double> errors;  ///< mean forecast error at each point of `ahead` [cells], or empty
   std::vector<std::int32_t> ring_winds_kt{};  ///< min wind within each ring [kn]; empty: not given
   /// Name of the storm; empty if it has none, if the course is extrapolated, or if the disaster has
@@ -99,7 +103,7 @@ struct Course {
 Course CourseOf(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                 std::size_t index, const StormTracks& tracks);
 
-/// Returns the courses of the disasters of a state. Caches the tracks of the last scenario.
+/// Computes the courses of the disasters of a state. Caches the tracks of the last scenario.
 class CourseReader {
  public:
   /// @return one course per disaster

@@ -169,7 +169,7 @@ visualization_msgs::MarkerArray MoveMarkers(const Values& values,
                                             const aquafarm_msgs::FarmSpec& spec) {
   constexpr double kMaxAcross = 13.0;
   const int every = std::max(1, int(std::ceil(std::max(spec.width, spec.height) / kMaxAcross)));
-  const double size = every == 1 ? 1.0 : 0.75 * every;
+  const double size = every == 1 ? 1.0 : 0.65 * every;
   Marker arrows = MakeMarker("moves", 0, Marker::TRIANGLE_LIST, kPaper);
   arrows.scale.x = arrows.scale.y = arrows.scale.z = 1.0;
   Marker pickups = MakeMarker("moves", 1, Marker::TRIANGLE_LIST, kPickupColor);

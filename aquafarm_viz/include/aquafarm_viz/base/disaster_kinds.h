@@ -15,9 +15,10 @@ std::size_t DisasterKindCount();
 /// Returns the name of a kind, such as "red tide"; "disaster" for an unknown kind.
 std::string DisasterName(std::uint8_t kind);
 
-/// Returns the distance of a pixel to the nearest line or dot of a kind's pattern [pixels]; for
-/// the kind wave, the distance along y; 0 within 0.8 pixels of the centre of a dot. The pattern
-/// repeats after two periods on both axes. An unknown kind has the pattern of the last kind.
+/// Returns the distance of a pixel to the nearest line of a kind's pattern [pixels], or to the
+/// nearest dot in the nearest row of dots. For the kind wave, it is the distance along y. It is 0
+/// within 0.8 pixels of the centre of a dot. The pattern repeats after two periods on both axes. An
+/// unknown kind has the pattern of the last kind.
 /// @param period distance between lines along an axis [pixels]
 float DistanceToPattern(std::uint8_t kind, int x, int y, int period);
 

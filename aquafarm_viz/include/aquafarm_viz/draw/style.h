@@ -18,7 +18,8 @@ struct Style {
   Rgb rule;         ///< thin lines between the parts of the picture
   Rgb words;        ///< text
   Rgb faint;        ///< secondary text
-  Rgb good;         ///< reward above 0, return of 0 or more, safe device, path of the only ship
+  Rgb good;         ///< reward above 0, return of 0 or more, delivered device, path of the only
+                    ///< ship, end of an episode in which every device was delivered
   Rgb bad;          ///< a reward or a return below 0
   Rgb sea_north;    ///< water away from the coast, at the upper end of the map
   Rgb sea_south;    ///< water away from the coast, at the lower end of the map

@@ -13,6 +13,8 @@
 ///     | sign_legend,     | 0, 1, …  | meanings of the signs on the map; both namespaces      |
 ///     | sign_legend_text |          | share one sequence of ids                              |
 ///
+/// The clock is the marker `status` of StateMarkers (markers.h), a line of text north of the farm.
+///
 /// A label lies on a dark plate, which has the namespace `danger_label_plate`. If a label is not
 /// next to its device, a line with the namespace `danger_label_leader` connects label and device,
 /// unless the line would cross another label.

@@ -81,7 +81,8 @@ class VizNode {
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_topic_;
-  // Subscribed only while values are drawn, because they are computed only for a subscriber.
+  // `values_topic_` is subscribed only while values are drawn, because they are computed only for a
+  // subscriber.
   ros::Subscriber values_topic_;
   ros::Subscriber choice_topic_;
   ros::WallTimer timer_;

@@ -17,9 +17,9 @@ using PlanRow = std::vector<std::string>;
 /// of plan_node for this time [s]. The heartbeat has a period of 1 s.
 inline constexpr double kPlanSilence_s = 5.0;
 
-/// Returns the result of the plan, followed by those of these texts that apply: the time after
-/// which no ship should leave, or until which ships may leave; the warnings of severity "stop"; why
-/// the plan is outdated; for how long plan_node has been silent (kPlanSilence_s).
+/// Returns the result of the plan. Further texts follow if they apply: the time after which no ship
+/// should leave, or until which ships may leave; the warnings of severity "stop"; why the plan is
+/// outdated; for how long plan_node has been silent (kPlanSilence_s).
 /// @param silent_s time since the last plan or heartbeat of plan_node [s]
 std::string PlanHeadline(const aquafarm_msgs::RescuePlan& plan, double silent_s);
 
@@ -36,9 +36,9 @@ const PlanRow& PlanDeviceColumns();
 std::vector<PlanRow> PlanShips(const aquafarm_msgs::RescuePlan& plan, ros::Time now);
 
 /// Returns a row for each device. After its name follows the probability that a ship brings it to a
-/// port, or "stays", "left behind" or "unknown". Then follow three latest departures of a ship that
-/// fetches this device before any other: for a probability of at least 95, 80 and 50 % that the
-/// device reaches a port.
+/// port, or "stays", "left behind" or "unknown". Then follow three deadlines: the latest departure
+/// with which a ship that fetches this device before any other brings it to a port with a
+/// probability of at least 95, 80 and 50 %.
 std::vector<PlanRow> PlanDevices(const aquafarm_msgs::RescuePlan& plan);
 
 }  // namespace aquafarm_viz

@@ -48,7 +48,7 @@ struct Values {
 Values ReadValues(const sensor_msgs::PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec);
 
 /// Returns the cells whose greedy action is drawn: one of `every` cells along each axis, so that
-/// the map stays readable. If at most 12 cells between them have the action pickup or drop-off,
+/// the map stays readable. If at most 12 of the other cells have the action pickup or drop-off,
 /// these cells are added.
 std::vector<cv::Point> ShownActions(const Values& values, int every);
 

@@ -29,7 +29,8 @@ namespace aquafarm::agents {
 inline std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // set in a signal handler
 
-/// Time of the first SIGINT [0] and SIGTERM [1] on the monotonic clock [ms]; 0 before.
+/// Times of the first SIGINT (element 0) and of the first SIGTERM (element 1) on the monotonic
+/// clock [ms]; 0 until the signal arrives.
 inline std::array<std::atomic<std::int64_t>, 2> first_signal_ms{};
 static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 

@@ -55,7 +55,7 @@ class Batch {
   void Start(const pybind11::array& mask, const pybind11::sequence& seeds,
              const pybind11::sequence& episodes, pybind11::handle stride);
   /// Takes one step in every farm. A farm whose episode has ended starts its next episode instead.
-  /// @param actions uint8 [N, S], row-major, each in [0, kActionCount]
+  /// @param actions uint8 [N, S], row-major, each in [0, kActionCount] (kHold allowed)
   /// @throws InputError if the actions are wrong, if a layout cannot be drawn, or before the first
   ///   reset
   void Step(const pybind11::array& actions);

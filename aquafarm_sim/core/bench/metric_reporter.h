@@ -27,7 +27,8 @@ class MetricReporter : public benchmark::ConsoleReporter {
       }
     }
   }
-  /// Returns the items per second of the benchmark `NAME` or `NAME/ARGUMENT`; 0 if it did not run.
+  /// Returns the items per second of the benchmark `NAME` or `NAME/ARGUMENT`; 0 if it had fewer
+  /// than two repetitions.
   double median(const std::string& name) const {
     const auto found = median_.find(name);
     return found == median_.end() ? 0.0 : found->second;

@@ -6,8 +6,8 @@
 /// compilers and on other processors, BLAS computes the products. The environment variable
 /// AQUAFARM_PRODUCTS (avx512, avx2 or blas) overrides this choice. All functions of this file
 /// except Transpose throw InputError if the variable has another value, or one that the processor
-/// does not support. An empty variable is ignored. Code from other compilers or for other
-/// processors ignores the variable. docs/decisions/fused_updates.md has measurements. If
+/// does not support. An empty variable is ignored. Code that another compiler made, or that is not
+/// for x86-64, ignores the variable. docs/decisions/fused_updates.md has measurements. If
 /// AQUAFARM_GEMM_BY_EIGEN is defined, Eigen replaces BLAS, and the variable accepts eigen instead
 /// of blas. A Python package that must not depend on BLAS is built this way.
 ///

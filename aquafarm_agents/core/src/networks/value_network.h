@@ -41,8 +41,8 @@ class RecurrentValueNetwork {
   /// Does the same as Forward, but computes only the state.
   virtual void WarmUp(std::size_t steps, std::size_t rows, const float* features, float* state) = 0;
   /// Replaces the gradient of the parameters.
-  /// @param count the loss depends on the first `count` (step, row) pairs of the last Forward. A
-  ///   multiple of `rows`, unless Forward had a single step
+  /// @param count the loss depends on the first `count` (step, row) pairs of the last Forward.
+  ///   `count` must be a multiple of `rows`, unless Forward had a single step
   /// @param slopes [count, kActionCount] d loss / d Q
   virtual void Backward(std::size_t count, const float* slopes) = 0;
 };

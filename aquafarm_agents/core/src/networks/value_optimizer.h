@@ -20,7 +20,7 @@
 namespace aquafarm::agents {
 
 /// Returns the parameters with which agents act, from the checkpoint of a learner or of a policy.
-/// @throws InputError if the section is missing
+/// @throws InputError if the checkpoint contains no such parameters
 std::vector<float> ActingWeights(const Checkpoint& checkpoint);
 
 /// Origin of a minibatch in the random stream from which it was drawn. It makes a minibatch that

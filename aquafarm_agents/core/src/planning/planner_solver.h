@@ -16,16 +16,16 @@
 namespace aquafarm::agents {
 
 /// Status of a device in a plan: at its site, aboard as paid or unpaid (planner.h), or delivered.
-/// Positions of a set that the task does not use hold kGone.
+/// If the task has fewer than the max number of devices, the unused positions of a set hold kGone.
 enum PickupPlan : std::uint8_t { kWaiting, kPaid, kUnpaid, kGone };
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 // Plans whose returns differ by at most this much count as equal, because rounding may cause such a
 // difference.
 constexpr double kTolerance = 1e-6;
-// A narrow search finds a first plan, then an exact search follows. The exact search prunes states
-// by the return of the first plan minus this margin. It thus finds the same plan again if there is
-// no better one.
+// A narrow search finds a first plan, then an exact search follows. The exact search prunes a state
+// if its upper bound does not exceed the return of the first plan minus this margin. It thus finds
+// the same plan again if there is no better one.
 constexpr double kSlack = 1e-3;
 // Max number of states that the narrow search keeps in each step.
 constexpr std::size_t kBeam = 64;
@@ -63,7 +63,7 @@ class PlannerSolver {
   // Upper bounds of the rewards that a set can still earn with pickups and drop-offs. The rewards
   // of moves and waiting are not included.
   struct Gains {
-    double value{};        // present value of the waiting devices
+    double value{};        // value of the waiting devices, multiplied by their health
     double actions{};      // rewards of pickups and drop-offs if each device is delivered alone
     double if_not{};       // for a plan that lasts until the end of the episode: positive rewards
                            // of pickups (with the value) and drop-offs, minus the step rewards
@@ -135,12 +135,12 @@ class PlannerSolver {
   std::vector<float> value_;
   std::vector<DeviceKind> kind_;
   std::vector<const float*> damaging_;  // by device: [H, W] risk that damages it in this step
-  std::vector<float> health_;           // present health of the waiting devices
-  std::vector<Gains> gains_;            // by set, with the present health
+  std::vector<float> health_;           // of the waiting devices, at the current step of the search
+  std::vector<Gains> gains_;            // by set, for the values in health_
   std::int32_t first_step_{};           // the farm's present step
   // Cumulative sums by step from first_step_ on.
   std::vector<double> step_rewards_;  // sum of (best reward − idle_cost_) of each step
-  // Sum of an upper bound for each step, at most 0, of what risks add to the reward of the step.
+  // Each step contributes an upper bound of what risks add to its reward. The bound is at most 0.
   std::vector<double> surcharges_;
   bool crash_hurts_{};  // whether a crash in this step damages devices
 

@@ -40,7 +40,7 @@ class PpoUpdater {
 
   /// Progress of the run, for schedules and messages.
   struct Context {
-    double progress{};           ///< share of the run that is done, [0, 1]
+    double progress{};           ///< fraction of the run that is done, [0, 1]
     std::uint64_t farm_steps{};  ///< farm steps of this process so far
   };
   /// Runs all epochs.
@@ -59,7 +59,7 @@ class PpoUpdater {
   void set_entropy(float entropy) { entropy_ = entropy; }
 
   void Save(Checkpoint& checkpoint) const;
-  /// @throws InputError if sections are missing or have another size
+  /// @throws InputError if sections are missing, damaged or have another size
   void Load(const Checkpoint& checkpoint);
 
  private:
@@ -89,17 +89,18 @@ class PpoUpdater {
   PpoCoefficients coefficients_;
   ProcessGroup* const group_;
 
-  // Scratch. By shard of this process:
+  // Buffers and values that each update uses again. One entry per shard of this process:
   std::vector<std::vector<std::uint32_t>> sequences_;  // first sample of each sequence
   std::vector<std::vector<float>> gradients_;          // of a minibatch
   std::vector<std::vector<double>> losses_;            // of a minibatch: the members of PpoLoss
   std::vector<std::vector<double>> advantage_sums_;    // by minibatch: Σ A, Σ A², number of rows
-  std::vector<float> nothing_;                         // empty argument `values` of Sum
-  std::size_t batches_{};                              // minibatches of an epoch
-  std::size_t length_;                                 // steps of a sequence
-  float mean_{};                                       // mean of the advantages of a minibatch
-  float inverse_deviation_{1.0F};                      // 1 / their standard deviation
-  float weight_{};                                     // weight of each row of a minibatch
+  // Of the present update or minibatch:
+  std::vector<float> nothing_;     // empty; ProcessGroup::Sum of doubles alone
+  std::size_t batches_{};          // minibatches of an epoch
+  std::size_t length_;             // steps of a sequence
+  float mean_{};                   // mean of the advantages of a minibatch
+  float inverse_deviation_{1.0F};  // 1 / their standard deviation
+  float weight_{};                 // weight of each row of a minibatch
   // Rows of a chunk:
   std::vector<float> features_;
   std::vector<float> joint_;

@@ -79,8 +79,8 @@ class Rollout {
   float target(std::size_t sample) const { return advantages_[sample] + values_[sample]; }
 
   void Save(Checkpoint& checkpoint) const;
-  /// @throws InputError if sections are missing or have another size, or if the number of steps or
-  ///   a label is out of range
+  /// @throws InputError if sections are missing or have another size, or if the number of steps, an
+  ///   action or a label is out of range
   void Load(const Checkpoint& checkpoint);
 
  private:

@@ -23,9 +23,10 @@ void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase&
 /// Returns RescueProblem::exposure_damage: the ranch's damage per step, converted to steps of the
 /// ensemble.
 double ExposureDamage(const RescueCase& rescue);
-/// Sets the problem of the case, except abort_ring: water, ports, devices, ships and parameters.
-/// @throws InputError if a file is wrong, if a position is not on water, or if no water leads from
-///   a listed device to the first port
+/// Sets water, ports, devices, ships and parameters of the problem of the case. Does not set
+/// abort_ring.
+/// @throws InputError if a file is wrong, if a position is not on water, or if no route by water
+///   leads from a device of the CSV file to the first port
 void ReadFleet(const RescueRequest& request, RescueCase& rescue);
 /// Returns whether energy or ship-hours have a price.
 bool IsPriced(const RescueProblem& problem);

@@ -19,8 +19,8 @@ namespace aquafarm::agents {
 enum class TrialPolicy : std::uint8_t {
   kPlan,         ///< the plan of the first bulletin
   kCentral,      ///< as kPlan, with the central forecast as the only member
-  kPlanAgain,    ///< a new plan at each bulletin; needs a ranch with one ship
-  kPlanner,      ///< the policy `planner` (PlannerSkipper); needs one ship and the ranch's devices
+  kPlanAgain,    ///< a new plan at each bulletin; needs one ship
+  kPlanner,      ///< the policy `planner` (PlannerSkipper); needs the ranch's devices and one ship
   kValue,        ///< FetchRule::kValue
   kNearest,      ///< FetchRule::kNearest
   kClairvoyant,  ///< as kPlan, with the true storm as the only member
@@ -86,8 +86,8 @@ class PlanTrials {
   GeoPoint place_;
 };
 
-/// By value: the number of its group. Groups are independent of each other, but the values of one
-/// group may depend on each other. Empty: each value forms its own group.
+/// Contains the number of the group of each value. Groups are independent of each other, but the
+/// values of one group may depend on each other. Empty: each value forms its own group.
 using Groups = std::vector<std::size_t>;
 
 /// A mean or a ratio with its 95 % interval, from the variance between groups (cluster-robust;

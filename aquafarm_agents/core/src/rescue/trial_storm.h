@@ -25,14 +25,15 @@ struct TrialOptions {
   ForecastErrors errors;  ///< errors of the bulletins
   /// A track is moved by up to this distance to the north or south, and to the east or west.
   double moved_km{600.0};
-  /// Range of a drawn time before the closest approach of the unmoved track [h]. The trial starts
-  /// with the last fix that is not after this time, but never with one of the last two fixes.
+  /// A time is drawn that is between min_lead_h and max_lead_h before the closest approach of the
+  /// unmoved track [h]. The trial starts with the last fix that is not after this time, but never
+  /// with one of the last two fixes.
   double min_lead_h{4.0};
   double max_lead_h{24.0};
   double report_share{0.5};  ///< probability that the bulletins of a trial report radii
-  /// true: the true radii are those of EstimateRadius times a random factor. The spread of this
-  /// factor is that of EstimateRadius times errors.scale and errors.size_factor. false: the true
-  /// radii are those of EstimateRadius.
+  /// true: the true radii are those of EstimateRadius multiplied by a random factor. The standard
+  /// deviation of its logarithm is the product of RadiusEstimate::log_sigma (at 34 kt),
+  /// errors.scale and errors.size_factor. false: the true radii are those of EstimateRadius.
   bool draws_size{true};
   double bulletin_h{6.0};  ///< time between two bulletins [h]
   /// false: the true winds are those of the recorded track, and the winds of the bulletin differ

@@ -12,8 +12,8 @@
 
 namespace aquafarm::agents {
 
-/// By member: 1 while the ship works, 0 after winds have stopped it. The element type has the size
-/// of an arrival step, so that loops over both are vectorized.
+/// By member: 1 while the ship works, 0 after winds have stopped it. The elements have the same
+/// size as those of Ensemble::Arrival, so that loops over both arrays are vectorized.
 using Alive = std::vector<std::int16_t>;
 
 /// Weights of the members. They sum to 1. Empty: all members have equal weights.
@@ -72,8 +72,8 @@ class TripModel {
   /// at a time. A member in which the ship has stopped counts with 0.
   double Saved(std::size_t device, double time_s, const Alive& alive,
                const MemberWeights& weights = {}) const;
-  /// Returns the effort of a route and of the handling at its end; 0 kWh and 0 h if the problem has
-  /// no energy.
+  /// Returns the effort of a route and of the handling at its end; 0 kWh and 0 h if
+  /// RescueProblem::energy is not set.
   /// @param aboard number of devices aboard on the route
   TripEffort Effort(std::size_t ship, std::size_t from, std::size_t to, std::size_t aboard) const;
   /// Returns the cost of an effort.

@@ -19,7 +19,7 @@ namespace aquafarm_agents {
 struct ShipDriverOptions {
   std::int32_t ship{-1};            ///< -1: all ships and self-propelled devices of farm 0
   double wait_limit_s{20.0};        ///< max wait for the sim node
-  const std::atomic<bool>* stop{};  ///< if true, Drive and all waits end; null: never stopped
+  const std::atomic<bool>* stop{};  ///< if set to true, Drive and all waits end; may be null
 };
 
 /// Drives the ships of a running ranch through the service `command`, paced or in lockstep. Before

@@ -15,11 +15,11 @@ namespace aquafarm_agents {
 /// to the release, the claim expires after claim_timeout_s (parameter of the sim node).
 class ShipClaim {
  public:
-  /// @param wait_limit_s max wait for the sim node
-  /// @param stop ends the wait if true; null: it cannot be stopped
+  /// @param wait_limit_s max wait for the sim node; the last call may end up to
+  ///        ServiceLink::kCallLimit_s later
+  /// @param stop ends the wait if true. If it is null, the wait cannot be stopped.
   /// @throws InputError if another node has claimed the ship
-  /// @throws EnvironmentLost if the sim node does not respond within the limit, or if the wait is
-  ///         stopped
+  /// @throws EnvironmentLost if the sim node does not respond in time, or if the wait is stopped
   ShipClaim(const ros::NodeHandle& node, std::int32_t ship, double wait_limit_s,
             const std::atomic<bool>* stop);
   ~ShipClaim();
@@ -29,7 +29,7 @@ class ShipClaim {
   /// Renews the claim if the last renewal is at least 3 s old. A renewal also checks that the sim
   /// node is running. The node must call this function repeatedly while it sends no commands,
   /// because only commands and renewals keep the claim.
-  /// @throws InputError, EnvironmentLost as the constructor
+  /// @throws InputError, EnvironmentLost in the same cases as the constructor
   void RenewWhenDue();
 
  private:

@@ -12,10 +12,10 @@ int RunTrainNode();
 /// @returns an ExitCode
 int RunPolicyNode();
 
-/// Plans the rescue of a ranch's devices. Plans again when a bulletin, another input file or the
-/// state of the ranch changes. A plan without a running ranch is also made again periodically.
-/// Publishes the plan, a path for each ship, markers, a chart and a heartbeat. A separate thread
-/// makes the plans.
+/// Plans the rescue of a ranch's devices. Plans again when a bulletin, the list of devices or of
+/// ships, or the state of the ranch changes. A plan without a running ranch is also made again
+/// periodically. Publishes the plan, a path for each ship, markers, a chart and a heartbeat. A
+/// separate thread makes the plans.
 /// @returns an ExitCode
 int RunPlanNode();
 

@@ -60,7 +60,7 @@ class PlanKeeper {
 
   PlanMessages plan_;
   std::optional<PlanInputs> inputs_;  // of the last Update
-  std::string refused_;               // why the newest inputs are not in plan_; empty: they are
+  std::string refused_;               // why plan_ does not use the newest inputs; empty if it does
   std::string good_;  // bulletin of plan_; empty before the first plan and with request.storm
 };
 

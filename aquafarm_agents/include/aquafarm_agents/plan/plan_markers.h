@@ -23,7 +23,7 @@
 namespace aquafarm_agents {
 
 /// Returns the markers of a plan, with the header of the plan. The first marker deletes those of
-/// the previous plan. It is the only marker before the first plan (width 0).
+/// the previous plan. It is the only marker if there is no plan yet (RescuePlan.width is 0).
 visualization_msgs::MarkerArray PlanMarkers(const aquafarm_msgs::RescuePlan& plan);
 
 }  // namespace aquafarm_agents

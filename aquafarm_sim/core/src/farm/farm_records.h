@@ -34,8 +34,8 @@ std::int32_t Int(Enum value) {
 }
 
 // Returns whether the rings of a bulletin must be stored, because the rings of the disaster may
-// have grown or shrunk since the bulletin was issued. Views compute the rings of a disaster with a
-// track from its waypoints.
+// have grown or shrunk since the bulletin was issued. A disaster with a track does not need stored
+// rings, because views compute them from its waypoints.
 inline bool RingsMayHaveChanged(const Disaster& disaster, const Bulletin& bulletin) {
   return disaster.radius_growth != 0.0F && bulletin.step != kNone;
 }

@@ -47,15 +47,16 @@ class RiskBrush {
   std::array<std::int32_t, kMaxRings> levels_{};
 };
 
-/// Number of courses: one straight course per move, then staying.
+/// Number of courses. A course repeats one of the moves; on the last course, the ship stays in its
+/// cell.
 inline constexpr std::int32_t kCourseCount = kMoveCount + 1;
 static_assert(kCourseCount <= kRun);
 
 /// Risks at the cells of each course of a ship, if every disaster keeps its motion.
 class LookaheadRisks {
  public:
-  /// Computes the courses from `self` and sets their risks to those of the sea. A ship stops at the
-  /// edge of the map.
+  /// Computes the courses from `self` and sets their risks to those of the sea. Clamps x and y to
+  /// the map: a diagonal course that reaches an edge continues along the edge.
   LookaheadRisks(const Scenario& scenario, Cell self);
 
   /// Adds a disaster whose state was observed `age` steps ago; each cell keeps the worse risk.

@@ -11,12 +11,13 @@
 
 namespace aquafarm::internal {
 
-/// Finds the storm of `track` in another file. A single storm in the file matches if its name
-/// equals that of `track` or if one of these names is missing. In other cases the id selects
-/// the storm unless it is kUnknownStormId, or the name if no id matches.
+/// Finds the storm of `track` in another file. If the file contains only one storm, this storm
+/// matches if its name equals that of `track` or if one of these names is missing. In other cases
+/// the storm with the same id matches, unless the id is kUnknownStormId. If no id matches, the
+/// storm with the same name matches.
 /// @param option name of the option with the file, for messages
-/// @throws InputError if the file has no such storm, or if the period of the storm does not overlap
-///   that of `track`
+/// @throws InputError if no storm or more than one matches, or if the period of the storm does not
+///   overlap that of `track`
 const StormTrack& SameStorm(const std::string& option, const StormFile& file,
                             const StormTrack& track);
 

@@ -50,12 +50,12 @@ void VisitGeoPoint(Archive& a, Point& point) {
   a.Field("longitude", point.longitude, Interval<double>{-180.0, 180.0}, Need::kRequired);
 }
 
-/// Reads recorded storms. Stores in disaster.storms those of the requested years that have gales
-/// and come as close to the middle of the farm as within_km. Also sets the track of the disaster to
-/// that of the first storm for training.
+/// Reads recorded storms. Stores in disaster.storms the storms of the requested years that have
+/// gales and whose distance from the middle of the farm falls to within_km or less. Also sets the
+/// track of the disaster to that of the first storm for training.
 /// @param files files of tracks; if empty, storms.tracks contains the text of an archive
 /// @throws FieldError if a file is unreadable, grid.origin is missing, times or years contradict
-///   each other, or there is no such storm of the years for training or of those for evaluation
+///   each other, or the years for training or the years for evaluation have no such storm
 void Resolve(const std::vector<std::string>& files, const WorldFrame* frame,
              const std::string& path, DisasterSpec& disaster);
 

@@ -36,14 +36,15 @@ std::optional<double> CheckedPressure(std::optional<double> pressure_hpa,
 /// @throws InputError if there are more than kMaxFixes fixes
 void AppendFix(StormFix fix, std::vector<StormFix>& fixes, ParseContext& place);
 
-/// Completes a track and its forecasts. Leaves out points that break the order of time. Leaves out
-/// points that are more than 30 days from the others, if they are fewer than half. Warns about
-/// jumps, and computes motions that the source does not give. Leaves out forecasts without a point
-/// after their time of issue, or in which at least half of the points break the order of time.
+/// Completes a track, whose points are its fixes, and its forecasts. Leaves out points that break
+/// the order of time. Leaves out points of the track that are more than 30 days from the others, if
+/// they are fewer than half. Warns about jumps, and computes motions that the source does not give.
+/// Leaves out forecasts without a point after their time of issue, or in which at least half of the
+/// points break the order of time.
 /// @param left_out points that the reader has left out
 /// @throws InputError if there are no points, if the reader has left out more points than it has
-///   kept, if at least half of the points break the order of time, or if the points span more than
-///   366 days
+///   kept, if at least half of the points break the order of time, or if the points span 367 days
+///   or more
 void FinishTrack(StormTrack& track, LeftOut left_out, ParseContext& place);
 
 /// Converts a direction such as "NE", "ENE" or "西北" to a compass bearing [degrees]; nullopt if

@@ -43,7 +43,7 @@ struct EpisodeLog {
 
 /// Properties of the bags that are the same for all episodes.
 struct BagFormat {
-  std::string ns;  ///< namespace of the ranch's topics, with a trailing slash
+  std::string ns;  ///< namespace of the topics of the farm, with a trailing slash
   std::string map_frame{"map"};
   double rate_hz{10.0};  ///< steps per second of the bag's clock if the log's rate_hz is 0
   std::int32_t farms{1};

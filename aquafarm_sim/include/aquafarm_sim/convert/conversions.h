@@ -124,7 +124,8 @@ void SeaToMsg(const aquafarm::SeaLayer& layer, const aquafarm::Scenario& scenari
 std_msgs::Float32MultiArray SeaToMsg(const aquafarm::SeaLayer& layer,
                                      const aquafarm::Scenario& scenario);
 
-/// Returns the scenario's world time after `step` steps; 0 if ros::Time cannot represent it.
+/// Returns the scenario's world time after `step` steps; 0 if ros::Time cannot represent it. The
+/// world time of a scenario without a start time starts at 0.
 ros::Time WorldTime(const aquafarm::Scenario& scenario, std::int64_t step);
 
 }  // namespace aquafarm_sim

@@ -15,9 +15,10 @@ class BulletinFolder {
  public:
   explicit BulletinFolder(std::string path) : path_(std::move(path)) {}
 
-  /// Returns the paths of the files that are not marked, or have changed since the state that was
-  /// marked, by ascending time of change. Skips subfolders, hidden files and files that end in
-  /// ".part", which may be incomplete. Also skips files whose time or size cannot be read.
+  /// Returns the paths of the files that are not marked, and of those whose state differs from the
+  /// marked one (see Mark). The file with the earliest time of change is the first. Skips
+  /// subfolders, hidden files and files that end in ".part", which may be incomplete. Also skips
+  /// files whose time or size cannot be read.
   /// @throws InputError if the folder does not exist or cannot be read completely
   std::vector<std::string> New();
   /// Marks a file that the last New() returned, in the state (time of change and size) that New()

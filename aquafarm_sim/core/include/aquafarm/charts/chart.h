@@ -33,8 +33,9 @@ struct Terrain {
   std::int32_t WaterCells() const;  ///< number of cells that are neither island nor rock
 };
 
-/// Converts land shares to islands and rocks. Only the largest body of water that the eight moves
-/// connect remains water. Other bodies of water become land.
+/// Converts land shares to islands and rocks. Only the largest body of water remains water; other
+/// bodies of water become islands. A body of water is a set of water cells that the eight moves
+/// connect.
 /// @throws InputError if there is no water
 Terrain ToTerrain(const LandShare& share);
 

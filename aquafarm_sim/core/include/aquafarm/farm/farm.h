@@ -6,8 +6,9 @@
 /// Damage; Consume if the scenario has energy; Reward; CountShipSteps if the scenario has money;
 /// Finish.
 ///
-/// Step never allocates memory. Reset allocates only in two cases: its buffers grow, as in the
-/// first episodes, or another owner still holds the track of a drawn storm.
+/// Step never allocates memory. Reset allocates only in three cases: its buffers grow, as in the
+/// first episodes; another owner still holds the track of a drawn storm; or a disaster of the
+/// scenario has grade_factors.
 
 #include <algorithm>
 #include <array>
@@ -186,8 +187,8 @@ class Farm {
   ///   is then unchanged
   void Load(const std::string& bytes);
   /// Copies the episode in progress of a farm of the same scenario. The copy continues
-  /// bit-identically. The two farms may have different scenario objects with the same hash, for
-  /// example with different ViewSpecs.
+  /// bit-identically. The two farms may have two scenario objects with the same Scenario::hash,
+  /// for example a scenario and a copy whose ViewSpec was changed after the hash was set.
   /// @throws LogicError if the hashes of the scenarios differ
   /// @throws InputError if a layout must be drawn for this farm and cannot be drawn. A layout is
   ///   drawn only if exactly one of the two farms needs routes (ViewSpec::NeedsRoutes).

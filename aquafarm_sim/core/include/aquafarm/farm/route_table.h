@@ -19,8 +19,8 @@ inline constexpr std::int32_t kUnreachable = 1 << 28;
 /// @param cells [H, W] CellBits
 /// @param targets [count] cells of the chart
 /// @param steps [H, W] result; resized
-/// @param queue scratch memory. Nothing is allocated if `steps` has this size and `queue` has the
-///   capacity.
+/// @param queue scratch memory. Nothing is allocated if `steps` already has its size and the
+///   capacity of `queue` is at least H · W.
 void StepsByWater(const Grid<std::uint8_t>& cells, const Cell* targets, std::size_t count,
                   Grid<std::int32_t>& steps, std::vector<Cell>& queue);
 

@@ -60,7 +60,7 @@ enum class Outcome : std::uint8_t {
   kEdge,            ///< a move off the map; the ship stayed
   kCrash,           ///< a move into a rock or island; the ship stayed
   kCollision,       ///< a move into another ship's cell outside a port; the ship stayed
-  kIllegalPickup,   ///< no device to pick up here, no capacity, or a self-propelled device
+  kIllegalPickup,   ///< no device to pick up, no capacity, or the agent is a self-propelled device
   kIllegalDropOff,  ///< not at a port, or a rescue ship without a device aboard
   kHeld,            ///< the action was kHold, or the ship has not acted yet
   kOutOfPlay,       ///< a self-propelled device that was delivered; its action was ignored

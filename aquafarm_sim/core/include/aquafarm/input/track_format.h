@@ -14,8 +14,8 @@ enum class TrackFormat : std::uint8_t {
   kJma,             ///< JMA / RSMC Tokyo best track, bst_*.txt
   kAtcf,            ///< ATCF b-deck, bWPnnyyyy.dat
   kIbtracs,         ///< IBTrACS v04 CSV
-  kBulletin,        ///< JSON bulletin, such as that of Zhejiang (keys tfbh or tfid, points)
-  kWeatherService,  ///< JSON storm track of a weather service (keys track, windRadius30)
+  kBulletin,        ///< JSON bulletin, such as that of Zhejiang (key tfbh or tfid)
+  kWeatherService,  ///< JSON storm track of a weather service (key track or windRadius30)
   kArchive,         ///< archive of aquafarm (tracks/archive.h)
 };
 inline constexpr int kTrackFormatCount = 7;

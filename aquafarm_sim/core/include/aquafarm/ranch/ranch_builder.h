@@ -16,7 +16,7 @@ struct BuiltRanch {
   Scenario scenario;
   std::string yaml;                   ///< text of the scenario file, with comments on the sources
   std::vector<std::string> decided;   ///< choices that BuildRanch made, one line each
-  std::vector<std::string> warnings;  ///< warnings about the input files
+  std::vector<std::string> warnings;  ///< warnings about the input files and the request
 };
 
 /// Builds a scenario.

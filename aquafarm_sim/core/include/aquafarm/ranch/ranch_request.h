@@ -23,7 +23,7 @@ struct ArchiveRequest {
   Range<std::int32_t> years{0, 0};  ///< years of the storms for training
   /// Years of the storms for evaluation; if unset, all years after years.max.
   std::optional<Range<std::int32_t>> evaluation_years;
-  double within_km{300.0};  ///< max distance of a storm from the ranch's middle when nearest
+  double within_km{300.0};  ///< max distance of the closest approach to the ranch's middle
 };
 
 /// Inputs of BuildRanch. BuildRanch chooses values for unset fields. BuiltRanch::decided lists
@@ -39,7 +39,7 @@ struct RanchRequest {
   double cell_size_m{200.0};
   float sea_level{0.0F};  ///< heights of an ASCII grid above this are land
 
-  std::string track;  ///< file with the storm; empty: no storm from a file
+  std::string track;  ///< file with the storm; empty if unused
   std::string storm;  ///< name or id of the storm; may be empty if the file has only one
   std::string radii;  ///< file with radii for fixes without radii; empty if unused
   RingReduction reduction{RingReduction::kEqualArea};

@@ -110,8 +110,8 @@ struct StormsSpec {
   double within_km{300.0};  ///< max distance of the closest approach to the middle of the farm
   double approach_h{24.0};  ///< hours from step 0 to the closest approach
   StormPerturbation perturbation;
-  /// The storms of both ranges of years that have gales and come as close as within_km, as an
-  /// archive (tracks/archive.h).
+  /// The storms of both ranges of years that have a ring of at least 34 kt and come within
+  /// `within_km` of the middle of the farm: the text of an archive (tracks/archive.h).
   std::string tracks;
   /// The storms of `tracks` on the farm; set by the reader of scenarios.
   std::shared_ptr<const StormLibrary> library;
@@ -230,7 +230,7 @@ struct ViewSpec {
 
   ViewMode mode{ViewMode::kFull};
   float sensor_radius{5.0F};         ///< range of a ship's sensors in partial view [cells]
-  std::int32_t bulletin_period{20};  ///< [steps]; 0: no bulletins
+  std::int32_t bulletin_period{20};  ///< [steps]; 0: no periodic bulletins
   float bulletin_noise{0.0F};        ///< max error of the reported centre on each axis [cells]
   bool shared_sight{};               ///< agents are networked and use each other's sensors
   bool routes{};  ///< features include the shortest routes by water to ports and devices

@@ -11,7 +11,7 @@
 
 namespace aquafarm {
 
-/// A storm of an archive and its displacement in one episode.
+/// A storm of an archive and its random changes in one episode: position, time, wind and size.
 struct DrawnStorm {
   const ArchivedStorm* storm{};
   StormErrors errors;
@@ -21,9 +21,9 @@ struct DrawnStorm {
 /// years, and any other seed from the years for training.
 const std::vector<ArchivedStorm>& StormsOf(const StormsSpec& storms, std::uint64_t seed);
 
-/// Draws one of the storms of StormsOf, all with equal probability, and its displacement. The
-/// displaced storm is closest to (x, y) storms.approach_h hours after step 0, plus or minus at most
-/// perturbation.start_h.
+/// Draws one of the storms of StormsOf, all with equal probability, and its changes. The time of
+/// the closest approach to (x, y) is storms.approach_h hours after step 0, shifted by at most
+/// perturbation.start_h hours to either side.
 /// @param disaster id of the disaster
 /// @param x, y middle of the farm [cells]
 DrawnStorm DrawStorm(const StormsSpec& storms, std::uint64_t seed, std::uint64_t episode,

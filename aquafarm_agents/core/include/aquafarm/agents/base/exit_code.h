@@ -7,14 +7,14 @@ namespace aquafarm::agents {
 /// of PlanResult (rescue/plan_report.h). bag_policy exits with 1 if a recording differs from its
 /// simulation.
 ///
-/// (1) A training on one rank is saved. With several ranks or after a deadlock in roscpp, only the
-/// last checkpoint is kept.
+/// If a training on one rank ends with kLost, it is saved. With several ranks, or after a deadlock
+/// in roscpp, only the last checkpoint is kept.
 enum class ExitCode : int {
   kOk = 0,
   kInternal = 1,      ///< a bug in the suite
   kBadInput = 2,      ///< an argument, scenario, policy or checkpoint was refused
   kStorage = 3,       ///< a file cannot be written, or the run folder is in use
-  kLost = 4,          ///< farms did not respond, refused a call or were changed by others (1)
+  kLost = 4,          ///< farms did not respond, refused a call or were changed by another client
   kDiverged = 5,      ///< learning failed; the last valid checkpoint is kept
   kRankLost = 6,      ///< another rank is missing or has ended; checkpoints are kept
   kInterrupted = 130  ///< stopped with Ctrl-C or SIGTERM; a training run is saved

@@ -47,9 +47,11 @@ struct EnvironmentSpec {
   std::uint64_t scenario_hash{};
   std::string version;
   std::int32_t farms{};
-  std::int32_t agents{};        ///< ships and self-propelled devices of one farm
-  bool team_reward{};           ///< every agent receives the sum of all agents' rewards
-  std::uint32_t state_count{};  ///< number of tabular states; 0 if too many, or for a family
+  std::int32_t agents{};  ///< ships and self-propelled devices of one farm
+  bool team_reward{};     ///< every agent receives the sum of all agents' rewards
+  /// Number of tabular states; 0 if there are too many, or if the scenario describes a family of
+  /// ranches (scenario/family.h).
+  std::uint32_t state_count{};
   std::int32_t feature_count{};
   std::vector<std::string> feature_names;  ///< [feature_count] as Encoder::feature_names
   std::int32_t plane_count{};
@@ -86,8 +88,9 @@ struct StepResults {
   std::vector<std::uint32_t> index;       ///< [N, S]; empty unless requested
   std::vector<float> features;            ///< [N, S, F]; empty unless requested
   std::vector<std::uint8_t> planes;       ///< [N, S, P, H, W]; empty unless requested
-  std::vector<const Farm*> states;        ///< [N] the farms themselves; empty unless requested
-  std::vector<EpisodeSummary> finished;   ///< episodes that ended in this step, ordered by farm
+  std::vector<const Farm*>
+      states;  ///< [N] the farms, or copies of remote ones; empty unless requested
+  std::vector<EpisodeSummary> finished;  ///< episodes that ended in this step, ordered by farm
 };
 
 /// Number of farms and threads, and the optional results that an environment must produce.
@@ -140,9 +143,9 @@ class Environment {
   ///   unchanged
   virtual const StepResults& Load(const std::string& bytes) = 0;
 
-  /// Returns true once after a Step that started new episodes in all farms. This happens if the sim
-  /// node has restarted or another client has changed its farms. The results of that Step are first
-  /// observations.
+  /// Returns true once after a Step that had to abandon the current episodes and start new ones in
+  /// all farms. This happens if the sim node has restarted or another client has changed its farms.
+  /// The results of that Step are first observations.
   virtual bool ConsumeRestart() { return false; }
 };
 

@@ -12,8 +12,8 @@
 
 namespace aquafarm::agents {
 
-/// Draws the ranch of an episode of a family (scenario/family.h). Returns it at the start of the
-/// episode.
+/// Draws the ranch of one episode of a family (scenario/family.h) and returns it in its state at
+/// the start of this episode.
 /// @throws InputError if none of 100 drawn ranches has a valid layout
 Farm MakeRanch(const Scenario& family, std::uint64_t seed, std::uint64_t episode);
 

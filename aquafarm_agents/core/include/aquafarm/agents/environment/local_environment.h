@@ -24,8 +24,9 @@ class LocalEnvironment final : public Environment {
   /// @param scenario must have passed ValidateScenario
   /// @param share the farms of this environment. They play the same episodes as in an environment
   ///        with all farms. Load expects the saved bytes of all farms.
-  /// @throws InputError if no layout can be generated for the scenario, if it describes a family,
-  ///         or if the index is requested and the scenario has too many states for a table
+  /// @throws InputError if no layout can be generated for the scenario, if it describes a family
+  ///         of ranches, or if the tabular index (kIndexBit) is requested and the scenario has too
+  ///         many states for a table
   LocalEnvironment(std::shared_ptr<const Scenario> scenario, const EnvironmentOptions& options,
                    const FarmShare& share = {});
 

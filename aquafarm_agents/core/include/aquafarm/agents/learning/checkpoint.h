@@ -33,7 +33,7 @@ struct CheckpointInfo {
   std::string options;       ///< resolved options of the learner
   std::string version;       ///< version of the suite that ran the farms
   std::uint64_t seed{};      ///< seed of the training
-  EnvironmentSpec spec;      ///< spec of the training farms; files lack its YAML text
+  EnvironmentSpec spec;      ///< spec of the training farms; without YAML text if read from a file
   std::uint64_t steps{};     ///< farm steps of training so far
   std::uint64_t episodes{};  ///< episodes of training so far
 };
@@ -112,7 +112,7 @@ void WriteCheckpoint(const std::string& path, const Checkpoint& checkpoint);
 Checkpoint ReadCheckpoint(const std::string& path);
 
 /// Checks that a training with the given settings can resume from a checkpoint.
-/// @param path file name of the checkpoint, for messages
+/// @param path path of the checkpoint, for messages
 /// @throws InputError that states the first difference
 void CheckContinues(const Checkpoint& checkpoint, const std::string& path,
                     const std::string& algorithm, const std::string& options, std::uint64_t seed,

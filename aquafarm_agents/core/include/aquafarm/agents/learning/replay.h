@@ -48,8 +48,8 @@ class SumTree {
 
 /// Sizes of a replay buffer.
 struct ReplayOptions {
-  /// Max number of stored observations, each of one agent. The buffer always holds two time steps,
-  /// even if they have more observations.
+  /// Max number of stored observations, each of one agent. The buffer has space for at least two
+  /// time steps, even if these have more observations than this number.
   std::size_t capacity{100000};
   std::size_t slots{1};            ///< farms × agents
   std::int32_t agents{1};          ///< agents per farm

@@ -24,12 +24,15 @@ std::string_view ToString(LossKind value);
 
 /// Hyperparameters of DQN, VDN and LSTM-DQN. The preset sets the defaults. *tuned* has values tuned
 /// on the shipped scenarios. *paper* has the values of the paper: Eq. 15, Algorithm 2, and γ of
-/// §2.3. It disables the extensions and keeps the tuned values of all other options. For τ of
+/// §2.3. It disables the extensions and max_grad_norm, and keeps the tuned values of all other
+/// options. For τ of
 /// LSTM-DQN, of which the paper contains only the range, *paper* has the value of Haarnoja et al.
 /// 2018. The members are initialized with the tuned defaults of DQN.
 struct DeepOptions {
   NetworkKind network{NetworkKind::kMlp};
-  std::int32_t hidden_size{256};  ///< units of a hidden layer, and of the LSTM of LSTM-DQN
+  /// Units of a hidden layer, and of the LSTM of LSTM-DQN. With skip_connection, the last hidden
+  /// layer of LSTM-DQN has twice as many.
+  std::int32_t hidden_size{256};
   Schedule learning_rate{ScheduleKind::kLinear, 5e-4, 1e-5, 1.0};  ///< learning rate of Adam
   double gamma{0.97};
   ExplorationOptions exploration{
@@ -57,15 +60,16 @@ struct DeepOptions {
   /// α · (max_a Q − Q(s, a)) from the target, so that approximation errors change the greedy action
   /// less often. 0 disables it.
   double action_gap{0.0};
-  /// Penalty on the value of an action when acting in training [reward]. It is subtracted once for
-  /// each earlier use of the action in the same situation of the episode; see RepetitionPenalty. 0
-  /// disables it.
+  /// Penalty [reward] that is subtracted from the value of an action when acting in training, once
+  /// for each earlier use of the action in the same situation of the episode; see
+  /// RepetitionPenalty. 0 disables it.
   double repetition_penalty{0.0};
   bool mask_illegal{true};   ///< exclude illegal actions when acting and bootstrapping
   bool mask_blocked{false};  ///< also exclude moves onto a rock or an island, or off the map
 
   // Options of recurrent networks only (R2D2: Kapturowski et al. 2019).
-  std::int32_t sequence_length{4};  ///< training steps per sequence; 1 with paper_tuple
+  /// Time steps of a sequence that are trained on, without the burn-in; 1 with paper_tuple.
+  std::int32_t sequence_length{4};
   std::int32_t burn_in{2};  ///< warm-up steps before a sequence, not trained on; 0 with paper_tuple
   bool skip_connection{true};  ///< skip connection around the LSTM; the paper has none
   /// The option replayed=paper_tuple: replays single transitions, and evaluates each of the two

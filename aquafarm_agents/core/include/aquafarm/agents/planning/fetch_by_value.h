@@ -11,9 +11,10 @@
 ///
 /// The value of a device is its insured value (farm/accounts.h) if the scenario has money, else the
 /// value that the reward credits (Device::value). Routes are the shortest ones by water. The rule
-/// uses disasters only to compute the latest end of the episode: with its last disaster, or at the
-/// step limit. A ship keeps its chosen device until the device is aboard, or can no longer be
-/// brought home in time. A self-propelled device sails to the nearest port.
+/// uses disasters only to compute the latest step at which the episode can end: the step in which
+/// the last disaster ends, or the step limit if that comes first. A ship keeps its chosen device
+/// until the device is aboard, or can no longer be brought home in time. A self-propelled device
+/// sails to the nearest port.
 
 #include <cstddef>
 #include <cstdint>

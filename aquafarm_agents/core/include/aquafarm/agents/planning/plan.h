@@ -54,8 +54,8 @@ struct Task {
   /// Ids of the devices that the ship fetches or carries; for a self-propelled device, its own id.
   /// Their number is at most `max_devices` of the constructor of Planner.
   std::vector<std::int32_t> devices;
-  /// Last step of the plan. Must be set if `devices` is empty; such a plan only avoids risks. 0:
-  /// the plan ends with the last delivery or with the episode.
+  /// Last step of the plan; 0 if the plan ends with the last delivery or with the episode. Must be
+  /// above 0 if `devices` is empty; such a plan only avoids risks.
   std::int32_t until{0};
   const Reservations* others{};  ///< cells that the plan avoids; nullptr: no cells
 };

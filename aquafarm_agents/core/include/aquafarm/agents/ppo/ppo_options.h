@@ -55,11 +55,12 @@ struct PpoOptions {
   ExplorationOptions exploration{
       ExplorationKind::kEntropy, {ScheduleKind::kLinear, 0.02, 0.0, 1.0}, {}};
   /// Weight that the cross-entropy with a teacher's actions has in the loss (kickstarting,
-  /// src/ppo/ppo_loss.h). The cross-entropy is averaged over all agent steps, labelled or not. A
-  /// teacher that labels every n-th step therefore needs n times the weight. 0: no teacher.
+  /// src/ppo/ppo_loss.h); 0: no teacher. The label of a step is the action that the teacher would
+  /// take. The cross-entropy is averaged over all agent steps, with and without a label. A teacher
+  /// that labels every n-th step therefore needs n times the weight.
   Schedule teacher{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
   TeacherPolicy teacher_policy{TeacherPolicy::kRule};  ///< which teacher the policy imitates
-  std::int32_t teacher_interval{1};  ///< the teacher labels steps 0, n, 2n, … of each rollout
+  std::int32_t teacher_interval{1};  ///< n: the teacher labels steps 0, n, 2n, … of each rollout
   /// Data augmentation: at the start of each episode, the learner draws one of the eight symmetries
   /// of the grid for each agent. In training, it transforms the observations and actions of the
   /// agent with this symmetry. Needs entity tokens.

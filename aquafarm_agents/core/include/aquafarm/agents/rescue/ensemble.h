@@ -39,8 +39,8 @@ class Ensemble {
   static constexpr std::int16_t kNoArrival = std::numeric_limits<std::int16_t>::max();
 
   /// @param sites cells of the map for which Exposure is computed
-  /// @throws InputError if the number of members, steps or rings is out of range, or if
-  ///   members × cells × rings is too large
+  /// @throws InputError if the number of members, steps or rings is out of range, or if an array
+  ///   is too large: members × cells × rings, members × steps × sites, or rings × steps × cells
   Ensemble(const CentralForecast& forecast, const EnsembleOptions& options,
            const std::vector<Cell>& sites);
 

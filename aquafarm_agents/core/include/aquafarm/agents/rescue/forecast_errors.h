@@ -21,12 +21,13 @@
 ///
 /// **Radii.** All radii of a storm are multiplied by one log-normal factor. Without reported radii,
 /// the spread of the factor is that of recorded radii about EstimateRadius (tracks/wind_radii.h).
-/// This spread depends on the storm's wind at each time. For radii of 30 and 34 kt it is 0.45 below
-/// 48 kt, 0.41 from 48 kt and 0.35 from 64 kt. After a report with radii, the spread grows from the
-/// error of the report to this value. The logarithm of radius / EstimateRadius, in units of this
-/// spread, decays with exp(-time / 165 h). The 165 h are fitted to the JMA's best tracks of 2015 to
-/// 2021. The correlation of the 30 kt radii of one storm is 0.87 after 24 h (2,864 pairs), 0.76
-/// after 48 h, 0.64 after 72 h, 0.55 after 96 h and 0.48 after 120 h (798 pairs).
+/// This spread depends on the storm's wind at each time. For the radii of 30 and 34 kt winds, it
+/// is 0.45 if the storm's wind is below 48 kt, 0.41 from 48 kt and 0.35 from 64 kt. After a report
+/// with radii, the spread grows from the error of the report to this value. The logarithm of
+/// radius / EstimateRadius, in units of this spread, decays with exp(-time / 165 h). The 165 h are
+/// fitted to the JMA's best tracks of 2015 to 2021. The correlation of the 30 kt radii of one
+/// storm is 0.87 after 24 h (2,864 pairs), 0.76 after 48 h, 0.64 after 72 h, 0.55 after 96 h and
+/// 0.48 after 120 h (798 pairs).
 
 #include <vector>
 

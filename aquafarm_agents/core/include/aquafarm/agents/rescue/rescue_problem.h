@@ -91,8 +91,11 @@ struct RescueProblem {
   std::vector<RescueDevice> devices;  ///< device i is site i of the ensemble
   std::vector<RescuePort> ports;      ///< at least one
   std::vector<RescueShip> ships;
-  double handling_s{};        ///< duration of a pickup or drop-off [s]
-  double depart_s{};          ///< earliest departure of a ship that CompareChanges adds [s]
+  double handling_s{};  ///< duration of a pickup or drop-off [s]
+  /// Earliest departure of the ship that CompareChanges adds if all ships have devices aboard
+  /// [s after the start of the plan]. If a ship has no devices aboard, the added ship is ready at
+  /// the same time as the first such ship.
+  double depart_s{};
   std::int32_t abort_ring{};  ///< ring of the ensemble whose winds stop a ship
   double exposure_damage{};   ///< share of value lost per step of the ensemble and unit of |risk|
   /// In [0, 1]. Above 0: the plan minimizes the mean loss of this share of the members, the worst

@@ -30,9 +30,11 @@ struct RunOptions {
   std::string credit{"own"};  ///< one of kCredits
   std::uint64_t seed{1};      ///< below 2^63
   std::uint64_t episodes{};   ///< limit; 0: no limit
-  std::uint64_t steps{};      ///< limit in farm steps; 0: no limit. If both are 0: DefaultSteps
-  std::string run_dir;        ///< run folder (run_folder.h)
-  bool resume{};              ///< true: resumes the run in run_dir
+  /// Limit in farm steps; 0: no limit. If `episodes` and `steps` are both 0, a resumed run keeps
+  /// the limits in its run.json, and a new run gets the limit of DefaultSteps.
+  std::uint64_t steps{};
+  std::string run_dir;  ///< run folder (run_folder.h)
+  bool resume{};        ///< true: resumes the run in run_dir
   double checkpoint_period_s{30.0};
   double progress_period_s{1.0};
   std::int32_t evaluation_episodes{1000};  ///< of the greedy policy at the end; 0: no evaluation

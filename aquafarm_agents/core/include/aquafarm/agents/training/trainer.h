@@ -73,8 +73,8 @@ enum class TrainingEnd : std::uint8_t {
 class Trainer {
  public:
   /// @param environment, learner, folder must outlive the trainer
-  /// @param folder receives metrics and checkpoints; null (as on ranks other than 0): none are
-  ///   written
+  /// @param folder receives metrics and checkpoints. If it is null, as on ranks other than 0, this
+  ///   trainer writes no files
   /// @throws InputError if no limit is set, or if the seed is not below kEvaluationSeedBit
   Trainer(Environment& environment, Learner& learner, const TrainerOptions& options,
           RunFolder* folder = nullptr);

@@ -203,11 +203,14 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual([False, False, True, False],
                          [axes.texts[0].get_in_layout() for axes in charts])
 
-    def test_almost_equal_references_share_one_line(self):
-        ends = figures._plot_references(self.axes, {"planner": 276.0, "clairvoyant": 277.6, "x": 5.0}, 9)
-        self.assertEqual([(9, 277.6, "clairvoyant 278, planner 276"), (9, 5.0, "x 5")],
+    def test_a_reference_that_nearly_equals_a_higher_one_is_left_out(self):
+        references = {"planner": 276.0, "clairvoyant": 277.6, "x": 5.0}
+        ends = figures._plot_references(self.axes, references, 9)
+        self.assertEqual([(9, 277.6, "clairvoyant 278"), (9, 5.0, "x 5")],
                          [(end.x, end.y, end.name) for end in ends])
         self.assertEqual([277.6, 5.0], [line.get_ydata()[0] for line in self.axes.lines])
+        ends = figures._plot_references(self.axes, references, 9, alike=0.0)
+        self.assertEqual([277.6, 276.0, 5.0], [end.y for end in ends])
 
     def test_names_are_legible_on_white(self):
         def contrast(colour):
@@ -313,27 +316,42 @@ class FiguresTest(unittest.TestCase):
         self.assertGreaterEqual(min(one.x0 for one in names), axes.get_window_extent().x0,
                                 "right of the axis of returns")
 
-    def test_fig_14_enlarges_the_second_half_if_a_learner_is_near_the_reference(self):
-        for run in self.runs["lstm_dqn"]:
-            run["curve"]["return"][:] = 80.0
-        full, half = self.drawn(figures.draw_repeated, self.contestants, self.runs, OPTIMUM).axes
-        self.assertEqual((60.0, 120.0), half.get_xlim(), "the runs are equal, so there is no bar")
-        self.assertAlmostEqual(63.0, half.get_ylim()[0], msg="70 % of the clairvoyant")
-        self.assertEqual({"LSTM-DQN", "clairvoyant 90"}, self.names_of(half))
-        self.assertEqual(3, len(self.names_of(full)))
-        self.assertEqual("Enlarged: second half, above 70 % of the clairvoyant; bars: range of the "
-                         "runs at the end\n(SARSA is mostly below)", half.get_title("left"))
-        self.assertEqual([], list(half.collections), "no shades")
+    def test_fig_14_enlarges_the_end_for_all_learners_that_learn(self):
+        for name, returns in (("sarsa", (70.0, 85.0)), ("lstm_dqn", (80.0, 80.0))):
+            for run, value in zip(self.runs[name], returns):
+                run["curve"]["return"][:30] = -500.0
+                run["curve"]["return"][30:] = value
+        _, end = self.drawn(figures.draw_repeated, self.contestants, self.runs,
+                            {**OPTIMUM, "planner": 89.0}).axes
+        self.assertEqual({"LSTM-DQN", "SARSA"}, set(self.lines(end)))
+        self.assertEqual({"LSTM-DQN", "SARSA", "clairvoyant 90", "planner 89", "range of\nthe runs"},
+                         self.names_of(end), "a line for each reference")
+        self.assertEqual(90.0, end.get_xlim()[0], "the last 25 %")
+        self.assertLess(end.get_ylim()[0], 70.0)
+        self.assertLess(90.0, end.get_ylim()[1])
+        self.assertEqual("Enlarged: the last 25 % of the training, medians of the runs",
+                         end.get_title("left"))
+        bar, = (bars for bars in end.containers)
+        segment, = bar.lines[2][0].get_segments()
+        np.testing.assert_allclose([70.0, 85.0], segment[:, 1])
+        self.assertTrue(120.0 < segment[0, 0] < end.get_xlim()[1], "right of the lines")
+        sarsa, = (text for text in end.texts if text.get_text() == "SARSA")
+        np.testing.assert_allclose((segment[0, 0], 77.5), sarsa.xy, err_msg="from bar to name")
+
+    def test_fig_14_enlarges_nothing_if_less_than_two_learners_have_high_returns(self):
+        for name in ("sarsa", "lstm_dqn"):
+            for run in self.runs[name]:
+                run["curve"]["return"][:] = 80.0
+        self.assertEqual(2, len(self.drawn(figures.draw_repeated, self.contestants, self.runs,
+                                           OPTIMUM).axes))
+        self.runs["sarsa"][1]["curve"]["return"][-60:] = -1.0
+        self.assertEqual(1, len(self.drawn(figures.draw_repeated, self.contestants, self.runs,
+                                           OPTIMUM).axes), "a run ends below 0")
         for run in self.runs["sarsa"]:
-            run["curve"]["return"][:] = 70.0
-        _, half = self.drawn(figures.draw_repeated, self.contestants, self.runs, OPTIMUM).axes
-        self.assertEqual({"LSTM-DQN", "SARSA"}, set(self.lines(half)))
-        self.assertTrue(half.get_title("left").endswith("at the end"))
-        self.runs["sarsa"][0]["curve"]["return"][:] = 85.0
-        _, half = self.drawn(figures.draw_repeated, self.contestants, self.runs, OPTIMUM).axes
-        bar, = (line for line in half.lines if line.get_label() == "_range")
-        self.assertEqual([70.0, 85.0], list(bar.get_ydata()))
-        self.assertTrue(120.0 < bar.get_xdata()[0] < half.get_xlim()[1], "right of the lines")
+            run["curve"]["return"][:] = 80.0
+            run["curve"]["success"][:] = 0.0
+        self.assertEqual(1, len(self.drawn(figures.draw_repeated, self.contestants, self.runs,
+                                           OPTIMUM).axes), "one learns the task")
 
     def test_the_headline_of_fig_12c_names_the_errors_that_rise(self):
         for name, last in (("sarsa", 30.0), ("lstm_dqn", 5.0)):
@@ -392,6 +410,12 @@ class FiguresTest(unittest.TestCase):
         ours, theirs = self.axes.lines
         self.assertEqual(ours.get_color(), theirs.get_color())
         self.assertEqual(("-", "--"), (ours.get_linestyle(), theirs.get_linestyle()))
+        random = by_name("random")
+        self.assertEqual([random, printed, by_name("sarsa")],
+                         headlines.without_printed([random, printed, by_name("sarsa")]))
+        self.assertEqual([("RANDOM", "solid"), ("SARSA", "solid")],
+                         [(one.label, one.linestyle)
+                          for one in headlines.without_printed([random, printed])])
 
     def test_fig_14_shades_from_the_lowest_run_to_the_highest(self):
         figures.plot_repeated(self.axes, self.contestants, self.runs, {})

@@ -49,9 +49,16 @@ class HeadlinesTest(unittest.TestCase):
         ends = [End(9, 4.0, "red", "SARSA, printed"), End(9, -2.0, "blue", "DQN, printed")]
         self.assertEqual("As printed, DQN (−2) does not learn the task within 150 episodes. SARSA "
                          "ends with a return of 4.", self.highest(ends))
-        self.assertEqual("As printed, SARSA and DQN learn fastest: 980 time steps to 90 % of the "
-                         "return of the clairvoyant.", self.times().replace("DQN and SARSA",
-                                                                            "SARSA and DQN"))
+        goal = "90 % of the return of the clairvoyant"
+        self.assertEqual(f"As printed, SARSA and DQN learn fastest: 980 time steps to {goal}.",
+                         self.times().replace("DQN and SARSA", "SARSA and DQN"))
+        self.contestants = headlines.without_printed(self.contestants)
+        self.assertEqual({"SARSA", "DQN"}, {one.label for one in self.contestants})
+        self.runs["sarsa_printed"] = self.runs["dqn_printed"] = [run_of(np.zeros(150))]
+        self.assertEqual(f"As printed, no learner reaches {goal} within 150 episodes.",
+                         self.times())
+        self.assertEqual("No learner", headlines.as_printed("No learner", [
+            *self.contestants, by_name("sarsa")]), "not all are printed")
 
     def test_learners_without_successes_or_below_random_do_not_learn(self):
         self.contestants.append(by_name("random"))

@@ -6,6 +6,7 @@ from matplotlib.patheffects import withStroke
 
 from aquafarm_benchmark import measures
 from aquafarm_benchmark.curves import End, columns_of_runs, describe_shading, moving_means
+from aquafarm_benchmark.headlines import as_printed
 from aquafarm_benchmark.style import (chart_grid, explain, joined, label_axes, legible, line_style,
                                       name_ends, save, shade)
 
@@ -41,7 +42,7 @@ def draw_square_error(path, contestants, runs):
     charts[0].set_ylim(low / _FOOTROOM, _HEADROOM * high)  # the charts share their scale
     for axes, marked in found.items():
         _name_success(axes, *marked)
-    explain(figure, describe_courses(courses),
+    explain(figure, as_printed(describe_courses(courses), learners),
             f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic. Dots: "
             "first, last and, if it is far from both, highest value; ×: last value relative to the "
             f"first. Grey: {100 * _SUCCESS:.0f} % of the last {measures.WINDOW} episodes succeed "

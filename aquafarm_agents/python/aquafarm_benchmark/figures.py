@@ -72,25 +72,22 @@ def _draw_returns(path, contestants, find, note, ylabel, plots, xlabel="episode"
 
 
 _LOGARITHMIC = "#eef1f4"  # background of the logarithmic part of a scale
-_ENLARGED = 0.7  # the lower chart of Fig. 14 begins at this fraction of the best reference
+_END = 0.25  # the lower chart of Fig. 14 shows this last part of the training
+_STRIP = 0.15  # width of the space for ranges to the right of it [lengths of this part]
 _LETTER = 0.013  # mean width of a letter of a name [widths of the axes]
 _BEFORE = 0.8  # Fig. 12a begins at this fraction of the steps of the first value
-_BAR = 0.012  # distance of the bars of ranges [last episode]
 _TITLE = 31  # max length of a line of a title of Fig. 13
-_ALIKE = 0.02  # references share one line if their relative difference is below this
+_ALIKE = 0.02  # a reference is not drawn if it is below another one by less than this
 
 
-def _plot_references(axes, references, end, digits=0):
-    """Draws horizontal lines for reference values {name: value}. Similar values share one line, see
-    _ALIKE. Returns the ends of the lines."""
+def _plot_references(axes, references, end, digits=0, alike=_ALIKE):
+    """Draws horizontal lines for reference values {name: value}. Leaves out a value that is below
+    another one by less than `alike`, relative to its size. Returns the ends of the lines."""
     ends = []
     for name, value in sorted(references.items(), key=lambda pair: -pair[1]):
-        words = f"{name} {value:.{digits}f}"
-        if ends and ends[-1].y - value < _ALIKE * abs(value):
-            ends[-1] = ends[-1]._replace(name=f"{ends[-1].name}, {words}")
-            continue
-        axes.axhline(value, color="black", linestyle="--", linewidth=1.2, label="_reference")
-        ends.append(End(end, value, "black", words))
+        if not ends or ends[-1].y - value >= alike * abs(value):
+            axes.axhline(value, color="black", linestyle="--", linewidth=1.2, label="_reference")
+            ends.append(End(end, value, "black", f"{name} {value:.{digits}f}"))
     return ends
 
 
@@ -322,22 +319,16 @@ def plot_mean_score(axes, contestants, runs, references, is_shaded=True):
 
 
 def draw_repeated(path, contestants, runs, references):
-    """Draws Fig. 14: the 50-episode mean return over all runs. A second chart enlarges the returns
-    above _ENLARGED of the best reference in the second half of the training. It shows the learners
-    whose median is there at least half of the time. If there are none, it is left out."""
-    best = max(references, key=references.get, default=None)
-    level = _ENLARGED * references[best] if best else 0.0
+    """Draws Fig. 14: the 50-episode mean return over all runs. A second chart enlarges the end of
+    the training for the learners that learn the task. It is left out if there are fewer than two,
+    or if a return in it is below 0."""
+    failed = headlines.failed_learners(contestants, runs)
+    learnt = [one for one in headlines.learners_of(contestants) if one.label not in failed]
     plots = [(lambda axes: plot_repeated(axes, contestants, runs, references), "", True)]
-    high = [one for one in contestants if _is_mostly_above(runs[one.name], level)]
-    if level > 0.0 and high:
-        title = f"Enlarged: second half, above {100 * _ENLARGED:.0f} % of the {best}"
-        if most_common_count(contestants, runs) > 1:
-            title += "; bars: range of the runs at the end"
-        low = [one.label for one in headlines.learners_of(contestants) if one not in high]
-        if low:
-            title += f"\n({joined(low)} {'is' if len(low) == 1 else 'are'} mostly below)"
-        plots.append((lambda axes: plot_enlarged(axes, high, runs, references, level), title,
-                      False))
+    if len(learnt) > 1 and all(_lowest_at_end(runs[one.name]) > 0.0 for one in learnt):
+        title = f"Enlarged: the last {100 * _END:.0f} % of the training" + (
+            ", medians of the runs" if most_common_count(contestants, runs) > 1 else "")
+        plots.append((lambda axes: plot_enlarged(axes, learnt, runs, references), title, False))
     _draw_returns(
         path, contestants,
         lambda ends: headlines.highest(contestants, runs, ends, "return"),
@@ -345,11 +336,12 @@ def draw_repeated(path, contestants, runs, references):
         f"{describe_shading(contestants, runs)}", f"{measures.WINDOW}-episode mean return", plots)
 
 
-def _is_mostly_above(of_one, level):
-    """Returns whether the median of the runs is above a level at least half of the time, in the
-    second half of the training."""
-    median = np.median(_repeated(of_one)[1], axis=0)
-    return np.mean(median[len(median) // 2:] > level) >= 0.5
+def _lowest_at_end(of_one):
+    """Returns the lowest value that the enlarged chart shows of a learner: of the median in the
+    last part of the training, or of the last value of a run."""
+    episodes, means = _repeated(of_one)
+    at_end = episodes >= (1.0 - _END) * episodes[-1]
+    return min(np.median(means, axis=0)[at_end].min(), means[:, -1].min())
 
 
 def _repeated(of_one):
@@ -358,32 +350,43 @@ def _repeated(of_one):
     return smooth[0][0], np.array([curve for _, curve in smooth])
 
 
-def plot_repeated(axes, contestants, runs, references, is_shaded=True):
+def plot_repeated(axes, contestants, runs, references, is_enlarged=False):
     """Plots the 50-episode mean return: the median of the runs, shaded between their lowest and
-    highest value unless is_shaded is False. Returns the ends of the lines."""
-    ends = [_plot_shaded(axes, *_repeated(runs[one.name]), one, is_shaded) for one in contestants]
-    return ends + _plot_references(axes, references, max(end.x for end in ends))
+    highest value. Returns the ends of the lines.
+
+    is_enlarged: True draws no shades, and a line for each reference
+    """
+    ends = [_plot_shaded(axes, *_repeated(runs[one.name]), one, not is_enlarged)
+            for one in contestants]
+    return ends + _plot_references(axes, references, max(end.x for end in ends),
+                                   alike=0.0 if is_enlarged else _ALIKE)
 
 
-def plot_enlarged(axes, contestants, runs, references, level):
-    """Plots the medians of the second half of Fig. 14, from the return `level` to the best
-    reference. Bars to the right of the lines show the ranges of the runs at the end, because shades
-    would cover each other. Returns the ends of the lines that are in the chart."""
-    ends = plot_repeated(axes, contestants, runs, references, is_shaded=False)
-    best, last = max(references.values()), max(end.x for end in ends)
+def plot_enlarged(axes, contestants, runs, references):
+    """Plots the medians of the last part of Fig. 14. Bars to the right of the lines show the ranges
+    of the runs at the end, because shades would cover each other. Returns the ends of the lines; a
+    line with a bar ends there."""
+    ends = plot_repeated(axes, contestants, runs, references, is_enlarged=True)
+    last = max(end.x for end in ends)
+    start, strip = (1.0 - _END) * last, _STRIP * _END * last
     ranges = sorted((end for end in ends if end.low < end.high), key=lambda end: end.y)
-    for i, end in enumerate(ranges):  # the highest is next to the names
-        x = (1.0 + _BAR * (i + 1)) * last
-        axes.plot([x, x], [end.low, end.high], color=end.colour, linewidth=4.5, alpha=0.75,
-                  label="_range", solid_capstyle="butt")
-        axes.plot(x, end.y, "o", color="white", markeredgecolor=end.colour, markersize=5, zorder=5,
-                  label="_median")
-    right = (1.0 + _BAR * (len(ranges) + 1)) * last if ranges else last
+    for i, end in enumerate(ranges, start=1):  # the highest is next to the names
+        x = last + strip * i / (len(ranges) + 1)
+        axes.errorbar(x, end.y, [[end.y - end.low], [end.high - end.y]], color=end.colour, fmt="o",
+                      markersize=5, linewidth=2.0, capsize=4.0, capthick=2.0, zorder=5)
+        ends[ends.index(end)] = end._replace(x=x)
+    right = last + strip if ranges else last
+    ends = [end if end.x > last else end._replace(x=right) for end in ends]
     if ranges:
-        axes.axvline(last, color="0.6", linewidth=0.8, label="_end")
-    axes.set_xlim(last / 2, right)
-    axes.set_ylim(level, best + 0.06 * (best - level))
-    return [end._replace(x=right) for end in ends if level <= end.y]
+        axes.axvspan(last, right, color="0.95", linewidth=0, zorder=0)
+        axes.annotate("range of\nthe runs", (last + strip / 2.0, 0.0), xytext=(0, -19), ha="center",
+                      va="top", xycoords=axes.get_xaxis_transform(), textcoords="offset points")
+    low = min(_lowest_at_end(runs[one.name]) for one in contestants)
+    high = max([*(np.max(line.get_ydata()) for line in axes.lines), *(end.high for end in ranges)])
+    margin = 0.06 * (high - low)
+    axes.set_xlim(start, right)
+    axes.set_ylim(low - margin, high + margin)
+    return ends
 
 
 def _plot_shaded(axes, episodes, values, one, is_shaded=True):

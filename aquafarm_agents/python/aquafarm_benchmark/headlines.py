@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The headlines of the figures of §4, computed from the data of results.py. A headline begins with
 the message of the figure. A second sentence states what limits it, such as ranges that overlap."""
+import dataclasses
 import math
 
 import numpy as np
 
 from aquafarm_benchmark import measures
 from aquafarm_benchmark.curves import columns_of_runs, moving_means
-from aquafarm_benchmark.protocol import PRINTED
+from aquafarm_benchmark.protocol import PRINTED, are_printed
 from aquafarm_benchmark.style import joined, number
 
 REACHED = 0.9  # a learner has learnt once it reaches this fraction of the best reference
@@ -41,12 +42,24 @@ def describe_failed(headline):
             if "not learn the task" in headline else "")
 
 
-def _as_printed(text, names):
-    """If all names end with PRINTED, removes PRINTED from a headline and begins with "As printed"
-    instead."""
-    if text and all(name.endswith(PRINTED) for name in names):
-        return f"As printed, {text.replace(PRINTED, '')}"
-    return text
+def as_printed(text, contestants):
+    """Returns a headline, which begins with "As printed" if all learners have the settings that the
+    paper prints; their names then need no ", printed"."""
+    if not text or not are_printed(learners_of(contestants)):
+        return text
+    is_name = any(text.startswith(one.label) for one in contestants)
+    text = text.replace(PRINTED, "")
+    return f"As printed, {text if is_name else text[0].lower() + text[1:]}"
+
+
+def without_printed(contestants):
+    """Returns the contestants as figures show them. If all learners have the settings that the
+    paper prints, the headline states this once (as_printed): their labels do not contain PRINTED,
+    and their lines are solid."""
+    if not are_printed(learners_of(contestants)):
+        return contestants
+    return [dataclasses.replace(one, label=one.label.replace(PRINTED, ""), linestyle="solid")
+            for one in contestants]
 
 
 def highest(contestants, runs, ends, what, digits=0):
@@ -64,7 +77,7 @@ def highest(contestants, runs, ends, what, digits=0):
             f"{within(contestants, runs)}."] if names else []
     learnt = [end for end in last if end.name not in failed]
     said += _best_sentences(learnt, what, digits) if learnt else []
-    return _as_printed(" ".join(said), [end.name for end in last])
+    return as_printed(" ".join(said), contestants)
 
 
 def _best_sentences(ends, what, digits):
@@ -165,7 +178,7 @@ def learning_times(contestants, runs, references):
     elif late:
         said.append(f"{joined(late)} {'does' if len(late) == 1 else 'do'} not reach it "
                     f"{within(contestants, runs)}.")
-    return _as_printed(" ".join(said), steps_of)
+    return as_printed(" ".join(said), contestants)
 
 
 def _ratio(ratio):
@@ -241,4 +254,4 @@ def recovery_times(contestants, runs):
     if never:
         said += (f" {joined(never)} {'does' if len(never) == 1 else 'do'} not rise above 0 "
                  f"{within(contestants, runs)}.")
-    return _as_printed(said, [name for _, name in found])
+    return as_printed(said, contestants)

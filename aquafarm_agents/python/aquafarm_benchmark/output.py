@@ -42,12 +42,12 @@ def tabulate(folder, contestants, found, settings, people):
 def draw(folder, everyone, found, rows):
     """Writes the figures of the results."""
     # Imported here, because matplotlib takes a second to load, which would delay --help.
-    from aquafarm_benchmark import (error_figure, evaluation_figure, figures, loss_figures,
-                                    route_figure)
+    from aquafarm_benchmark import (error_figure, evaluation_figure, figures, headlines,
+                                    loss_figures, route_figure)
 
     pictures = folder / "figures"
     pictures.mkdir(exist_ok=True)
-    trained = [one for one in everyone if one.learns]
+    trained = headlines.without_printed([one for one in everyone if one.learns])
     references = {one.label: row["return_per_episode"] for one, row in zip(everyone, rows)
                   if one.name in ("planner", OPTIMUM.name)}
     if trained:

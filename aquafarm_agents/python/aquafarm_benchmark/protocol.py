@@ -132,6 +132,7 @@ CONTESTANTS += REFERENCES
 OPTIMUM = Contestant("clairvoyant", "clairvoyant", "#000000", learns=False, cost=0.2, repeats=False)
 
 PRINTED = ", printed"  # end of the label of a learner with the settings that the paper prints
+_PRINTED_NAME = "_printed"  # end of its name
 # The farm of `paper` with the plain observation: no precomputed routes, no lookahead risk.
 PLAIN_SCENARIO = "paper_plain"
 
@@ -139,9 +140,15 @@ PLAIN_SCENARIO = "paper_plain"
 def _printed(one, options, cost):
     """Returns a row with the settings that the paper prints, on the scenario with the plain
     observation. Its line is dashed and has the colour of the tuned learner."""
-    return dataclasses.replace(one, name=f"{one.name}_printed", algorithm=one.algorithm_name,
+    return dataclasses.replace(one, name=one.name + _PRINTED_NAME, algorithm=one.algorithm_name,
                                label=one.label + PRINTED, linestyle="dashed", options=options,
                                exploration="", cost=cost, scenario=PLAIN_SCENARIO)
+
+
+def are_printed(learners):
+    """Returns whether all learners have the settings that the paper prints; False if there are
+    none."""
+    return bool(learners) and all(one.name.endswith(_PRINTED_NAME) for one in learners)
 
 
 def _changed(one, suffix, label, colour, changes=(), scenario=""):

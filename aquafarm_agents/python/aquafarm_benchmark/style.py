@@ -115,7 +115,7 @@ def name_ends(axes, ends):
     gap = _NAME_PT / height_pt
     places = {}
     for is_inside, high in ((True, _INSIDE), (False, 1.0 + 0.3 * gap)):
-        group = [end for end in ends if (at[end][0] < 0.95) == is_inside]
+        group = [end for end in ends if (at[end][0] < 1.0 - _NEAR) == is_inside]
         places.update(zip(group, spread([at[end][1] for end in group], gap, high=high)))
     for end, place in places.items():
         # A name stands to the right of all line ends that are up to _NEAR to the right of its own.

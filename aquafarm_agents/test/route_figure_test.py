@@ -8,7 +8,7 @@ import unittest
 
 import numpy as np
 import rosunit
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Polygon, Rectangle
 
 from aquafarm_benchmark import route_figure, style
 
@@ -21,9 +21,10 @@ class RouteFigureTest(unittest.TestCase):
 
     def test_every_second_cell_has_an_arrow_in_the_direction_of_its_move(self):
         moves = [[0, 0, "north"], [1, 0, "east"], [2, 2, "south_west"], [3, 3, "pickup"],
-                 [4, 0, "drop_off"], [6, 6, "north"], [8, 8, "north"]]
+                 [4, 0, "drop_off"], [6, 6, "north"], [8, 8, "north"], [10, 8, "north"]]
         route_figure.plot_moves(self.axes, moves, {"ports": [[6, 6]], "devices": [{"cell": [8, 8]}]})
-        arrows, pickups, drop_offs = self.axes.collections
+        arrows, sign, pickups, drop_offs = self.axes.collections
+        self.assertEqual(("best move", 0), (sign.get_label(), len(sign.get_offsets())), "the key")
         np.testing.assert_array_equal([[0, 0], [2, 2]], arrows.get_offsets())
         np.testing.assert_allclose([0.0, -arrows.V[0] / np.sqrt(2.0)], arrows.U, atol=1e-12)
         self.assertGreater(arrows.V[0], 0.0)
@@ -37,10 +38,12 @@ class RouteFigureTest(unittest.TestCase):
                  {"cell": [1, 0], "action": "west", "aboard": 1},
                  {"cell": [0, 0], "action": "drop_off", "aboard": 1},
                  {"cell": [0, 0], "aboard": 0}]
+        storms = ([{"x": 1.0, "y": 0.0, "radii": [0.5]}], [{"x": 0.0, "y": 0.0, "radii": [0.5]}])
+        steps = [{**step, "disasters": storms[at > 1]} for at, step in enumerate(steps)]
         self.assertEqual([(False, [[0, 0], [1, 0]]), (True, [[1, 0], [1, 0], [0, 0]]),
                           (False, [[0, 0], [0, 0]])], route_figure.legs(steps))
         names = route_figure.place_names({"devices": [{"cell": [1, 0]}], "ports": [[5, 5], [0, 0]]})
-        self.assertEqual([(1, "pickup", "F0", 2), (2, "drop-off", "B", 4)],
+        self.assertEqual([(1, "pickup", "F0", 2, "yes → no"), (2, "drop-off", "B", 4, "no → yes")],
                          route_figure.plot_route(self.axes, steps, names, {(5, 5), (0, 0)}))
         for line, cells in zip(self.axes.lines, ([(0, 0), (1, 0)], [(1, 0), (0, 0)])):
             np.testing.assert_array_equal(cells, line.get_xydata()[[0, -1]])
@@ -82,15 +85,24 @@ class RouteFigureTest(unittest.TestCase):
             file.write_text(f"disasters:\n{one}")
             risks = route_figure.risks_of(file)
             route_figure._disasters(self.axes, steps, sea, risks)
-            labels = {text.get_text(): np.hypot(text.xy[0] - 4.0, text.xy[1] - 4.0)
-                      for text in self.axes.texts}
-            self.assertEqual({"step 0, risk −5": 3.0, "−20": 1.0},
-                             {words: round(radius, 6) for words, radius in labels.items()})
+            label, = self.axes.texts
+            self.assertEqual(("step 0", 3.0), (label.get_text(), round(float(np.hypot(
+                label.xy[0] - 4.0, label.xy[1] - 4.0)), 6)))
+            self.assertEqual(["rings at step 0 (risk −5 to −20)"],
+                             self.axes.get_legend_handles_labels()[1])
+            self.assertEqual(2, sum(isinstance(one, Polygon) for one in self.axes.patches))
             file.write_text(f"disasters:\n{one}{one}")
             self.assertEqual([], route_figure.risks_of(file), "which disaster has which is unknown")
         _, self.axes = style.plt.subplots()
         route_figure._disasters(self.axes, steps, sea, [-20.0])
-        self.assertTrue(all(text.get_text() == "step 0" for text in self.axes.texts), "other rings")
+        self.assertEqual(["rings at step 0"], self.axes.get_legend_handles_labels()[1],
+                         "the scenario has other rings")
+        _, self.axes = style.plt.subplots()
+        later = [{**steps[0], "action": "pickup"}, *steps]
+        route_figure._disasters(self.axes, later, sea, risks)
+        signs, labels = self.axes.get_legend_handles_labels()
+        self.assertEqual("outer ring at step 1", labels[1])
+        self.assertNotEqual(tuple(signs[0].get_color()), tuple(signs[1].get_color()))
 
 
 if __name__ == "__main__":

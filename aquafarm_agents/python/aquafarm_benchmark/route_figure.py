@@ -2,11 +2,12 @@
 """Draws route files as PNG: the preferred action of a policy in each cell and its route (Fig.
 11)."""
 import json
-import re
 
 import numpy as np
+import yaml
 from matplotlib.collections import PatchCollection
 from matplotlib.patches import Polygon, Rectangle
+from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 
 from aquafarm_benchmark.style import legible, number, plt, save
@@ -28,11 +29,14 @@ _KINDS = {"temporary_breeding": ("s", "#e8dcc8", "temporary"),
           "monitoring": ("^", "#a8e6a0", "monitoring"),
           "breeding_release": ("h", "#c4c4ff", "release"),
           "deep_water_breeding": ("o", "#7fd4d4", "deep water")}
+_MOVE = "#34506b"
 _SEA = "#eaf3f9"
 _LAND = "#c9b98a"
 EDGE = "#5b6b78"
 # Marker and name of the actions at a stop.
 STOPS = {"pickup": ("D", "pickup"), "drop_off": ("o", "drop-off")}
+_IN_RING = "in a ring: step 0 → at the stop"  # title of a column of the table of stops
+_WIDTHS = (0.1, 0.17, 0.09, 0.11, 0.53)  # of the columns of this table
 _STOP_STYLE = {"s": 400, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 2.5}
 RING = "#b22222"
 
@@ -82,8 +86,8 @@ def draw_route(path, label, route_file, best_file=None):
         shown.set_ylabel("cells to the north")
     letter = f"({'abc'[len(panels)]}) " if panels else ""
     axes.set_title(f"{letter}Route in this episode", fontsize=11.5)
-    figure.suptitle(f"{label}: {route['reason'].replace('_', ' ')} after {len(route['steps']) - 1} "
-                    f"steps, return {route['return']:.1f}" +
+    figure.suptitle(f"{label} in episode {route['episode']}: {route['reason'].replace('_', ' ')} "
+                    f"after {len(route['steps']) - 1} steps, return {route['return']:.1f}" +
                     (f" (clairvoyant: {best['return']:.1f})" if is_same else ""), fontsize=13.5,
                     weight="bold", x=0.01, ha="left")
     _explain(all_axes[-1], [*all_axes[:len(panels)], axes], stops)
@@ -152,10 +156,10 @@ def draw_chart(axes, chart, window=None, left=None):
 
 def plot_moves(axes, moves, chart):
     """Draws the preferred actions. A move is an arrow, in every second column and row except at
-    ports, at devices and below their names. A pickup or drop-off is a mark."""
-    taken = [*chart["ports"], *([device["cell"][0] + right, device["cell"][1] - down]
-                                for device in chart["devices"] for right in range(3)
-                                for down in range(2))]
+    ports and around devices and their names. A pickup or drop-off is a mark."""
+    taken = [*chart["ports"], *([device["cell"][0] + right, device["cell"][1] + up]
+                                for device in chart["devices"] for right in range(-1, 3)
+                                for up in range(-1, 2))]
     pointed = [(x, y, *_DIRECTIONS[action]) for x, y, action in moves
                if action in _DIRECTIONS and x % _EVERY == 0 and y % _EVERY == 0
                and [x, y] not in taken]
@@ -163,7 +167,8 @@ def plot_moves(axes, moves, chart):
         x, y, dx, dy = np.array(pointed, dtype=float).T
         share = _ARROW * _EVERY / np.hypot(dx, dy)
         axes.quiver(x, y, dx * share, dy * share, pivot="mid", angles="xy", scale_units="xy",
-                    scale=1, width=0.006, headwidth=4.5, color="#34506b", zorder=4)
+                    scale=1, width=0.006, headwidth=4.5, color=_MOVE, zorder=4)
+        axes.scatter([], [], marker="$\u2192$", s=220, color=_MOVE, label="best move")
     for action, (marker, name) in STOPS.items():
         cells = [(x, y) for x, y, chosen in moves if chosen == action]
         if cells:
@@ -210,8 +215,9 @@ def place_names(chart):
 
 
 def plot_route(axes, steps, names, ports):
-    """Draws the legs of a route and numbers its stops. Returns [(number, action, place, step)].
-    An action of step t is complete in step t + 1.
+    """Draws the legs of a route and numbers its stops. Returns [(number, action, place, step, in a
+    ring)]. An action of step t is complete in step t + 1. The last column states whether the place
+    is in a ring at the start and in that step.
 
     names: see place_names
     ports: cells (x, y) of the ports; the numbers of stops there are below the names of the ports
@@ -222,8 +228,12 @@ def plot_route(axes, steps, names, ports):
     stops, here = [], {}
     for at, step in enumerate(steps):
         if step.get("action") in STOPS:
+            then = steps[min(at + 1, len(steps) - 2)]  # in the last state disasters may have ended
+            inside = ["yes" if any(covers_any(ring, [step["cell"]]) for disaster in one["disasters"]
+                                   for ring in rings_of(disaster)) else "no"
+                      for one in (steps[0], then)]
             stops.append((len(stops) + 1, STOPS[step["action"]][1],
-                          names.get(tuple(step["cell"]), ""), at + 1))
+                          names.get(tuple(step["cell"]), ""), at + 1, " → ".join(inside)))
             here.setdefault(tuple(step["cell"]), []).append(len(stops))
     for cell, numbers in here.items():  # a cell may have several stops
         offset, across, up = ((0, -12), "center", "top") if cell in ports else (
@@ -236,17 +246,20 @@ def plot_route(axes, steps, names, ports):
 
 
 def _explain(empty, charts, stops):
-    """Writes the legend and the table of stops on empty axes, next to the map of the route."""
+    """Writes the legend and below it the table of stops on empty axes, next to the map of the
+    route."""
     symbols = symbols_of(charts)
-    empty.legend(symbols.values(), symbols.keys(), loc="upper left", frameon=False, fontsize=11,
-                 bbox_to_anchor=(0.0, 1.0), labelspacing=0.7, ncols=2, markerscale=0.8)
+    legend = empty.legend(symbols.values(), symbols.keys(), loc="upper left", frameon=False,
+                          fontsize=11, bbox_to_anchor=(0.0, 1.0), labelspacing=0.7, ncols=2,
+                          markerscale=0.8)
     if stops:
+        empty.figure.draw_without_rendering()  # sets the size of the axes
+        top = empty.transAxes.inverted().transform(legend.get_window_extent())[0][1]
         height = 0.06 * (len(stops) + 1)
-        table = empty.table(stops, colLabels=["stop", "action", "at", "step"], cellLoc="left",
-                            colLoc="left", edges="horizontal",
-                            bbox=(0.02, 0.57 - height, 0.6, height))
+        table = empty.table(stops, colLabels=["stop", "action", "at", "step", _IN_RING],
+                            cellLoc="left", colLoc="left", edges="horizontal", colWidths=_WIDTHS,
+                            bbox=(0.02, top - 0.02 - height, 1.15, height))
         table.auto_set_font_size(False)
-        table.auto_set_column_width(range(len(stops[0])))
         table.set_fontsize(11)
 
 
@@ -261,12 +274,19 @@ def rings_of(disaster):
                                disaster["y"] + radii * np.cos(bearings)])
 
 
+def covers_any(ring, cells):
+    """Returns whether a ring [360, 2] contains one of the cells [x, y]."""
+    return Path(ring).contains_points(cells).any()
+
+
 def risks_of(scenario_file):
     """Returns the risks of the rings, from the innermost to the outermost, if the scenario has one
     disaster with listed risks. Returns an empty list if not, or if there is no file."""
-    text = scenario_file.read_text(encoding="utf-8") if scenario_file.is_file() else ""
-    found = re.findall(r"^ +risks: \[([^\]]*)\]$", text, re.MULTILINE)
-    return [float(one) for one in found[0].split(",")] if len(found) == 1 else []
+    if not scenario_file.is_file():
+        return []
+    scenario = yaml.safe_load(scenario_file.read_text(encoding="utf-8"))
+    found = [one["risks"] for one in scenario.get("disasters") or () if "risks" in one]
+    return [float(one) for one in found[0]] if len(found) == 1 else []
 
 
 def ring_steps(steps):
@@ -279,26 +299,28 @@ def ring_steps(steps):
 
 
 def _disasters(axes, steps, sea, risks=()):
-    """Draws all rings at the start with their risks, and the outermost rings in the steps of
-    ring_steps. The colour and a label specify the step."""
+    """Draws all rings at the start, and the outermost rings in the steps of ring_steps. The colour
+    and a label specify the step. The key has the risks of the rings at the start."""
     stops = [step["cell"] for step in steps if step.get("action") in STOPS]
     shown = ring_steps(steps)
     colours = plt.get_cmap("RdPu")(np.linspace(0.95, 0.5, len(shown)))
-    axes.plot([], [], color=colours[0], linewidth=1.8, label="rings of the disaster, by step")
     rings = [(at, colour, list(rings_of(disaster))) for at, colour in zip(shown, colours)
              for disaster in steps[at]["disasters"]]
+    is_known = {len(of_one) for at, _, of_one in rings if at == 0} == {len(risks)}
+    for at, colour in zip(shown, colours):
+        words = f"outer ring at step {at}" if at else "rings at step 0"
+        if at == 0 and is_known:
+            words += f" (risk {' to '.join(dict.fromkeys(map(number, (risks[-1], risks[0]))))})"
+        if any(one == at for one, _, _ in rings):
+            axes.plot([], [], color=colour, linewidth=1.8, label=words)
     for at, colour, (*inner, outer) in rings:
         for ring in [*inner, outer] if at == 0 else [outer]:
             axes.add_patch(Polygon(ring, fill=False, color=colour, zorder=2,
                                    linewidth=1.8 if ring is outer else 1.0)).set_clip_path(sea)
         # A label is at the point that is farthest from the stops and from the other rings.
-        others = [*stops, *(point for _, _, other in rings if other[-1] is not outer
-                            for point in other[-1][::10])]
-        is_known = at == 0 and len(risks) == len(inner) + 1
-        _label_ring(axes, outer, f"step {at}" + (f", risk {number(risks[-1])}" if is_known else ""),
-                    colour, others)
-        for ring, risk in zip(inner, risks) if is_known else ():
-            _label_ring(axes, ring, number(risk), colour, [*others, *outer[::10]])
+        _label_ring(axes, outer, f"step {at}", colour, [
+            *stops, *(point for _, _, others in rings for ring in others if ring is not outer
+                      for point in ring[::10])])
 
 
 def _label_ring(axes, ring, words, colour, others):

@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.legend_handler import HandlerTuple
 from matplotlib.patches import Polygon, Rectangle
-from matplotlib.path import Path
 
-from aquafarm_benchmark.route_figure import LEGS, RING, draw_chart, legs, rings_of, symbols_of
+from aquafarm_benchmark.route_figure import (LEGS, RING, covers_any, draw_chart, legs, rings_of,
+                                               symbols_of)
 from aquafarm_benchmark.style import plt, save
 
 # Causes of a failure, with the words of the headline, the heading of the group and its colour.
@@ -124,7 +124,7 @@ def shortage(route):
     rings = [ring for one in route["steps"][-2]["disasters"] for ring in rings_of(one)]
     # The action of step t is complete in step t + 1, as in plot_route.
     had = len(last_leg) - (2 if before else 1)
-    return needed, had, any(_covers_any(ring, left) for ring in rings)
+    return needed, had, any(covers_any(ring, left) for ring in rings)
 
 
 def _nearest(cell, others):
@@ -197,7 +197,7 @@ def _plot_last_rings(axes, steps, left, sea):
     at_end = steps[-2]["disasters"]  # in the last state they may have ended
     for i, disaster in enumerate(at_end):
         rings = list(rings_of(disaster))
-        covering = [k for k, ring in enumerate(rings) if _covers_any(ring, left)]
+        covering = [k for k, ring in enumerate(rings) if covers_any(ring, left)]
         for count, (style, label) in _BEFORE.items() if covering else ():
             then = len(steps) - 2 - count
             before = steps[then]["disasters"] if then >= 0 else []
@@ -224,11 +224,6 @@ def _shade_visits(axes, cells):
                 edgecolor="none", zorder=1.5))  # below ports and devices
             axes.scatter([], [], color=colour, marker="s", s=150, label=label)
     return counts
-
-
-def _covers_any(ring, cells):
-    """Returns whether a ring [360, 2] contains one of the cells [x, y]."""
-    return Path(ring).contains_points(cells).any()
 
 
 def _plot_ring(axes, ring, sea, **style):

@@ -244,9 +244,11 @@ class FiguresTest(unittest.TestCase):
                          [set(self.lines(axes)) for axes in shown])
         self.assertEqual([1, 1, 1, 0], [len(axes.collections) for axes in shown], "shades")
         names = {name.replace(headlines.NBSP, " ") for name in self.names_of(shown[3])}
-        self.assertEqual({"SARSA", "LSTM-DQN", "DQN", "clairvoyant"},
-                         {name.split()[0] for name in names} - {"RANDOM"})
-        self.assertTrue(any(re.match(r"RANDOM \d\.\d\d$", name) for name in names), names)
+        self.assertEqual({"SARSA", "LSTM-DQN", "DQN", "RANDOM", "clairvoyant"},
+                         {name.split()[0] for name in names})
+        self.assertTrue(all(re.match(r"\S+ \d\.\d\d$", name) for name in names), names)
+        self.assertEqual([{"clairvoyant 5.10"}, set(), set()],
+                         [self.names_of(axes) for axes in shown[:3]], "a name in the first chart")
         titles = [axes.get_title("left") for axes in shown]
         self.assertEqual("all medians", titles.pop())
         for name, title in zip(("SARSA", "LSTM-DQN", "DQN"), titles):
@@ -296,7 +298,11 @@ class FiguresTest(unittest.TestCase):
         self.assertAlmostEqual(40 * 150, self.axes.get_xlim()[1], msg="the slowest run")
         figure = self.drawn(figures.draw_rewards, [by_name("sarsa")], {"sarsa": runs},
                             {"clairvoyant": 100.0})
-        self.assertIn("thick: the run whose time to 90 % is nearest to the median",
+        self.assertIn("thick: the run whose time to 90 % is nearest to the median. Means",
+                      " ".join(figure._supxlabel.get_text().split()))
+        figure = self.drawn(figures.draw_rewards, [by_name("sarsa")], {"sarsa": runs},
+                            {"clairvoyant": 900.0})
+        self.assertIn("nearest to the median (of SARSA: the first run without 90 %).",
                       " ".join(figure._supxlabel.get_text().split()))
 
     def test_names_above_fig_12a_do_not_overlap(self):
@@ -360,11 +366,39 @@ class FiguresTest(unittest.TestCase):
         figure = self.drawn(error_figure.draw_square_error, self.contestants, self.runs)
         self.assertEqual("Only the error of SARSA (×3.0) ends higher than it begins",
                          " ".join(figure._suptitle.get_text().split()))
-        self.assertEqual(["SARSA: ends at ×3.0", "LSTM-DQN: ends at ×0.5"],
+        self.assertEqual(["SARSA: 10 → 30", "LSTM-DQN: 10 → 5"],
                          [axes.get_title("left") for axes in figure.axes])
         early = "50 % succeed by episode 50"
         self.assertEqual([{"10", "30", early}, {"10", "5", early}],
                          [self.names_of(axes) for axes in figure.axes])
+
+    def test_fig_12c_has_a_chart_of_each_learner_and_no_comparison_of_errors(self):
+        contestants = [by_name(name) for name in ("q_learning", "sarsa", "dqn", "lstm_dqn", "ppo")]
+        self.runs = {one.name: [make_run(1, 120)] for one in contestants}
+        figure = self.drawn(error_figure.draw_square_error, contestants, self.runs)
+        shown, (hidden,) = figure.axes[:5], figure.axes[5:]
+        self.assertFalse(hidden.axison)
+        self.assertEqual([{one.label} for one in contestants],
+                         [set(self.lines(axes)) for axes in shown])
+        self.assertEqual(["", "", "episode", "episode", "episode"],
+                         [axes.get_xlabel() for axes in shown], "the lowest of each column")
+        self.assertEqual({0, 3}, {i for i, axes in enumerate(shown) if axes.get_ylabel()})
+        self.assertIn("errors of different learners cannot be compared",
+                      " ".join(figure._supxlabel.get_text().split()))
+
+    def test_fig_12c_marks_the_lowest_error_if_the_policy_fails_then(self):
+        def marks(successes):
+            first, second = ({"curve": {"loss": np.array([40.0] * 60 + [last] * 60),
+                                        "success": successes}} for last in (30.0, 8.0))
+            first["curve"]["success"] = np.ones(120)
+            _, axes = style.plt.subplots()
+            error_figure._mark_low(axes, [first, second], "red")
+            return [tuple(line.get_xydata()[0]) for line in axes.lines], self.names_of(axes)
+
+        found, words = marks(np.array([0.0] * 115 + [1.0] * 5))
+        self.assertEqual([(110, 8.0)], found, "the last 50 episodes have an error of 8")
+        self.assertEqual({"8 (0 % succeed)"}, words)
+        self.assertEqual(([], set()), marks(np.ones(120)), "the policy succeeds")
 
     def test_numbers_of_fig_12c_are_above_the_shade_and_each_chart_states_the_success(self):
         for run in self.runs["sarsa"]:

@@ -5,10 +5,10 @@ from matplotlib import ticker
 from matplotlib.patheffects import withStroke
 
 from aquafarm_benchmark import measures
-from aquafarm_benchmark.curves import End, columns_of_runs, describe_shading, moving_means
+from aquafarm_benchmark.curves import columns_of_runs, describe_shading, moving_means
 from aquafarm_benchmark.headlines import as_printed
-from aquafarm_benchmark.style import (chart_grid, explain, joined, label_axes, legible, line_style,
-                                      name_ends, save, shade)
+from aquafarm_benchmark.style import (chart_grid, explain, joined, legible, line_style, save,
+                                      shade)
 
 _PEAK = 2.0  # a peak is at least this multiple of the first and of the last value
 _SAME = 0.05  # relative change below which an error ends where it begins
@@ -21,23 +21,20 @@ _SUCCESS = 0.5  # the success rate that the charts mark
 
 def draw_square_error(path, contestants, runs):
     """Draws Fig. 12c: the mean square error of the value estimates, a chart for each learner, over
-    all runs. With more than three learners, a last chart shows all medians. Omits contestants
-    without updates, such as RANDOM."""
+    all runs. Omits contestants without updates, such as RANDOM."""
     learners = [one for one in contestants
                 if np.isfinite(columns_of_runs(runs[one.name], "loss")).any()]
-    has_all = len(learners) > 3
-    figure, charts = chart_grid(max(1, len(learners) + has_all))
+    figure, charts = chart_grid(max(1, len(learners)), "error [reward²]")
     courses, found = {}, {}
-    for i, axes in enumerate(charts):
-        label_axes(axes, "", "error [reward²]" if axes.get_subplotspec().is_first_col() else "",
-                   "episode")
-        if i < len(learners) and plot_square_error(axes, [learners[i]], runs):
-            one = learners[i]
-            courses[one.label] = _mark_course(axes, one.colour)
-            first, _, last = courses[one.label]
-            axes.set_title(f"{one.label}: ends at ×{last / first:.1f}", fontsize=12,
-                           color=legible(one.colour))
-            found[axes] = _mark_success(axes, runs[one.name])
+    for axes, one in zip(charts, learners):
+        plot_square_error(axes, [one], runs)
+        if not axes.lines:
+            continue
+        courses[one.label] = _mark_course(axes, one.colour)
+        first, _, last = map(_significant, courses[one.label])
+        axes.set_title(f"{one.label}: {first} → {last}", fontsize=12, color=legible(one.colour))
+        found[axes] = _mark_success(axes, runs[one.name])
+        _mark_low(axes, runs[one.name], one.colour)
     low, high = charts[0].get_ylim()
     charts[0].set_ylim(low / _FOOTROOM, _HEADROOM * high)  # the charts share their scale
     for axes, marked in found.items():
@@ -46,12 +43,10 @@ def draw_square_error(path, contestants, runs):
             f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic. Dots: "
             "first, last and, if it is far from both, highest value; ×: last value relative to the "
             f"first. Grey: {100 * _SUCCESS:.0f} % of the last {measures.WINDOW} episodes succeed "
-            "for the first time, from the earliest to the latest run. "
-            f"{describe_shading(contestants, runs)} Each learner has "
-            "its own targets: a lower error does not mean a better policy.")
-    if has_all:
-        charts[-1].set_title("all medians", fontsize=12)
-        name_ends(charts[-1], plot_square_error(charts[-1], learners, runs, is_shaded=False))
+            "for the first time, from the earliest to the latest run. Triangle: lowest error of a "
+            f"run, if less than {100 * _SUCCESS:.0f} % succeed then. "
+            f"{describe_shading(contestants, runs)} Each learner has its own targets: errors of "
+            "different learners cannot be compared, and a low error does not mean a good policy.")
     save(figure, path)
 
 
@@ -123,6 +118,34 @@ def _mark_success(axes, of_one):
     return found, is_shown
 
 
+def _smooth(of_one):
+    """Returns (episodes, 50-episode means of the squared TD error [runs, episodes]). Means are NaN
+    before the first update."""
+    errors = columns_of_runs(of_one, "loss")
+    window = min(measures.WINDOW, errors.shape[1])
+    return (np.arange(window, errors.shape[1] + 1),
+            np.array([measures.known_moving_mean(row, window) for row in errors]))
+
+
+def _mark_low(axes, of_one, colour):
+    """Marks the lowest error of all runs if less than _SUCCESS of the last episodes of the run
+    succeed there, because then a low error is no sign of a good policy."""
+    episodes, errors = _smooth(of_one)
+    positive = np.where(errors > 0.0, errors, np.inf)
+    run, at = np.unravel_index(positive.argmin(), errors.shape)
+    succeeded = moving_means(columns_of_runs(of_one, "success")[run])[1][at]
+    if succeeded >= _SUCCESS:
+        return
+    is_left = episodes[at] < sum(axes.get_xlim()) / 2
+    axes.plot(episodes[at], errors[run, at], "v", color=colour, markersize=8,
+              markeredgecolor="black", zorder=6, label="_low")
+    axes.annotate(f"{_significant(errors[run, at])} ({100 * succeeded:.0f} % succeed)",
+                  (episodes[at], errors[run, at]), textcoords="offset points", va="center",
+                  xytext=(7 if is_left else -7, -1), ha="left" if is_left else "right", fontsize=10,
+                  color=legible(colour), zorder=6,
+                  path_effects=[withStroke(linewidth=3, foreground="white")])
+
+
 def _name_success(axes, episodes, is_shown):
     """Writes when _SUCCESS of the episodes succeed at the bottom of a chart: next to the grey area,
     or in words if the chart has none.
@@ -141,16 +164,11 @@ def _name_success(axes, episodes, is_shown):
     axes.annotate(words, (0.02, y), xytext=(0, 0), ha="left", xycoords="axes fraction", **style)
 
 
-def plot_square_error(axes, contestants, runs, is_shaded=True):
+def plot_square_error(axes, contestants, runs):
     """Plots the 50-episode mean of the squared TD error: the median of the runs, shaded between
-    their lowest and highest value. Omits contestants without updates, such as RANDOM. Returns the
-    ends of the lines."""
-    ends = []
+    their lowest and highest value. Omits contestants without updates, such as RANDOM."""
     for one in contestants:
-        errors = columns_of_runs(runs[one.name], "loss")
-        window = min(measures.WINDOW, errors.shape[1])
-        smooth = np.array([measures.known_moving_mean(row, window) for row in errors])
-        episodes = np.arange(window, errors.shape[1] + 1)
+        episodes, smooth = _smooth(runs[one.name])
         smooth = smooth[np.isfinite(smooth).any(axis=1)]  # omits runs without an update
         known = np.isfinite(smooth).all(axis=0) & (smooth > 0.0).all(axis=0)
         if not len(smooth) or not known.any():
@@ -158,11 +176,10 @@ def plot_square_error(axes, contestants, runs, is_shaded=True):
         logs = np.log(smooth[:, known])
         low, median, high = np.exp(np.quantile(logs, (0.0, 0.5, 1.0), axis=0))
         axes.plot(episodes[known], median, **line_style(one), linewidth=2.2, label=one.label)
-        if is_shaded and len(smooth) > 1:
+        if len(smooth) > 1:
             shade(axes, episodes[known], low, high, one.colour)
-        ends.append(End(episodes[known][-1], float(median[-1]), one.colour, one.label))
+    axes.margins(x=0.0)
     axes.set_yscale("log")
     axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.6g}")
     axes.yaxis.set_minor_formatter(ticker.NullFormatter())
-    return ends

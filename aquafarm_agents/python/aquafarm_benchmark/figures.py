@@ -207,10 +207,14 @@ def draw_rewards(path, contestants, runs, references):
     """Draws Fig. 12a."""
     count, learners = most_common_count(contestants, runs), headlines.learners_of(contestants)
     has_target = headlines.target_of(references) < math.inf
+    share = f"{100 * headlines.REACHED:.0f} %"
+    late = [one.label for one in learners if np.median(headlines.steps_until(
+        runs[one.name], headlines.target_of(references))) == np.inf]
     shown = ("one run of each learner" if count == 1 else f"{count} runs of each learner; thick: "
-             + (f"the run whose time to {100 * headlines.REACHED:.0f} % is nearest to the median"
+             + (f"the run whose time to {share} is nearest to the median" +
+                (f" (of {joined(late)}: the first run without {share})" if late else "")
                 if has_target else "the first"))
-    dots = (f"Dots: {100 * headlines.REACHED:.0f} % is reached for the first time"
+    dots = (f"Dots: {share} is reached for the first time"
             + (" (large: median, whose value is above; bar: range of the runs). " if count > 1
                else ". "))
     _draw_returns(
@@ -239,6 +243,7 @@ def draw_average_rewards(path, contestants, runs, references):
         path, contestants, lambda ends: headlines.recovery_times(contestants, runs) or
         headlines.highest(contestants, runs, ends, "mean return of all episodes"),
         "Fig. 12b: mean return of all episodes so far; bad early episodes count to the end. "
+        "Fig. 14 shows the means of the last episodes. "
         f"{'Dots: the median rises above 0. ' if has_dots else ''}"
         f"{describe_shading(contestants, runs)}"
         f"{' Thin: the runs.' if most_common_count(contestants, runs) > 1 else ''}",
@@ -268,9 +273,7 @@ def draw_mean_score(path, contestants, runs, references):
     references: {name: return per step}, drawn for comparison
     """
     learners = headlines.learners_of(contestants)
-    figure, charts = chart_grid(len(learners) + 1)
-    for axes in charts:
-        label_axes(axes, "", "points per step" if axes.get_subplotspec().is_first_col() else "")
+    figure, charts = chart_grid(len(learners) + 1, "points per step")
     every = []
     for axes, one in zip(charts, learners):
         every += [end for end in plot_mean_score(axes, [one], runs, references)
@@ -292,8 +295,11 @@ def draw_mean_score(path, contestants, runs, references):
         f"{' (range of the runs)' if is_repeated else ''}.",
         f"Dashed: {joined(list(references))}." if references else "",
         headlines.describe_failed(headline), describe_random(contestants)])))
-    others = [one for one in contestants if one not in learners]
-    name_ends(axes, headlines.with_values(others, ends, digits=2))
+    name_ends(axes, headlines.with_values(
+        contestants, [end._replace(low=math.nan) for end in ends], digits=2))
+    for end in ends[len(contestants):]:  # references
+        charts[0].annotate(end.name, (charts[0].get_xlim()[0], end.y), xytext=(4, 3),
+                           textcoords="offset points", fontsize=9.5)
     save(figure, path)
 
 

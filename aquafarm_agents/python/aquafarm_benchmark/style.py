@@ -59,14 +59,18 @@ def label_axes(axes, title, ylabel, xlabel="episode"):
     axes.grid(alpha=0.3)
 
 
-def chart_grid(count):
-    """Creates `count` charts with one scale, up to _COLUMNS in a row. Returns (figure, charts)."""
+def chart_grid(count, ylabel=""):
+    """Creates `count` charts by episode with one scale, up to _COLUMNS in a row. The lowest charts
+    have the name of the x axis, and the left ones that of the y axis. Returns (figure, charts)."""
     columns = min(_COLUMNS, count)
     rows = -(-count // columns)
     figure, grid = plt.subplots(rows, columns, figsize=(max(3.1 * columns, 6.2), 1.2 + 2.5 * rows),
                                 squeeze=False, sharex=True, sharey=True, layout="constrained")
     for i, axes in enumerate(grid.flat):
+        label_axes(axes, "", ylabel if i % columns == 0 else "")
         axes.tick_params(labelbottom=True, labelleft=i % columns == 0)
+        if i + columns < count:
+            axes.set_xlabel("")
         if i >= count:
             axes.axis("off")
     return figure, list(grid.flat)[:count]

@@ -143,12 +143,35 @@ class CompareBrowserTest(unittest.TestCase):
             self.assertRegex(tile[3], r"^success \d+ % \[\d+ %, \d+ %\]$")
         self.assertIn("100.0 % of clairvoyant", [tile[4] for tile in tiles])
 
+    def test_the_curves_have_the_order_of_the_tiles(self):
+        self.show()
+        tiles = [one.text.splitlines()[0] for one in
+                 self.browser.find_elements(By.CSS_SELECTOR, ".wide-tiles .tile.own")]
+        self.assertEqual(tiles, self.browser.execute_script("return CURVES.labels.slice(1);"))
+
+    def test_names_next_to_each_other_have_the_styles_of_their_lines(self):
+        self.show()
+        drawn = self.browser.execute_script("""
+          const drawn = [], write = CanvasRenderingContext2D.prototype.fillText;
+          CanvasRenderingContext2D.prototype.fillText = function (text, ...place) {
+            drawn.push(text);
+            write.call(this, text, ...place);
+          };
+          CURVES.charts[0].lines.forEach(line => { line.value = 1.0; });
+          window.charts[0].updateOptions({});
+          CanvasRenderingContext2D.prototype.fillText = write;
+          return drawn;""")
+        names = next(text for text in drawn if "planner" in text)
+        for label, style in (("RANDOM", "dotted"), ("planner", "dashed"), ("clairvoyant", "solid")):
+            self.assertRegex(names, rf"{label}[^,]* \({style}\)")
+
     def test_the_pointer_shows_the_value_of_every_run(self):
         self.show()
         place = self.chart("curve_return")
         ActionChains(self.browser).move_to_element_with_offset(place, 100, 0).perform()
         legend = self.browser.find_element(By.ID, "curve_return_legend").text
-        self.assertRegex(legend, r"\d+: .*table: q_learning: −?[\d.]+ .*other: sarsa: −?[\d.]+")
+        for label in ("table: q_learning", "other: sarsa"):
+            self.assertRegex(legend, rf"^\d+: .*{label}: −?[\d.]+")
         first = legend.partition(":")[0]
         ActionChains(self.browser).move_to_element_with_offset(place, 200, 0).perform()
         second = self.browser.find_element(By.ID, "curve_return_legend").text.partition(":")[0]

@@ -134,11 +134,12 @@ def report(folders, work, episodes, read_metrics):
         title = f"Return on the scenario {group[0].scenario}"
         sections.append(blocks.section(title, references.show_tiles(players[:1] + own +
                                                                     players[1:])))
-    sections.append(curves.show([run.player.label for run in runs],
-                                [run.columns for run in runs],
+    ranked = sorted(runs, key=lambda run: references.rank(run.player))
+    sections.append(curves.show([run.player.label for run in ranked],
+                                [run.columns for run in ranked],
                                 [curves.gap_note(run.player.label, run.columns, run.player)
-                                 for run in runs if run.columns],
-                                [*[run.player for run in runs],
+                                 for run in ranked if run.columns],
+                                [*[run.player for run in ranked],
                                  *(players if len(by_scenario) == 1 else ())]))
     sections.append(blocks.section("Greedy play, 95 % intervals",
                                    measure_table([run.player for run in runs])))

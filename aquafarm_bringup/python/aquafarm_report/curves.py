@@ -15,8 +15,10 @@ LIBRARY = pathlib.Path("/usr/share/javascript/dygraphs")  # Debian's libjs-dygra
 POINTS = 1000  # max number of points of a curve
 # Colours of Okabe and Ito (2008), Color universal design.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
-CURVES = (("return", "Return per episode"), ("success", "Success rate"),
-          ("loss", "Mean square error [reward²]"))
+# Name in metrics.csv, title and factor of each measure.
+CURVES = (("return", "Return per episode", 1.0), ("success", "Success rate [%]", 100.0),
+          ("loss", "Mean square error [reward²]", 1.0))
+PERCENT = (-4.0, 108.0)  # range of an axis of percentages, with space for marks
 PART = 4  # the enlarged chart shows the last 1 / PART of the rows
 
 
@@ -28,10 +30,10 @@ def smooth(values):
     return np.arange(window, len(values) + 1), known_moving_mean(values, window)
 
 
-def rows_of(columns, name):
+def rows_of(columns, name, factor):
     """Returns rows [episode, mean of run 0, mean of run 1, …] for dygraphs. None replaces
     a mean that a run does not have. Returns an empty list if no run has a mean."""
-    curves = [smooth(one[name]) if name in one else (np.array([]), np.array([]))
+    curves = [smooth(factor * one[name]) if name in one else (np.array([]), np.array([]))
               for one in columns]
     last = max((int(episodes[-1]) for episodes, _ in curves if len(episodes)), default=0)
     if last == 0 or not any(np.isfinite(means).any() for _, means in curves):
@@ -49,18 +51,21 @@ def rows_of(columns, name):
 
 
 def gap_note(label, columns, player):
-    """Returns a sentence if the last mean return of the training is above the 95 % interval of
+    """Returns a sentence if the last mean return of the training is outside the 95 % interval of
     greedy play. Returns an empty text if it is not, or if the mean or the interval is unknown."""
     mean, low, high = references.mean_interval(references.column(player, "return"), player.distinct)
     means = smooth(columns["return"])[1]
-    if not len(means) or math.isnan(means[-1]) or math.isnan(high) or means[-1] <= high:
+    if not len(means) or math.isnan(means[-1]) or math.isnan(high) or low <= means[-1] <= high:
         return ""
+    trained, greedy = f"{means[-1]:,.1f}".replace("-", "−"), references.text((mean, low, high))
+    if means[-1] < low:
+        return (f"{label}: the mean return is {greedy} in greedy play and {trained} at the end of "
+                "the training, which contains random moves.")
     failed = sum(not float(row["success"]) for row in player.rows)
     what = (f"{failed} of {len(player.rows)} episodes end with devices at sea" if failed else
             "its return is lower")
-    return (f"{label}: the mean return is {means[-1]:,.1f} at the end of the training and "
-            f"{references.text((mean, low, high))} in greedy play, which has no random moves: "
-            f"{what}; train longer.")
+    return (f"{label}: the mean return is {trained} at the end of the training and {greedy} in "
+            f"greedy play, which has no random moves: {what}; train longer.")
 
 
 def _library(name):
@@ -81,6 +86,13 @@ def bend(rows, lines, marks):
     return max(means) / 3.0 if min(shown) < 0.0 < max(means) else None
 
 
+def _marks(runs, interval):
+    """Returns [mean, low, high] of each run, rounded for dygraphs; None replaces unknown values.
+    interval: function that returns them of a Player"""
+    return [[round(value, 1) if math.isfinite(value) else None for value in interval(one)]
+            if one.rows else [None] * 3 for one in runs]
+
+
 def show(labels, columns, notes=(), players=()):
     """Returns the section of training curves: a chart for each measure, with a curve for each run.
     Returns an empty text if there are no curves.
@@ -88,34 +100,39 @@ def show(labels, columns, notes=(), players=()):
     labels, columns: labels and metrics of the runs
     notes: sentences below the introduction
     players: the runs in the same order, with references before, between or after them. Marks show
-        the mean returns of the runs in greedy play with 95 % intervals; lines show the mean returns
-        of the references
+        the mean returns and success rates of the runs in greedy play with 95 % intervals; lines
+        show the mean returns of the references
     """
     lines = [{"label": one.label,
               "value": round(float(np.mean(references.column(one, "return"))), 1),
               "text": references.return_text(one).partition(" ")[0]}
              for one in players if one.rows and not one.is_run]
-    marks = [[round(value, 1) if math.isfinite(value) else None for value in
-              references.mean_interval(references.column(one, "return"), one.distinct)]
-             if one.rows else [None] * 3 for one in players if one.is_run]
+    runs = [one for one in players if one.is_run]
+    marks = {"return": _marks(runs, lambda one: references.mean_interval(
+        references.column(one, "return"), one.distinct)),
+             "success": _marks(runs, lambda one: [100.0 * value for value in
+                                                  references.success_interval(one)])}
     lengths = [len(one["return"]) for one in columns if "return" in one]
     window = min(WINDOW, max(lengths, default=WINDOW))  # of the longest training
-    charts = []
-    for name, title in CURVES:
-        rows = rows_of(columns, name)
+    charts, enlarged = [], []
+    for name, title, factor in CURVES:
+        rows = rows_of(columns, name, factor)
         if not rows:
             continue
-        chart = {"id": f"curve_{name}", "title": title, "rows": rows}
+        chart = {"id": f"curve_{name}", "title": title, "rows": rows, "marks": marks.get(name, [])}
+        if name == "success":
+            chart["range"] = PERCENT
         if name == "return":
-            chart.update(lines=lines, marks=marks, bend=bend(rows, lines, marks))
-            if marks:
+            chart.update(lines=lines, bend=bend(rows, lines, chart["marks"]))
+            if runs:
                 chart["title"] += (f" (curves: means of {window} training episodes; right: greedy "
                                    "play with 95 % intervals)")
         charts.append(chart)
         if chart.get("bend"):
-            charts.append({**chart, "id": "curve_return_end", "rows": rows[-len(rows) // PART:],
-                           "bend": None, "title": f"Return per episode, the last {1 / PART:.0%} "
-                           "of the training".replace("%", " %")})
+            enlarged = [{**chart, "id": "curve_return_end", "rows": rows[-len(rows) // PART:],
+                         "bend": None, "title": f"Return per episode, the last {1 / PART:.0%} "
+                         "of the training".replace("%", " %")}]
+    charts[2:2] = enlarged  # below the return and the success
     if not charts:
         return ""
     settings = {"labels": ["episode", *labels], "charts": charts, "window": window,

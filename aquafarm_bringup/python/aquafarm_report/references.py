@@ -86,12 +86,22 @@ def return_text(player):
     return text(mean_interval(column(player, "return"), player.distinct))
 
 
+def _success(player):
+    """Returns the success rate, and the sample size of its interval: the number of distinct
+    starts."""
+    return (float(np.mean(column(player, "success"))),
+            max(1, min(player.distinct or 1, len(player.rows))))
+
+
+def success_interval(player):
+    """Returns (rate, low, high): the success rate with Wilson's 95 % interval."""
+    rate, count = _success(player)
+    return rate, *intervals.wilson_interval(round(rate * count), count)
+
+
 def success_text(player):
-    """Returns the success rate with Wilson's 95 % interval. The sample size of the interval is the
-    number of distinct starts."""
-    rate = float(np.mean(column(player, "success")))
-    count = max(1, min(player.distinct or 1, len(player.rows)))
-    return intervals.share_text(rate, count)
+    """Returns the success rate with Wilson's 95 % interval as text."""
+    return intervals.share_text(*_success(player))
 
 
 _NO_SHARE = "return below 0: no share"
@@ -168,8 +178,9 @@ def optimum_of(players):
     return next((one for one in players if one.label == OPTIMUM and one.rows), None)
 
 
-def _rank(player):
-    """Returns the sort key of a tile: the highest mean return first, players without one last."""
+def rank(player):
+    """Returns the sort key of tiles and curves: the highest mean return first, players without one
+    last."""
     return -np.mean(column(player, "return")) if player.rows else math.inf
 
 
@@ -189,7 +200,7 @@ def show_tiles(players):
     optimum = optimum_of(players)
     counts = {(len(one.rows), one.distinct) for one in players if one.rows}
     shown = []
-    for one in sorted(players, key=_rank):
+    for one in sorted(players, key=rank):
         if not one.rows:
             shown.append((one.label, "–", [one.fault], False))
             continue

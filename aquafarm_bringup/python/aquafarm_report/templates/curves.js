@@ -2,7 +2,7 @@
 // Draws the charts of CURVES; a zoom applies to all of them.
 window.charts = [];
 // Runs also differ by their dashes, so that a print without colours shows which is which.
-const LINES = [[2, 3], [8, 4], [1, 0]];  // of references
+const LINES = [["dotted", [2, 3]], ["dashed", [8, 4]], ["solid", [1, 0]]];  // of references
 const DASHES = [null, [9, 4], [2, 3], [12, 4, 2, 4], [5, 5], [1, 6], [14, 6]];
 // Width for the marks of greedy play at the right edge [pixels]. All charts have the same episodes.
 const MARKS = Math.max(...CURVES.charts.map(chart => (chart.marks || []).length));
@@ -39,7 +39,7 @@ for (const chart of CURVES.charts) {
           value => ({v: toScale(value, unit), label: inWords(value, 0)})),
       } : {},
     },
-    valueRange: returns ? visible(chart).map(onScale) : null,
+    valueRange: chart.range || (returns ? visible(chart).map(onScale) : null),
     underlayCallback: (canvas, area, dygraph) => {
       if (unit) shade(canvas, area, dygraph);
       reference(canvas, area, dygraph, chart.lines || [], onScale);
@@ -132,12 +132,12 @@ function pointsIn(dygraph, left, right, top, bottom) {
   return count;
 }
 
-// Draws a line with a name for each reference in the range of a chart; names above each other are
-// written once, with commas.
+// Draws a line with a name for each reference in the range of a chart. Names of lines that are
+// close to each other are written side by side, with the styles of the lines if there is space.
 function reference(canvas, area, dygraph, lines, onScale) {
   const style = getComputedStyle(document.body);
   const seen = lines
-    .map((line, i) => ({...line, y: dygraph.toDomYCoord(onScale(line.value)), dash: LINES[i % 3]}))
+    .map((line, i) => ({...line, y: dygraph.toDomYCoord(onScale(line.value)), style: LINES[i % 3]}))
     .filter(line => line.y >= area.y && line.y <= area.y + area.h)
     .sort((a, b) => a.y - b.y);
   canvas.save();
@@ -145,19 +145,26 @@ function reference(canvas, area, dygraph, lines, onScale) {
   canvas.font = `13px ${style.fontFamily}`;
   const names = [];
   for (const line of seen) {
-    canvas.setLineDash(line.dash);
+    canvas.setLineDash(line.style[1]);
     canvas.beginPath();
     canvas.moveTo(area.x, line.y);
     canvas.lineTo(area.x + area.w, line.y);
     canvas.stroke();
-    const name = `${line.label} ${line.text}`;
     const last = names[names.length - 1];
-    if (last && line.y - last.y < 16) Object.assign(last, {low: line.y, text: `${last.text}, ${name}`});
-    else names.push({y: line.y, low: line.y, text: name});
+    if (last && line.y - last.y < 16) {
+      last.low = line.y;
+      last.lines.push(line);
+    } else {
+      names.push({y: line.y, low: line.y, lines: [line]});
+    }
   }
   for (const name of names) {
+    const [plain, styled] = [false, true].map(isStyled => name.lines.map(line =>
+      `${line.label} ${line.text}${isStyled ? ` (${line.style[0]})` : ""}`).join(", "));
+    const isStyled = name.lines.length > 1 && canvas.measureText(styled).width < area.w - PAD - 12;
+    const text = isStyled ? styled : plain;
     // At the left or the right end, above or below its line, where it covers the fewest points.
-    const width = canvas.measureText(name.text).width + 12;
+    const width = canvas.measureText(text).width + 12;
     const end = area.x + area.w - PAD;
     const places = [[area.x, -5], [end - width, -5], [area.x, 16], [end - width, 16]]
       .map(([x, by]) => [x, by + (by > 0 ? name.low : name.y)])
@@ -165,7 +172,7 @@ function reference(canvas, area, dygraph, lines, onScale) {
       .map(([x, y]) => ({x, y, points: pointsIn(dygraph, x, x + width, y - 14, y + 4)}));
     if (!places.length) continue;
     const best = places.reduce((a, b) => b.points < a.points ? b : a);
-    canvas.fillText(name.text, best.x + 6, best.y);
+    canvas.fillText(text, best.x + 6, best.y);
   }
   canvas.restore();
 }
@@ -194,7 +201,11 @@ function mark(canvas, area, dygraph, marks, onScale) {
     const x = middle + STEP * (i - (marks.length - 1) / 2);
     canvas.strokeStyle = canvas.fillStyle = CURVES.colours[i];
     if (at(mean) > area.y + area.h) {  // below an enlarged part
-      canvas.fillText(`${inWords(mean, 0)} \u2193`, x, area.y + area.h - 8 - 14 * (below % 2));
+      const text = `${inWords(mean, 0)} \u2193`;
+      const half = canvas.measureText(text).width / 2 + 3;  // it stays inside the strip
+      canvas.fillText(text,
+        Math.min(Math.max(x, strip.left + half), strip.left + strip.width - half),
+        area.y + area.h - 8 - 14 * (below % 2));
       below += 1;
       return;
     }

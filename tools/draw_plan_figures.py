@@ -47,16 +47,19 @@ def is_missed(group):
 
 
 def reliability(data):
-    """Returns a sentence about how well the promises hold in simulated storms."""
+    """Returns sentences about how well the promises hold in simulated storms, in lines of LETTERS
+    letters."""
     bins = [one for key in KINDS for one in bins_of(data, key)]
     far = [one for one in bins if is_far(one)]
+    sides = {"more" if one["kept"]["mean"] > one["promised"] else "less" for one in far}
     most = max(map(off_by, bins))
-    missed = sum(map(is_missed, bins))
-    points = "point" if round(most) == 1 else "points"
-    return (f"Promised chances hold within {MARGIN} points in {len(bins) - len(far)} of "
-            f"{len(bins)} groups, at worst {most:.0f} {points} off.\nThe 95 % intervals of "
-            f"{len(bins) - missed} groups contain the promise ({data['storms']:,} simulated "
-            "storms).")
+    points = f"{most:.0f} point{'' if round(most) == 1 else 's'}"
+    worst = (f"; in {len(far)} it happens {sides.pop()} often than promised, by up to {points}."
+             if len(sides) == 1 else f", at worst {points} off.")
+    return textwrap.fill(
+        f"Promised chances hold within {MARGIN} points in {len(bins) - len(far)} of {len(bins)} "
+        f"groups{worst} The 95 % intervals of {len(bins) - sum(map(is_missed, bins))} groups "
+        f"contain the promise ({data['storms']:,} simulated storms).", LETTERS)
 
 
 def draw_groups(axes, bins, colour, label):
@@ -103,8 +106,8 @@ def draw_reliability(data, path):
         one.set_ylim(-RIM, 100 + RIM)
         one.set_aspect("equal")
         one.grid(alpha=0.3)
-        sizes.bar([100 * group["promised"] for group in bins], [group["count"] for group in bins],
-                  width=3.0, color="#0b5394")
+        sizes.plot([100 * group["promised"] for group in bins], [group["count"] for group in bins],
+                   "o", color="#0b5394", markersize=5)
         sizes.set_yscale("log")
         sizes.set_ylim(10, 20_000)
         sizes.set_yticks([10, 100, 1_000, 10_000], ["10", "100", "1,000", "10,000"])
@@ -145,10 +148,9 @@ def is_worse(storm):
 
 
 def name_of(storm):
-    """Returns the name and year of a storm. One archive writes names in capitals; they are
-    converted to title case."""
-    name = storm["name"] or storm["id"]
-    return f"{name.title() if name.isupper() else name} {storm['nearest'][:4]}"
+    """Returns the name and year of a storm. Archives write "IN-FA", "In-fa" or "In-Fa"; each part of
+    a name begins with a capital letter, as in the other pictures."""
+    return f"{(storm['name'] or storm['id']).title()} {storm['nearest'][:4]}"
 
 
 def mean_of(storms):

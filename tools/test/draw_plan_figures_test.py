@@ -66,16 +66,32 @@ def test_both_charts_have_their_size_also_without_far_groups(figures, tmp_path, 
     assert ("group, 95 % interval" in words) == (NEAR in home + gales)
     total = len(home + gales)
     title = " ".join(figure._suptitle.get_text().split())
+    worst = (f"; in {far} it happens more often than promised, by up to 20 points." if far else
+             ", at worst 2 points off.")
     assert title == (
-        f"Promised chances hold within 5 points in {total - far} of {total} groups, at worst "
-        f"{20 if far else 2} points off. The 95 % intervals of {total - missed} groups contain the "
-        "promise (6,000 simulated storms).")
+        f"Promised chances hold within 5 points in {total - far} of {total} groups{worst} The 95 % "
+        f"intervals of {total - missed} groups contain the promise (6,000 simulated storms).")
+    sizes = figure.axes[2]
+    assert sizes.get_yscale() == "log" and not sizes.patches, "no bars: they would begin at 10"
+    assert list(sizes.lines[0].get_ydata()) == [100] * len(home)
 
 
 def test_groups_of_fewer_than_20_cases_are_left_out_and_one_point_is_singular():
     data = results([0.51], [0.51])
     data["home"]["diagram"].append(group(FAR, count=19))
     assert "in 2 of 2 groups, at worst 1 point off." in tool.reliability(data)
+    data["home"]["diagram"] += [group(FAR), group(0.3)]
+    assert "in 2 of 4 groups, at worst 20 points off." in " ".join(tool.reliability(data).split())
+    data["home"]["diagram"][-2:] = [group(0.3)]
+    assert "; in 1 it happens less often than promised, by up to 20 points." in " ".join(
+        tool.reliability(data).split())
+
+
+@pytest.mark.parametrize("name, shown", [
+    ("IN-FA", "In-Fa 2021"), ("In-fa", "In-Fa 2021"), ("In-Fa", "In-Fa 2021"),
+    ("Fung-wong", "Fung-Wong 2021"), ("MITAG", "Mitag 2021"), ("", "X 2021")])
+def test_each_part_of_a_name_begins_with_a_capital_letter(name, shown):
+    assert tool.name_of(storm(name)) == shown
 
 
 def test_the_title_of_the_back_test_names_the_storms_in_which_the_plan_saves_less():

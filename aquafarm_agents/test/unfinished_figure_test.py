@@ -46,14 +46,14 @@ class UnfinishedFigureTest(unittest.TestCase):
         self.assertEqual([[0, 0]], marks["ship at the end"])
         lines = self.lines()
         self.assertIn("ring of a disaster in the last step", lines)
-        self.assertNotIn("the same ring 60 steps before", lines, "the episode has 3 steps")
+        self.assertNotIn("ring over a device left, 60 steps before", lines, "the episode has 3 steps")
         last, = (one for one in self.axes.collections if isinstance(one, LineCollection))
         self.assertIn("last leg, a device aboard", lines)
         np.testing.assert_array_equal([[[1, 0], [1, 0]], [[1, 0], [0, 0]]], last.get_segments())
         np.testing.assert_array_equal([2.2, 2.2], last.get_linewidths(), "a pickup is not a visit")
         self.assertFalse(any("visits" in label for label in lines))
         np.testing.assert_array_equal(
-            [[1, 3], [0, 2]], lines["needed: last stop to nearest device left"])
+            [[1, 3], [0, 2]], lines["last stop to nearest device left (no route)"])
         # From the pickup at (1, 0), (3, 2) is 2 moves away; one step is left.
         self.assertEqual("ranch 7: 0 of 2 in port, return −12\n≥ 2 moves needed, 1 step left",
                          self.axes.get_title("left"))
@@ -73,8 +73,8 @@ class UnfinishedFigureTest(unittest.TestCase):
         unfinished_figure.plot_unfinished(self.axes, "ranch 7", {**route, "steps": [
             *waiting, *ended, steps[3]]}, 1.45)
         labels = [line.get_label() for line in self.axes.lines]
-        self.assertEqual(1, labels.count("the same ring 60 steps before"), "not of the far one")
-        self.assertAlmostEqual(2.5, self.lines()["the same ring 60 steps before"][0].mean(), 1)
+        self.assertEqual(1, labels.count("ring over a device left, 60 steps before"), "not of the far one")
+        self.assertAlmostEqual(2.5, self.lines()["ring over a device left, 60 steps before"][0].mean(), 1)
 
     def test_the_legend_of_failures_shows_the_sign_of_a_device_that_was_left(self):
         chart = {"width": 9, "height": 9, "islands": [], "rocks": [], "ports": [[0, 0]],
@@ -88,10 +88,14 @@ class UnfinishedFigureTest(unittest.TestCase):
                                         "return": 0.0}))
             with unittest.mock.patch.object(unfinished_figure, "save",
                                             lambda one, _: kept.append(one)):
-                unfinished_figure.draw_unfinished("nowhere", {"ranch 7": file}, "Failures")
+                unfinished_figure.draw_unfinished("nowhere", {"ranch 7": file}, 20, 5)
                 unfinished_figure.draw_unfinished(
-                    "nowhere", {f"ranch {i}": file for i in range(5)}, "Failures")
-        figure, five = kept
+                    "nowhere", {f"ranch {i}": file for i in range(5)}, 20, 5)
+                better = pathlib.Path(folder) / "better.json"
+                better.write_text(file.read_text().replace('"return": 0.0', '"return": 1.0'))
+                unfinished_figure.draw_unfinished(
+                    "nowhere", {"ranch 8": better, "ranch 7": file}, 2000, 1)
+        figure, five, worst = kept
         five.draw_without_rendering()
         places = [axes.get_position() for axes in five.axes]
         heights = [place.height * five.get_figheight() for place in places]
@@ -99,7 +103,14 @@ class UnfinishedFigureTest(unittest.TestCase):
         self.assertEqual([3, 2], [sum(abs(one.y1 - places[i].y1) < 1e-6 for one in places)
                                   for i in (0, 4)], "maps in a row")
         self.assertEqual(1, len(figure.axes))
-        self.assertEqual("Failures: time runs out in 1", figure._suptitle.get_text())
+        self.assertEqual("1 failure in 20 ranches: time runs out in 1", figure._suptitle.get_text())
+        self.assertEqual("2 failures in 2,000 ranches: time runs out in 2",
+                         worst._suptitle.get_text(), "all failures are counted")
+        self.assertEqual(["ranch 7"],
+                         [axes.get_title("left").partition(":")[0] for axes in worst.axes])
+        self.assertIn("The map shows the failure with the lowest return.",
+                      worst.legends[0].get_title().get_text())
+        self.assertNotIn("The map shows", figure.legends[0].get_title().get_text())
         legend, = figure.legends
         words = [text.get_text() for text in legend.get_texts()]
         self.assertIn("device that was not fetched", words)

@@ -131,7 +131,7 @@ class ValuesTest(unittest.TestCase):
         self.addCleanup(pyplot.close, "all")
         draw_places(axis, {}, 0.5, (10, 9))
         star, = axis.collections
-        self.assertEqual(("_best", [[5.25, 4.75]]),
+        self.assertEqual(("best start", [[5.25, 4.75]]),
                          (star.get_label(), star.get_offsets().tolist()))
 
     def test_the_figure_uses_words_and_units_that_people_know(self):
@@ -141,7 +141,7 @@ class ValuesTest(unittest.TestCase):
         self.addCleanup(pyplot.close, "all")
         draw_relation(axis, values, layer, compare(values, layer[2]), "d")
         title = axis.get_title("left")
-        self.assertEqual("(d) return and temperature: +1.00\nwithout the lowest twentieth: +1.00",
+        self.assertEqual("(d) Return and temperature: +1.00\nwithout the lowest twentieth: +1.00",
                          title)
         self.assertEqual("temperature [°C]", axis.get_xlabel())
         for jargon in ("SSIM", "Spearman", "rho", "turned over", "degC"):
@@ -178,6 +178,12 @@ class ValuesTest(unittest.TestCase):
         box = title.get_window_extent(figure.canvas.get_renderer())
         self.assertLess(box.x1, figure.bbox.width)
         self.assertGreater(title.get_text().count("\n"), 0)
+        legend, = figure.legends
+        self.assertIn("best start", [text.get_text() for text in legend.get_texts()])
+        key = legend.get_window_extent()
+        self.assertTrue(0.0 <= key.x0 and key.x1 <= figure.bbox.width, key)
+        self.assertLess(key.y1, min(axis.xaxis.label.get_window_extent().y0
+                                    for axis in figure.axes if axis.get_xlabel()))
 
     def test_the_lowest_returns_do_not_flatten_the_colours_of_the_others(self):
         values = slope()

@@ -13,14 +13,14 @@ from aquafarm_benchmark.route_figure import (LEGS, RING, covers_any, draw_chart,
                                                symbols_of)
 from aquafarm_benchmark.style import plt, save
 
-# Causes of a failure, with the words of the headline, the heading of the group and its colour.
+# Causes of a failure, with the words of the headline and the heading of the group.
 _CAUSES = {
     "time": ("time runs out", "Time runs out: the nearest device left needs more moves than the "
-             "steps that are left after the last stop", "#7b3294"),
+             "steps that are left after the last stop"),
     "ring": ("the ship waits before a ring", "The ship waits before a ring: enough steps are left, "
-             "but a ring covers a device that was not fetched", RING),
+             "but a ring covers a device that was not fetched"),
     "other": ("another cause", "Another cause: enough steps are left, and no ring covers a device "
-              "that was not fetched", "black")}
+              "that was not fetched")}
 _COLUMNS = 3  # max number of maps in a row
 _WIDTH, _HEIGHT = 12.0, 3.0  # width of the figure, height of a map [inch]
 # Heights of the headline, a heading, the titles of a map, its labels, and the legend [inch].
@@ -32,8 +32,8 @@ _VISITS = {2: ("#c6dbef", "cell with 2 to 4 visits"), 5: ("#6baed6", "cell with 
 _LEFT = "device that was not fetched"
 _LAST_RING = "ring of a disaster in the last step"
 # Steps before the end whose rings are drawn, and their line style and label.
-_BEFORE = {120: (":", "the same ring 120 steps before"),
-           60: ("--", "the same ring 60 steps before")}
+_BEFORE = {120: (":", "ring over a device left, 120 steps before"),
+           60: ("--", "ring over a device left, 60 steps before")}
 
 
 def devices_left(route):
@@ -44,26 +44,30 @@ def devices_left(route):
             if device["cell"] not in fetched]
 
 
-def draw_unfinished(path, routes, title):
+def draw_unfinished(path, routes, ranches, shown):
     """Draws the last legs of episodes that ended with devices at sea, and the rings of disasters in
-    the last step and before. The maps are grouped by the cause of the failure.
+    the last step and before. The headline counts the causes of all failures. The maps are grouped
+    by cause.
 
-    routes: {name of the ranch: route file}
-    title: title of the figure, which is followed by the causes of the failures
+    routes: {name of the ranch: route file} of all failures
+    ranches: number of ranches that were played
+    shown: max number of maps; the failures with the lowest returns have one
     """
-    groups = group_by_cause({name: json.loads(file.read_text()) for name, file in routes.items()})
+    found = {name: json.loads(file.read_text()) for name, file in routes.items()}
+    worst = sorted(found, key=lambda name: found[name]["return"])[:shown]
+    groups = group_by_cause({name: found[name] for name in worst})
     rows = [(cause if i == 0 else "", group[i:i + _COLUMNS]) for cause, group in groups.items()
             for i in range(0, len(group), _COLUMNS)]
     height = _HEADLINE + _KEY + sum(_row_height(heading) for heading, _ in rows)
     figure = plt.figure(figsize=(_WIDTH, height))
-    figure.suptitle(f"{title}: {describe_failures(groups)}", fontsize=13.5, weight="bold", x=0.01,
-                    y=1.0 - 0.1 / height, ha="left", va="top")
+    figure.suptitle(f"{len(found):,} failure{'' if len(found) == 1 else 's'} in {ranches:,} ranches: "
+                    f"{describe_failures(group_by_cause(found))}", fontsize=13.5, weight="bold",
+                    x=0.01, y=1.0 - 0.1 / height, ha="left", va="top")
     charts, top = [], height - _HEADLINE
     for cause, group in rows:
         if cause:
-            _, heading, colour = _CAUSES[cause]
-            figure.text(0.01, (top - 0.05) / height, heading, fontsize=12, weight="bold",
-                        color=colour, va="top")
+            figure.text(0.01, (top - 0.05) / height, _CAUSES[cause][1], fontsize=12, weight="bold",
+                        va="top")
         top -= _row_height(cause)
         column = _WIDTH / len(group)
         for i, (name, route) in enumerate(group):
@@ -72,7 +76,9 @@ def draw_unfinished(path, routes, title):
                                     width / _WIDTH, _HEIGHT / height))
             plot_unfinished(axes, name, route, width / _HEIGHT)
             charts.append(axes)
-    _draw_key(figure, charts)
+    _draw_key(figure, charts, "" if len(worst) == len(found) else
+              "The map shows the failure with the lowest return. " if len(worst) == 1 else
+              f"The maps show the {len(worst)} failures with the lowest returns. ")
     save(figure, path)
 
 
@@ -80,8 +86,8 @@ def _row_height(heading):
     return (_HEADING if heading else 0.0) + _TITLES + _HEIGHT + _LABELS
 
 
-def _draw_key(figure, charts):
-    """Draws the legend of all maps below them."""
+def _draw_key(figure, charts, note):
+    """Draws the legend of all maps below them, with a note above it."""
     symbols = symbols_of(charts)
     diamonds, = (one for one in charts[0].collections if one.get_label() == "_device")
     symbols[_LEFT] = (symbols[_LEFT], diamonds)  # drawn on top of each other
@@ -92,8 +98,9 @@ def _draw_key(figure, charts):
     figure.legend([symbols[label] for label in labels], labels, loc="lower left", frameon=False,
                   fontsize=10, ncols=4, columnspacing=1.5, bbox_to_anchor=(0.01, 0.0),
                   handler_map={tuple: HandlerTuple(ndivide=1)}, alignment="left", markerscale=0.7,
-                  title="A map contains the last leg; other devices may be outside. Rocks and "
-                  "earlier legs are not drawn.", title_fontproperties={"size": 10})
+                  title=f"{note}A map contains the last leg; other devices may be outside. The "
+                  "scales differ. Rocks and earlier legs are not drawn.",
+                  title_fontproperties={"size": 10})
 
 
 def group_by_cause(routes):
@@ -160,8 +167,8 @@ def plot_unfinished(axes, name, route, ratio):
     axes.plot([], [], color=colour, linewidth=2.2, label=f"last leg, {kind}")
     needed, had, _ = shortage(route)
     _, nearest = _nearest(last_leg[0], left)
-    axes.plot(*zip(last_leg[0], left[nearest]), color="black", linestyle=":", linewidth=1.4,
-              zorder=4, label="needed: last stop to nearest device left")
+    axes.plot(*zip(last_leg[0], left[nearest]), color="0.35", linestyle=":", linewidth=1.1,
+              zorder=4, label="last stop to nearest device left (no route)")
     axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black", linewidth=2.2, zorder=8,
                  clip_on=False, label=_LEFT)
     axes.scatter(*last["cell"], s=190, marker="*", color="#f0e442", edgecolor="black", zorder=9,

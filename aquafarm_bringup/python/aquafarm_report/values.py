@@ -188,7 +188,7 @@ def draw_places(axis, text, km, best=None):
                          label=words, zorder=3, marker=marker)
     if best:
         axis.scatter(*((place + 0.5) * km for place in best), s=130, marker="*", zorder=4,
-                     facecolor="#f0e442", edgecolor="black", label="_best")
+                     facecolor="#f0e442", edgecolor="black", label="best start")
 
 
 def draw_relation(axis, values, layer, result, letter):
@@ -200,7 +200,7 @@ def draw_relation(axis, values, layer, result, letter):
     low = lowest_cells(values)
     axis.scatter(x, y, s=9, color="#0072b2", alpha=0.35, linewidth=0, label="a cell")
     axis.scatter(field[known & low], values[known & low], s=12, color=_LOW_COLOUR, linewidth=0,
-                 label="a cell of the lowest twentieth, one colour on map (a)")
+                 label="a cell of the lowest twentieth")
     if len(x) >= FEWEST_CELLS and np.ptp(x) > 0.0:
         parts = np.array_split(np.argsort(x, kind="stable"), 10)
         axis.plot([np.median(x[part]) for part in parts], [np.median(y[part]) for part in parts],
@@ -209,7 +209,7 @@ def draw_relation(axis, values, layer, result, letter):
     words = sea_words(name)
     axis.set_xlabel(f"{words} [{unit_text(units)}]")
     rest = compare(np.where(low, np.nan, values), field)["spearman_rho"]
-    said = (f"return and {_SHORT.get(words, words)}: {signed(result['spearman_rho'])}\n"
+    said = (f"Return and {_SHORT.get(words, words)}: {signed(result['spearman_rho'])}\n"
             f"without the lowest twentieth: {signed(rest)}"
             if result["spearman_rho"] is not None else
             f"{result['cells']} cells:\ntoo few or too alike to compare")
@@ -259,12 +259,13 @@ def draw(text, values, layers, results, path):
     if layers:
         draw_relations(axes[1], values, near, list(zip(layers, results)), letters)
     draw_key(figure, axes)
-    episodes = (f"episode {text['episode']}" if text["episodes"] == 1
-                else f"mean of {text['episodes']} episodes")
+    episodes = (f"Episode {text['episode']}" if text["episodes"] == 1
+                else f"Mean of {text['episodes']} episodes")
     figure.suptitle("\n".join(found), fontsize=13, weight="bold", x=0.02, y=0.99, ha="left")
     said = verdict(values, text)
     figure.text(0.02, 1.0 - (0.1 + _LINE * len(found)) / height_in, "\n".join([
-        *([said] if said else []), f"policy {text['policy']}, scenario {text['scenario']}, {episodes}"]),
+        *([said] if said else []),
+        f"{episodes} of {text['policy']} on {text['scenario']}"]),
         fontsize=10.5, color="0.25", va="top")
     with open_atomically(path, "wb") as file:
         figure.savefig(file, dpi=150, format="png")
@@ -323,7 +324,7 @@ def draw_key(figure, axes):
         signs.update((label, handle) for handle, label in zip(*axis.get_legend_handles_labels()))
     signs["land, rocks or unknown"] = patches.Patch(facecolor="0.82", edgecolor="0.65", hatch="////")
     figure.legend(signs.values(), signs.keys(), loc="lower center", frameon=False, fontsize=10.5,
-                  ncols=3)
+                  ncols=4, columnspacing=1.5)
 
 
 def make(values_file, output):

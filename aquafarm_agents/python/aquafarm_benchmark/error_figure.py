@@ -129,7 +129,7 @@ def _smooth(of_one):
 
 def _mark_low(axes, of_one, colour):
     """Marks the lowest error of all runs if less than _SUCCESS of the last episodes of the run
-    succeed there, because then a low error is no sign of a good policy."""
+    succeed there: then a low error does not mean a good policy."""
     episodes, errors = _smooth(of_one)
     positive = np.where(errors > 0.0, errors, np.inf)
     run, at = np.unravel_index(positive.argmin(), errors.shape)

@@ -15,8 +15,8 @@ from aquafarm_benchmark.style import plt, save
 
 # Causes of a failure, with the words of the headline and the heading of the group.
 _CAUSES = {
-    "time": ("time runs out", "Time runs out: the nearest device left needs more moves than the "
-             "steps that are left after the last stop"),
+    "time": ("time runs out", "Time runs out: the nearest device left (or port, if no device is "
+             "left) needs more moves than steps are left"),
     "ring": ("the ship waits before a ring", "The ship waits before a ring: enough steps are left, "
              "but a ring covers a device that was not fetched"),
     "other": ("another cause", "Another cause: enough steps are left, and no ring covers a device "
@@ -42,6 +42,12 @@ def devices_left(route):
                if after["aboard"] > before["aboard"]]
     return [device["cell"] for device in route["chart"]["devices"]
             if device["cell"] not in fetched]
+
+
+def _goals(route):
+    """Returns the cells of the devices that the ship did not fetch, or of the ports if it fetched
+    all devices: then one is still aboard."""
+    return devices_left(route) or route["chart"]["ports"]
 
 
 def draw_unfinished(path, routes, ranches, shown):
@@ -89,8 +95,9 @@ def _row_height(heading):
 def _draw_key(figure, charts, note):
     """Draws the legend of all maps below them, with a note above it."""
     symbols = symbols_of(charts)
-    diamonds, = (one for one in charts[0].collections if one.get_label() == "_device")
-    symbols[_LEFT] = (symbols[_LEFT], diamonds)  # drawn on top of each other
+    diamonds = [one for axes in charts for one in axes.collections if one.get_label() == "_device"]
+    if diamonds:
+        symbols[_LEFT] = (symbols[_LEFT], diamonds[0])  # drawn on top of each other
     rings = [label for label in (_LAST_RING, *(label for _, label in reversed(_BEFORE.values())))
              if label in symbols]
     visits = [label for _, label in _VISITS.values() if label in symbols]
@@ -123,15 +130,15 @@ def describe_failures(groups):
 
 def shortage(route):
     """Returns (needed, had, is_covered) of an episode that did not succeed: the min number of moves
-    from the last stop (without a stop: from the start) to the nearest device that was not fetched,
-    the number of steps after this stop, and whether, in the last step, a ring covers a device that
-    was not fetched."""
+    from the last stop (without a stop: from the start) to the nearest device that was not fetched
+    (or port, if all were fetched), the number of steps after this stop, and whether, in the last
+    step, a ring covers a device that was not fetched."""
     left, (*before, (_, last_leg)) = devices_left(route), legs(route["steps"])
-    needed, _ = _nearest(last_leg[0], left)
+    needed, _ = _nearest(last_leg[0], _goals(route))
     rings = [ring for one in route["steps"][-2]["disasters"] for ring in rings_of(one)]
     # The action of step t is complete in step t + 1, as in plot_route.
     had = len(last_leg) - (2 if before else 1)
-    return needed, had, any(covers_any(ring, left) for ring in rings)
+    return needed, had, bool(left) and any(covers_any(ring, left) for ring in rings)
 
 
 def _nearest(cell, others):
@@ -144,14 +151,16 @@ def _nearest(cell, others):
 def plot_unfinished(axes, name, route, ratio):
     """Draws the last leg of an episode that did not succeed, and the devices that were left. The
     map shows the cells around them. A dotted line leads from the last stop to the nearest of these
-    devices.
+    devices, or to a port if all devices were fetched.
 
     ratio: width of the map, divided by its height
     """
     chart, last = {**route["chart"], "rocks": []}, route["steps"][-1]
-    left = devices_left(route)
+    left, goals = devices_left(route), _goals(route)
     loaded, last_leg = legs(route["steps"])[-1]
-    window = _window([*last_leg, *left], (chart["width"], chart["height"]), ratio)
+    needed, had, _ = shortage(route)
+    nearest = goals[_nearest(last_leg[0], goals)[1]]
+    window = _window([*last_leg, *left, nearest], (chart["width"], chart["height"]), ratio)
     sea = draw_chart(axes, chart, window, left)
     axes.set_anchor("NW")
     axes.set_xlabel("cells to the east")
@@ -165,12 +174,11 @@ def plot_unfinished(axes, name, route, ratio):
         linewidths=[2.2 if any(counts[tuple(cell)] == 1 for cell in move) else 0.6
                     for move in moves]))
     axes.plot([], [], color=colour, linewidth=2.2, label=f"last leg, {kind}")
-    needed, had, _ = shortage(route)
-    _, nearest = _nearest(last_leg[0], left)
-    axes.plot(*zip(last_leg[0], left[nearest]), color="0.35", linestyle=":", linewidth=1.1,
-              zorder=4, label="last stop to nearest device left (no route)")
-    axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black", linewidth=2.2, zorder=8,
-                 clip_on=False, label=_LEFT)
+    axes.plot(*zip(last_leg[0], nearest), color="0.35", linestyle=":", linewidth=1.1, zorder=4,
+              label=f"last stop to nearest {'device left' if left else 'port'} (no route)")
+    if left:
+        axes.scatter(*zip(*left), s=260, facecolor="none", edgecolor="black", linewidth=2.2,
+                     zorder=8, clip_on=False, label=_LEFT)
     axes.scatter(*last["cell"], s=190, marker="*", color="#f0e442", edgecolor="black", zorder=9,
                  label="ship at the end")
     result = f"{route['return']:.0f}".replace("-", "−")

@@ -276,7 +276,7 @@ def rings_of(disaster):
 
 def covers_any(ring, cells):
     """Returns whether a ring [360, 2] contains one of the cells [x, y]."""
-    return Path(ring).contains_points(cells).any()
+    return len(cells) > 0 and bool(Path(ring).contains_points(cells).any())
 
 
 def risks_of(scenario_file):

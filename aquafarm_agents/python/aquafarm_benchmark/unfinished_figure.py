@@ -138,7 +138,7 @@ def shortage(route):
     rings = [ring for one in route["steps"][-2]["disasters"] for ring in rings_of(one)]
     # The action of step t is complete in step t + 1, as in plot_route.
     had = len(last_leg) - (2 if before else 1)
-    return needed, had, bool(left) and any(covers_any(ring, left) for ring in rings)
+    return needed, had, any(covers_any(ring, left) for ring in rings)
 
 
 def _nearest(cell, others):

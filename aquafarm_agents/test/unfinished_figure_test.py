@@ -139,21 +139,21 @@ class UnfinishedFigureTest(unittest.TestCase):
         self.assertIn("2 moves needed, 10 steps left", self.axes.get_title("left"))
 
     def test_a_failure_with_the_last_device_aboard_lacks_the_way_to_a_port(self):
-        chart = {"width": 9, "height": 9, "islands": [], "rocks": [], "ports": [[0, 0], [8, 2]],
+        chart = {"width": 9, "height": 9, "islands": [], "rocks": [], "ports": [[0, 0], [7, 2]],
                  "devices": [{"cell": [4, 1]}]}
         step = {"cell": [4, 1], "action": "pickup", "aboard": 0, "delivered": 0,
                 "disasters": [{"x": 4.0, "y": 1.0, "radii": [9.0]}]}
         steps = [{**step, "cell": [3, 1], "action": "east"}, step,
                  {**step, "action": "east", "aboard": 1}, {**step, "cell": [5, 1], "aboard": 1}]
         route = {"chart": chart, "steps": steps, "reason": "time_limit", "return": 0.0}
-        self.assertEqual((4, 1, False), unfinished_figure.shortage(route))
+        self.assertEqual((3, 1, False), unfinished_figure.shortage(route))
         with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(
                 unfinished_figure, "save", lambda one, _: self.assertEqual(1, len(one.axes))):
             file = pathlib.Path(folder) / "route.json"
             file.write_text(json.dumps(route))
             unfinished_figure.draw_unfinished("nowhere", {"ranch 7": file}, 20, 5)
         unfinished_figure.plot_unfinished(self.axes, "ranch 7", route, 1.45)
-        np.testing.assert_array_equal([[4, 8], [1, 2]],
+        np.testing.assert_array_equal([[4, 7], [1, 2]],
                                       self.lines()["last stop to nearest port (no route)"])
 
     def test_a_visit_of_a_cell_is_an_arrival(self):

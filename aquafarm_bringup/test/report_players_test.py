@@ -9,7 +9,7 @@ import unittest
 import numpy as np
 import rostest
 
-from aquafarm_report import curves, references
+from aquafarm_report import blocks, curves, references
 
 
 class ReportPlayersTest(unittest.TestCase):
@@ -24,6 +24,10 @@ class ReportPlayersTest(unittest.TestCase):
         self.assertEqual("−3,723 [−3,795, −3,651]", references.text((-3722.9, -3795.2, -3650.7)))
         self.assertEqual("1,276.0 [1,274.5, 1,277.6]", references.text((1276.0, 1274.5, 1277.6)))
         self.assertEqual("0 [−11, 10]", references.text((-0.3, -11.0, 10.0)))
+
+    def test_a_rate_below_one_is_never_100_percent(self):
+        self.assertEqual(["100 %", "99.7 %", "99.99 %", "98 %", "0.4 %", "0 %"],
+                         [blocks.percent(one) for one in (1.0, .997, .9999, .98, .004, 0.0)])
 
     def test_the_number_of_episodes_is_stated_once_if_it_is_the_same(self):
         def shown(*counts):
@@ -67,7 +71,7 @@ class ReportPlayersTest(unittest.TestCase):
 
         found, success, end = charts(columns)
         self.assertEqual("Success rate [%]", success["title"])
-        self.assertEqual([[50.0, 9.5, 90.5]], success["marks"], "Wilson's interval")
+        self.assertEqual([[50.0, 9.4531, 90.5469]], success["marks"], "Wilson's interval")
         self.assertEqual({50.0}, {mean for _, mean in success["rows"]})
         self.assertLess(success["range"][0], 0.0)
         self.assertGreater(success["range"][1], 100.0)

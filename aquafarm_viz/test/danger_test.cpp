@@ -97,7 +97,11 @@ TEST(DangerMarkers, ExplainTheSignsThatAreOnTheMap) {
     }
     return result;
   };
-  EXPECT_EQ(words(&trail), "danger|hit first|to the centre|at risk|dashed: empty ship|");
+  EXPECT_EQ(words(&trail), "danger|to the centre|at risk|dashed: empty ship|");
+  EXPECT_EQ(words(nullptr), "danger|to the centre|at risk|");
+  scene.state.devices.push_back(test::MakeDevice(5, 0, 9, 12, 1.0F));  // hit later
+  scene.state.disasters[0].speed = 0.25F;
+  scene.state.disasters[0].heading_deg = 90;
   EXPECT_EQ(words(nullptr), "danger|hit first|to the centre|at risk|");
   scene.state.disasters[0].x = 24.0F;
   scene.state.disasters[0].radii = {1.0F, 2.0F};

@@ -397,6 +397,9 @@ TEST(Outlook, GivesTheMotionAndTheClosestApproach) {
   scene.storms = ReadStormTracks(kRecorded, 1000.0);
   EXPECT_EQ(ApproachText(scene.spec, scene.state.disasters[0], scene.course()),
             "W at 20 km/h now, closest 8.0 km E in 30 min");
+  Course course = scene.course();
+  course.known_until = course.ahead.front().step + 1.0;  // as of a forecast that ends early
+  EXPECT_EQ(ClosestText(scene.spec, course), "8.0 km E in about 30 min");
 }
 
 }  // namespace

@@ -98,8 +98,10 @@ TEST(OutlookText, HasAPartForEachRing) {
   device.arrivals.clear();
   EXPECT_EQ(words(device, true), "gale now (-5)|");
   device.arrivals = {{10.0, -10.0, 0U, 50}, {60.0, -20.0, 0U, 60}};
-  EXPECT_EQ(words(device, true), "gale now (-5)|storm in 30 min (-10)|")
+  EXPECT_EQ(words(device, true), "gale now (-5)|storm in 30 min (-10)|60 kt in 3.0 h (-20)|")
       << "the worst ring has the same name";
+  device.arrivals.back().risk = -10.0;
+  EXPECT_EQ(words(device, true), "gale now (-5)|storm in 30 min (-10)|") << "it is not worse";
 }
 
 TEST(OutlookText, ShortensTheNameAndTheDangerOfADeviceUntilTheyFit) {
@@ -119,7 +121,7 @@ TEST(OutlookText, ShortensTheNameAndTheDangerOfADeviceUntilTheyFit) {
   EXPECT_EQ(words(30), "F3 release|64 kt in 3.0 h") << "the kind rather than the second word";
   EXPECT_EQ(words(26), "F3 release|64 kt in 3.0 h");
   EXPECT_EQ(words(17), "F3|64 kt in 3.0 h");
-  EXPECT_EQ(words(0), "F3|-5 in 30 min") << "the first risk if nothing fits";
+  EXPECT_EQ(words(0), "F3|-20 in 3.0 h") << "the worst risk if nothing fits";
 }
 
 TEST(OutlookText, StrengthHasMetresPerSecondAndKnots) {
@@ -288,11 +290,16 @@ TEST(OutlookText, DevicesAreHitFirstByTheTimeAndTheRiskOfTheirFirstRing) {
                      {2, 0.0, 0U, 0, {{10.0, -5.0, 0U, 34}, {40.0, -10.0, 0U, 50}}},
                      {3, 0.0, 0U, 0, {{20.0, -5.0, 0U, 34}}},
                      {4, 0.0, 0U, 0, {}}};
-  std::string hit;
-  for (const DeviceOutlook& one : outlook.devices) {
-    hit += IsHitFirst(scene.spec, outlook, one) ? std::to_string(one.id) : "";
-  }
-  EXPECT_EQ(hit, "12") << "what comes later does not matter";
+  const auto hit = [&] {
+    std::string ids;
+    for (const DeviceOutlook& one : outlook.devices) {
+      ids += IsHitFirst(scene.spec, outlook, one) ? std::to_string(one.id) : "";
+    }
+    return ids;
+  };
+  EXPECT_EQ(hit(), "12") << "what comes later does not matter";
+  outlook.devices.erase(outlook.devices.begin() + 2);
+  EXPECT_EQ(hit(), "") << "both devices in danger are hit at the same time";
 }
 
 TEST(OutlookText, DoesNotNameTheSameWindTwice) {

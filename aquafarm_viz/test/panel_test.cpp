@@ -105,6 +105,20 @@ TEST(RanchModel, ANewTrainingBeginsANewCurve) {
   EXPECT_TRUE(model.curve().empty());
 }
 
+TEST(RanchModel, SaysThatATrainingWaitsForAPausedRanch) {
+  RanchModel model = Filled();
+  auto state = boost::make_shared<aquafarm_msgs::FarmState>(test::MakeState());
+  state->paused = true;
+  ASSERT_EQ(model.Take(aquafarm_msgs::FarmStateConstPtr(state)), "");
+  auto training = boost::make_shared<aquafarm_msgs::TrainingStatus>(*Training(120, 81.2F));
+  training->phase = aquafarm_msgs::TrainingStatus::WAITING;
+  model.Take(aquafarm_msgs::TrainingStatusConstPtr(training));
+  EXPECT_EQ(model.TrainingLine(),
+            "q_learning, waiting (ranch paused)   120 / 2,000 episodes   mean return 81.2   "
+            "success 62 %")
+      << "neither a speed nor a time left";
+}
+
 TEST(RanchModel, ADisasterBeginsAtTheShipWithRisksByItsGrade) {
   const RanchModel model = Filled();
   const auto info = model.MakeDisaster(aquafarm_msgs::DisasterState::RED_TIDE, 4, 6.0);
@@ -331,6 +345,10 @@ TEST(RanchWidget, ShowsTheRegionIfADisasterIsOutsideAndNoCurveNeedsTheSpace) {
   EXPECT_FALSE(region->isHidden());
   const Rgb grade = GradeColor(state->disasters[0].grade);
   EXPECT_GT(Count(region->grab().toImage(), qRgb(grade.r, grade.g, grade.b)), 20) << "the centre";
+  RanchModel planned = model;
+  planned.Take(aquafarm_msgs::RescuePlanConstPtr(test::MakePlan()), ros::SteadyTime::now());
+  RanchWidget other(planned, asked.Buttons());
+  EXPECT_TRUE(other.findChild<QWidget*>("region")->isHidden()) << "the plan needs the space";
   for (int episode = 1; episode < 9; ++episode) {
     model.Take(Training(static_cast<std::uint64_t>(episode), 1.0F));
   }

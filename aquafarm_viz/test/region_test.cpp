@@ -62,6 +62,7 @@ TEST(Region, FindsWhereAStormIsNearest) {
 TEST(Region, IsShownForADisasterWhoseCentreIsOutsideAlone) {
   auto spec = test::MakeSpec();
   auto state = test::MakeState();
+  state.devices.clear();  // the key would explain dangers to them
   state.disasters = {test::MakeDisaster(0, 12.0F, 12.0F)};
   const cv::Mat near = Panel(DrawFarm(spec, state, kRegionSize));
   state.disasters[0].x = 13.0F;

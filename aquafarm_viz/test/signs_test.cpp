@@ -13,6 +13,7 @@
 
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/draw/image.h"
+#include "aquafarm_viz/scene/labels.h"
 #include "draw/legend.h"
 #include "draw/map_labels.h"
 #include "draw/paths.h"
@@ -29,6 +30,8 @@ TEST(Signs, HaveOneLineOfTheKeyEach) {
   auto spec = test::MakeSpec();
   spec.view_mode = aquafarm_msgs::FarmSpec::PARTIAL;
   auto state = test::MakeState();
+  state.devices.push_back(
+      test::MakeDevice(9, 0, cvRound(state.disasters[0].x), cvRound(state.disasters[0].y), 1.0F));
   state.disasters.push_back(test::MakeDisaster(1, 60.0F, 12.0F));
   Trail trail;
   const auto aboard = state.ships.front().aboard;
@@ -164,6 +167,31 @@ TEST(Layout, HasTheLegendBelowAWideMapThatIsMuchLowerThanItsPlace) {
   image(cv::Rect(layout.key.tl() - margin, layout.key.br() + margin)).setTo(cv::Scalar::all(0));
   EXPECT_EQ(cv::norm(image), 0.0) << "nothing is drawn elsewhere";
   EXPECT_EQ(LegendPx(&key, signs, layout), 0) << "the panel has no legend";
+}
+
+TEST(Signs, HaveNoKeyOfRisksWithoutRisks) {
+  const Layout layout = MakeLayout(25, 25, kSignsSize);
+  const std::vector<Sign> signs{Sign::kPort, Sign::kRock};
+  const RiskKey key{{34, -5.0, aquafarm_msgs::DisasterState::TYPHOON}};
+  EXPECT_EQ(LegendPx(&key, signs, layout) - LegendPx(nullptr, signs, layout), layout.Px(16.0));
+  const Fonts fonts(layout.unit);
+  const auto draw = [&](const RiskKey* risks) {
+    cv::Mat image(640, 640, CV_8UC3, cv::Scalar::all(0));
+    DrawKeys(image, risks, /*is_filled=*/true, signs, {}, layout, fonts);
+    cv::Mat1b is_yellow;
+    const cv::Scalar color = Bgr(RiskColor(-5.0, layout));
+    cv::inRange(image, color - cv::Scalar::all(12), color + cv::Scalar::all(12), is_yellow);
+    return cv::countNonZero(is_yellow);
+  };
+  EXPECT_GT(draw(&key), 10) << "the edge of the sample";
+  EXPECT_EQ(draw(nullptr), 0);
+}
+
+TEST(Signs, OfShipsAndDevicesInPortHaveItsName) {
+  const auto spec = test::MakeSpec();
+  const auto& cell = spec.ports[1].cell;
+  EXPECT_EQ(PortText(spec, cell.x, cell.y), "port B");
+  EXPECT_EQ(PortText(spec, cell.x + 1, cell.y), "");
 }
 
 TEST(Signs, OfAShipStandNextToThePortInItsCell) {

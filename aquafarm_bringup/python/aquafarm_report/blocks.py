@@ -27,8 +27,13 @@ def escape(value):
 
 
 def percent(share, digits=0):
-    """Returns a share as text, for example "98 %"."""
-    return f"{100.0 * share:.{digits}f} %"
+    """Returns a share as text, for example "98 %". More digits are written if a share below 1 would
+    be "100 %" or a share above 0 would be "0 %"."""
+    text = f"{100.0 * share:.{digits}f}"
+    while (share < 1.0 and float(text) == 100.0) or (share > 0.0 and float(text) == 0.0):
+        digits += 1
+        text = f"{100.0 * share:.{digits}f}"
+    return f"{text} %"
 
 
 def embed(path):

@@ -89,7 +89,7 @@ def bend(rows, lines, marks):
 def _marks(runs, interval):
     """Returns [mean, low, high] of each run, rounded for dygraphs; None replaces unknown values.
     interval: function that returns them of a Player"""
-    return [[round(value, 1) if math.isfinite(value) else None for value in interval(one)]
+    return [[round(value, 4) if math.isfinite(value) else None for value in interval(one)]
             if one.rows else [None] * 3 for one in runs]
 
 

@@ -19,17 +19,18 @@ using aquafarm_msgs::DeviceState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-// Returns when a delivered device was fetched, and its port: "fetched 0:27", "port B". Unknown
-// parts are empty.
-std::pair<std::string, std::string> TripOf(const FarmSpec& spec, const DeviceState& device,
-                                           const Trail* trail) {
+// Returns when a device was fetched, "fetched 0:27"; empty if this is not known.
+std::string FetchedText(const FarmSpec& spec, const DeviceState& device, const Trail* trail) {
   const auto at = trail == nullptr ? std::nullopt : trail->FetchedAt(device.id);
-  const std::string fetched = at ? "fetched " + TimeOfDay(spec, *at) : "";
-  for (const auto& port : spec.ports) {
-    const bool is_there = port.cell.x == device.x && port.cell.y == device.y;
-    if (is_there) return {fetched, "port " + PortLetter(port.id)};
-  }
-  return {fetched, ""};
+  return at ? "fetched " + TimeOfDay(spec, *at) : "";
+}
+
+// Returns the status of a device. For a delivered device, this is its port, "port B", or "safe" if
+// its cell does not have a port.
+std::string StatusText(const FarmSpec& spec, const DeviceState& device) {
+  if (device.status != DeviceState::DELIVERED) return StatusName(device.status);
+  const std::string port = PortText(spec, device.x, device.y);
+  return port.empty() ? "safe" : port;
 }
 
 // Returns the health and the value of a device: "health 88 %", "value 80".
@@ -78,7 +79,7 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
     const bool done = device.status == DeviceState::DELIVERED;
     DrawDeviceSymbol(panel.image(), device.kind, {panel.SymbolAt(), 6.0 * layout.unit, 0.0},
                      done ? 0.5 : 0.0);
-    std::string status = done ? "safe" : StatusName(device.status);
+    std::string status = StatusText(spec, device);
     if (const auto at = trail == nullptr ? std::nullopt : trail->ChangedAt(device.id)) {
       status += " " + TimeOfDay(spec, *at);
     }
@@ -101,8 +102,8 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
     }
     panel.Item(name, status, color);
     if (!has_details) continue;
-    const auto [left, right] = done ? TripOf(spec, device, trail) : HealthAndValue(device);
-    panel.Detail(left, right, layout.style->faint);
+    const auto [health, value] = HealthAndValue(device);
+    panel.Detail(done ? FetchedText(spec, device, trail) : health, value, layout.style->faint);
   }
 }
 
@@ -111,7 +112,7 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
 ColoredTexts DeviceInHalf(const Panel& panel, const FarmSpec& spec, const DeviceState& device,
                           const Trail* trail, const Outlook& outlook, const Layout& layout) {
   const bool done = device.status == DeviceState::DELIVERED;
-  const std::string status = done ? "safe" : StatusName(device.status);
+  const std::string status = StatusText(spec, device);
   const auto at = trail == nullptr ? std::nullopt : trail->ChangedAt(device.id);
   for (const DeviceOutlook& one : outlook.devices) {
     if (one.id != device.id || !(WorstRisk(one) < 0.0)) continue;
@@ -170,8 +171,7 @@ void ListKinds(Panel& panel, const FarmState& state, const Layout& layout) {
 void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                  const Outlook& outlook, const Layout& layout) {
   constexpr std::size_t kMaxRows = 6;
-  constexpr int kRowsBelow = 8;      // kept free for disasters and ships
-  constexpr int kRowsOfRegion = 12;  // kept free for headings and the region
+  constexpr int kRowsBelow = 8;  // kept free for disasters and ships
   const auto delivered = std::count_if(
       state.devices.begin(), state.devices.end(),
       [](const DeviceState& device) { return device.status == DeviceState::DELIVERED; });
@@ -180,7 +180,7 @@ void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, con
                 std::to_string(delivered) + " / " + std::to_string(state.devices.size()) + " safe");
   if (state.devices.size() <= kMaxRows) {
     const auto rows = 2 * state.devices.size() + 3 * state.disasters.size() + state.ships.size();
-    const bool has_details = panel.RowsLeft() >= static_cast<int>(rows) + kRowsOfRegion;
+    const bool has_details = panel.RowsLeft() >= static_cast<int>(rows) + Panel::kRowsOfRegion;
     ListEachDevice(panel, spec, state, trail, outlook, has_details, layout);
   } else if (state.devices.size() <= 2 * kMaxRows &&
              panel.RowsLeft() >= int(kMaxRows) + kRowsBelow) {

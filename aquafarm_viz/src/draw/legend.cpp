@@ -10,6 +10,7 @@
 #include "draw/paths.h"
 #include "draw/symbols.h"
 #include "scene/nautical.h"
+#include "scene/outlook_text.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -216,7 +217,10 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
       Sign::kAtRisk);
   const auto in_danger = layers.risk ? CountInDanger(outlook) : 0;
   add(in_danger > 0, Sign::kInDanger);
-  add(in_danger > 0, Sign::kFirstReached);
+  add(in_danger > 0 &&
+          std::any_of(outlook.devices.begin(), outlook.devices.end(),
+                      [&](const DeviceOutlook& one) { return IsHitFirst(spec, outlook, one); }),
+      Sign::kFirstReached);
   add(std::any_of(state.devices.begin(), state.devices.end(),
                   [](const auto& device) {
                     return device.status == aquafarm_msgs::DeviceState::DELIVERED;
@@ -386,7 +390,7 @@ int LegendPx(const RiskKey* key, const std::vector<Sign>& signs, const Layout& l
 namespace {
 
 // Draws the key of signs.
-// @param rows  place of the signs
+// @param rows  position and width of the signs
 void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs, const SignGrid& grid, cv::Rect rows,
                const FarmState& state, const Layout& layout, const Fonts& fonts) {
   const int width = rows.width / grid.columns;
@@ -449,7 +453,7 @@ void DrawRiskScale(cv::Mat& image, cv::Rect row, const Layout& layout, const Fon
 }
 
 // Draws the key of risks.
-// @param row  place of its first row
+// @param row  position and size of its first row
 void DrawRiskKey(cv::Mat& image, const RiskKey& key, bool is_filled, cv::Rect row,
                  const Layout& layout, const Fonts& fonts) {
   if (key.empty()) return DrawRiskScale(image, row, layout, fonts);

@@ -80,7 +80,7 @@ int SignSpan(Sign sign);
 bool HasLegend(const Layout& layout);
 
 /// Returns the height of the whole legend in the panel [pixels]; 0 if the legend is below the map.
-/// @param key  null: no key of risks
+/// @param key  If it is null, there is no key of risks.
 int LegendPx(const RiskKey* key, const std::vector<Sign>& signs, const Layout& layout);
 
 /// Draws the constant part of the legend: north arrow and scale bar.
@@ -90,7 +90,7 @@ void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layou
 /// Draws the key of risks and, below it, the key of signs. In the panel they have a heading. Rings
 /// with winds have a row each in the panel, others are in one row. If the key of risks is empty,
 /// draws the colour scale of all risks instead.
-/// @param key  null: no key of risks
+/// @param key  If it is null, there is no key of risks.
 /// @param is_filled  see DrawRiskSample
 void DrawKeys(cv::Mat& image, const RiskKey* key, bool is_filled, const std::vector<Sign>& signs,
               const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);

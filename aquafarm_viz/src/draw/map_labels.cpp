@@ -303,7 +303,8 @@ void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>&
       const std::string risk = Number(double(disaster.risks[ring]), 0);
       const std::string wind = ring < winds.size() ? aquafarm::RingName(winds[ring]) + ", " : "";
       // The second text is for a ring with little space. Rings of several disasters have no plates,
-      // because many plates would cover the rings. Different rings often have the same risk.
+      // because many plates would cover the rings. They always have their kind, because rings of
+      // different disasters may have the same risk.
       const std::vector<std::string> texts =
           are_several ? std::vector<std::string>{DisasterName(disaster.kind) + " " + risk}
                       : std::vector<std::string>{wind + "risk " + risk, "risk " + risk};

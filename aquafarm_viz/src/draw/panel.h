@@ -29,6 +29,8 @@ using ColoredTexts = std::vector<ColoredText>;
 /// Draws the lists of the panel from its top down to the legend.
 class Panel {
  public:
+  static constexpr int kRowsOfRegion = 12;  ///< kept free for headings and the map of the region
+
   /// @param legend_px  height of the legend below the lists
   Panel(cv::Mat& image, int legend_px, const Layout& layout, const Fonts& fonts)
       : image_(image),

@@ -65,18 +65,15 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
 // Returns the place of a ship: "port B", else its cell, "(9, 9)". If HasGraticule is true, the axes
 // of the map do not number the cells, and the second text is empty.
 std::string PlaceOf(const FarmSpec& spec, const ShipState& ship) {
-  for (const auto& port : spec.ports) {
-    if (port.cell.x == ship.x && port.cell.y == ship.y) return "port " + PortLetter(port.id);
-  }
-  if (HasGraticule(spec)) return "";
+  const std::string port = PortText(spec, ship.x, ship.y);
+  if (!port.empty() || HasGraticule(spec)) return port;
   return "(" + std::to_string(ship.x) + ", " + std::to_string(ship.y) + ")";
 }
 
 void ListShips(Panel& panel, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
-  constexpr int kRowsOfPolicy = 8;   // kept free
-  constexpr int kRowsOfRegion = 12;  // kept free if there is a region
+  constexpr int kRowsOfPolicy = 8;  // kept free if there is no region
   panel.Heading("SHIPS", "");
-  const int rows_kept = HasRegion(spec, state) ? kRowsOfRegion : kRowsOfPolicy;
+  const int rows_kept = HasRegion(spec, state) ? Panel::kRowsOfRegion : kRowsOfPolicy;
   const bool has_details = panel.RowsLeft() >= 3 * int(state.ships.size()) + rows_kept;
   int rows = panel.RowsLeft();
   std::size_t left_out = 0;
@@ -145,9 +142,7 @@ std::vector<std::string> ChoiceLines(const FarmState& state, const Overlays& ove
 // ports and devices cover most of these symbols.
 bool HasPickupSigns(const FarmSpec& spec, const FarmState& state, const Values& values, int every) {
   const auto is_covered = [&](cv::Point cell) {
-    return std::any_of(
-               spec.ports.begin(), spec.ports.end(),
-               [&](const auto& port) { return port.cell.x == cell.x && port.cell.y == cell.y; }) ||
+    return !PortText(spec, cell.x, cell.y).empty() ||
            std::any_of(state.devices.begin(), state.devices.end(), [&](const auto& device) {
              return device.status == DeviceState::DEPLOYED && device.x == cell.x &&
                     device.y == cell.y;

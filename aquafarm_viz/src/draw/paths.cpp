@@ -70,22 +70,22 @@ std::vector<Moved> MovesOf(const FarmState& state, std::int32_t ship, const Ship
   const double aside = AsideOf(ship, state.ships.size() > 1, layout);
   const std::size_t count = way.places.size();
   const std::size_t first = DrawnFrom(state, way) + 1;
-  std::vector<cv::Point2d> points;
-  points.reserve(count);
-  for (const auto& place : way.places) points.push_back(layout.view.ToPixel(place.x, place.y));
+  const auto point = [&](std::size_t i) {
+    return layout.view.ToPixel(way.places[i].x, way.places[i].y);
+  };
   std::vector<Moved> moves;
   for (std::size_t i = first; i < count; ++i) {
     if (Trail::IsGap(way.places[i - 1], way.places[i])) continue;
-    const cv::Point2d own = RightOf(points[i] - points[i - 1]);
+    const cv::Point2d own = RightOf(point(i) - point(i - 1));
     const bool has_before = i > first && !Trail::IsGap(way.places[i - 2], way.places[i - 1]);
     const bool has_after = i + 1 < count && !Trail::IsGap(way.places[i], way.places[i + 1]);
-    const cv::Point2d before = has_before ? RightOf(points[i - 1] - points[i - 2]) : own;
-    const cv::Point2d after = has_after ? RightOf(points[i + 1] - points[i]) : own;
-    const cv::Point2d from = Turn(points[i - 1], own, before, aside);
-    const double age = 1.0 - double(i) / double(count);
+    const cv::Point2d before = has_before ? RightOf(point(i - 1) - point(i - 2)) : own;
+    const cv::Point2d after = has_after ? RightOf(point(i + 1) - point(i)) : own;
+    const cv::Point2d from = Turn(point(i - 1), own, before, aside);
+    const double age = 1.0 - double(i - first + 1) / double(count - first + 1);
     const bool is_sharp = has_before && cv::norm(moves.back().to - from) > 0.5;
     if (is_sharp) moves.push_back({moves.back().to, from, false, age});  // around it
-    moves.push_back({from, Turn(points[i], own, after, aside), !way.loaded[i], age});
+    moves.push_back({from, Turn(point(i), own, after, aside), !way.loaded[i], age});
   }
   return moves;
 }

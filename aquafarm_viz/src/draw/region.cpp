@@ -284,24 +284,29 @@ void DrawScale(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layou
   cv::rectangle(inset.image, cv::Rect(left, y, length, layout.Px(2)), Bgr(color), cv::FILLED);
 }
 
-// Draws the outline of the farm over the courses, and the word "ranch" in it or next to it.
-void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout& layout,
-              const Fonts& fonts) {
+// Returns the outline of the farm in the inset.
+cv::Rect FarmPlace(const Inset& inset, const FarmSpec& spec, const Layout& layout) {
   constexpr double kMinSide = 9.0;  // [design units]
   const double wide = std::max(kMinSide * layout.unit, spec.width * inset.px_per_cell);
   const double tall = std::max(kMinSide * layout.unit, spec.height * inset.px_per_cell);
   const cv::Point2d middle = inset.At((spec.width - 1) / 2.0, (spec.height - 1) / 2.0);
-  const cv::Rect farm(cvRound(middle.x - wide / 2.0), cvRound(middle.y - tall / 2.0), cvRound(wide),
-                      cvRound(tall));
+  return {cvRound(middle.x - wide / 2.0), cvRound(middle.y - tall / 2.0), cvRound(wide),
+          cvRound(tall)};
+}
+
+// Draws the outline of the farm over the courses, and the word "ranch" in it or next to it.
+void DrawFarm(Inset& inset, cv::Rect farm, FreeSpace& space, const Layout& layout,
+              const Fonts& fonts) {
+  const cv::Point2d middle = cv::Point2d(farm.tl() + farm.br()) * 0.5;
   cv::rectangle(inset.image, farm, Bgr(layout.style->halo), layout.Px(4.0));
   cv::rectangle(inset.image, farm, Bgr(layout.style->label), layout.Px(1.6));
   const cv::Point gap(layout.Px(6), layout.Px(3));  // between the farm and labels
   space.Block(cv::Rect(farm.tl() - gap, farm.br() + gap));
   const std::string word = "ranch";
   const cv::Size size(fonts.small.Width(word), fonts.small.cap_height());
-  const cv::Point2d aside(size.width / 2.0 + wide / 2.0 + 7.0 * layout.unit, 0.0);
+  const cv::Point2d aside(size.width / 2.0 + farm.width / 2.0 + 7.0 * layout.unit, 0.0);
   const double farthest = 12.0 * layout.unit;
-  if (wide > size.width + 12.0 * layout.unit && tall > 3.0 * size.height) {  // it fits inside
+  if (farm.width > size.width + 12.0 * layout.unit && farm.height > 3.0 * size.height) {
     const cv::Point2d half(size.width / 2.0, size.height / 2.0);
     return DrawLabel(inset.image, fonts.small, word, middle - half, layout);
   }
@@ -351,8 +356,14 @@ void DrawInset(Inset inset, const FarmSpec& spec, const FarmState& state,
     space.Block(
         {cvRound(at.x) - layout.Px(6), cvRound(at.y) - layout.Px(6), layout.Px(12), layout.Px(12)});
   }
+  const cv::Rect farm = FarmPlace(inset, spec, layout);
+  const bool is_dot = farm.width < layout.Px(18) && farm.height < layout.Px(18);
+  marks.erase(
+      std::remove_if(marks.begin(), marks.end(),
+                     [&](const CourseMark& mark) { return is_dot && farm.contains(mark.at); }),
+      marks.end());  // a small outline of the farm hides these
   BlockMarks(marks, space, layout);
-  DrawFarm(inset, spec, space, layout, fonts);
+  DrawFarm(inset, farm, space, layout, fonts);
   for (const Outline& ring : rings) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       space.BlockLine(ring[i], ring[(i + 1) % ring.size()], 2);
@@ -362,14 +373,24 @@ void DrawInset(Inset inset, const FarmSpec& spec, const FarmState& state,
   DrawScale(inset, spec, space, layout, fonts);
 }
 
-// Draws the inset in a part of the image, with a frame.
-void DrawFramed(cv::Mat& image, cv::Rect place, double farthest_m, const FarmSpec& spec,
+// Draws the inset with a frame in a part of the image.
+void DrawFramed(cv::Mat& image, cv::Rect part, double farthest_m, const FarmSpec& spec,
                 const FarmState& state, const std::vector<Course>& courses,
                 const std::vector<CoastRing>& coast, const Layout& layout, const Fonts& fonts) {
-  place &= cv::Rect({0, 0}, image.size());
-  const cv::Rect2d part = ShownPart(spec, state, courses, farthest_m);
-  DrawInset(MakeInset(image(place), part), spec, state, courses, coast, layout, fonts);
-  cv::rectangle(image, place, Bgr(layout.style->rule), 1);
+  part &= cv::Rect({0, 0}, image.size());
+  const cv::Rect2d region = ShownPart(spec, state, courses, farthest_m);
+  DrawInset(MakeInset(image(part), region), spec, state, courses, coast, layout, fonts);
+  cv::rectangle(image, part, Bgr(layout.style->rule), 1);
+}
+
+// Draws the lines of RegionWords below each other.
+// @param at  left end of the base line of the first line
+void DrawLines(cv::Mat& image, const RegionWords& words, cv::Point at, int width,
+               const Layout& layout, const Fonts& fonts) {
+  for (const std::string& line : words.lines) {
+    fonts.small.Draw(image, fonts.small.Fit(line, width), at, Bgr(layout.style->words));
+    at.y += layout.Px(15);
+  }
 }
 
 // Returns the distance of the farthest disaster outside the farm from the middle of the farm [m]; 0
@@ -389,24 +410,21 @@ bool HasRegion(const FarmSpec& spec, const FarmState& state) {
   return FarthestOutside(spec, state) > 0.0;
 }
 
-void DrawRegionBeside(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
-                      const std::vector<Course>& courses, const std::vector<CoastRing>& coast,
-                      const Layout& layout, const Fonts& fonts) {
+void DrawWideRegion(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
+                    const std::vector<Course>& courses, const std::vector<CoastRing>& coast,
+                    const Layout& layout, const Fonts& fonts) {
   const double farthest_m = FarthestOutside(spec, state);
   if (!(farthest_m > 0.0)) return;
   const int width = image.cols * 9 / 20;
   DrawFramed(image, {0, 0, width, image.rows}, farthest_m, spec, state, courses, coast, layout,
              fonts);
   const RegionWords words = RegionText(spec, state, courses);
-  const cv::Rect room(width + layout.Px(8), 0, image.cols - width - layout.Px(12), image.rows);
-  int y = layout.Px(8) + fonts.small.cap_height();
-  fonts.bold.Draw(image, fonts.bold.Fit(words.heading, room.width), {room.x, y},
+  const int left = width + layout.Px(8);
+  const int words_px = image.cols - left - layout.Px(4);
+  const int base = layout.Px(8) + fonts.small.cap_height();
+  fonts.bold.Draw(image, fonts.bold.Fit(words.heading, words_px), {left, base},
                   Bgr(layout.style->words));
-  for (const std::string& line : words.lines) {
-    y += layout.Px(17);
-    fonts.small.Draw(image, fonts.small.Fit(line, room.width), {room.x, y},
-                     Bgr(layout.style->words));
-  }
+  DrawLines(image, words, {left, base + layout.Px(18)}, words_px, layout, fonts);
 }
 
 void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmState& state,
@@ -440,11 +458,7 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
   }
   if (!has_lines) return;
   y += layout.Px(3) + fonts.small.cap_height();
-  for (const std::string& line : words.lines) {
-    fonts.small.Draw(image, fonts.small.Fit(line, room.width), {room.x, y},
-                     Bgr(layout.style->words));
-    y += row_px;
-  }
+  DrawLines(image, words, {room.x, y}, room.width, layout, fonts);
 }
 
 }  // namespace aquafarm_viz

@@ -59,9 +59,8 @@ bool HasRegion(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmSta
 
 /// Draws the inset in the left part of an image that is wide and low, and the heading and the lines
 /// of RegionText in the right part. Draws nothing if HasRegion is false.
-void DrawRegionBeside(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
-                      const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
-                      const std::vector<CoastRing>& coast, const Layout& layout,
-                      const Fonts& fonts);
+void DrawWideRegion(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
+                    const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
+                    const std::vector<CoastRing>& coast, const Layout& layout, const Fonts& fonts);
 
 }  // namespace aquafarm_viz

@@ -32,7 +32,7 @@ const cv::Mat& RegionPainter::Draw(const aquafarm_msgs::FarmSpec& spec,
   }
   p.image.create(size, CV_8UC3);
   p.image.setTo(Bgr(p.layout.style->panel));
-  DrawRegionBeside(p.image, spec, state, p.courses.Read(spec, state), p.coast, p.layout, p.fonts);
+  DrawWideRegion(p.image, spec, state, p.courses.Read(spec, state), p.coast, p.layout, p.fonts);
   return p.image;
 }
 

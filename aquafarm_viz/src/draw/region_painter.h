@@ -12,7 +12,7 @@
 
 namespace aquafarm_viz {
 
-/// Draws the region around a farm with its disasters and their courses (DrawRegionBeside), without
+/// Draws the region around a farm with its disasters and their courses (DrawWideRegion), without
 /// the farm's own picture. Private to this package.
 class RegionPainter {
  public:

@@ -218,8 +218,8 @@ void AddSignLegend(MarkerArray& array, const FarmSpec& spec, const MapSigns& sig
   };
   symbol(signs.circle, &Row::Circle);
   text(signs.circle, "danger");
-  symbol(signs.circle, &Row::TwoCircles);
-  text(signs.circle, "hit first");
+  symbol(signs.two_circles, &Row::TwoCircles);
+  text(signs.two_circles, "hit first");
   symbol(signs.pointer, &Row::Pointer);
   text(signs.pointer, "to the centre");
   symbol(signs.pattern, &Row::Pattern);

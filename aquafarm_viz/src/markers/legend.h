@@ -15,10 +15,11 @@ void AddLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::Farm
 
 /// The signs that AddSignLegend explains.
 struct MapSigns {
-  bool circle{};   ///< circle around a device in danger
-  bool pointer{};  ///< pointer to a centre outside the farm
-  bool pattern{};  ///< pattern of rings over the farm
-  bool dashes{};   ///< dashed path of a ship with nothing aboard
+  bool circle{};       ///< circle around a device in danger
+  bool two_circles{};  ///< two circles around a device that is hit first
+  bool pointer{};      ///< pointer to a centre outside the farm
+  bool pattern{};      ///< pattern of rings over the farm
+  bool dashes{};       ///< dashed path of a ship with nothing aboard
 };
 
 /// Adds a second line with the meanings of these signs, in the namespaces `sign_legend` and

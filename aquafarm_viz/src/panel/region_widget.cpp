@@ -16,9 +16,10 @@ RegionWidget::RegionWidget(QWidget* parent) : QWidget(parent) {
 }
 
 void RegionWidget::Show(const Shown& shown, bool is_wanted) {
+  const bool is_new = shown.state != shown_.state || shown.spec != shown_.spec;
   shown_ = shown;
   setVisible(is_wanted && shown.state != nullptr && HasRegion(*shown.spec, *shown.state));
-  update();
+  if (is_new) update();
 }
 
 void RegionWidget::paintEvent(QPaintEvent*) {

@@ -102,6 +102,13 @@ std::string StatusName(std::uint8_t status) {
 
 std::string DeviceLabel(std::int32_t id) { return "F" + std::to_string(id); }
 
+std::string PortText(const aquafarm_msgs::FarmSpec& spec, int x, int y) {
+  for (const auto& port : spec.ports) {
+    if (port.cell.x == x && port.cell.y == y) return "port " + PortLetter(port.id);
+  }
+  return "";
+}
+
 bool IsLabelled(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::DeviceState& device) {
   return device.status == aquafarm_msgs::DeviceState::DEPLOYED && InGrid(spec, device.x, device.y);
 }

@@ -315,7 +315,12 @@ bool IsHitFirst(const FarmSpec& spec, const Outlook& outlook, const DeviceOutloo
     if (one.arrivals.empty()) return std::pair(std::string(), 0.0);
     return std::pair(AheadText(spec, one.arrivals.front().steps), one.arrivals.front().risk);
   };
-  return WorstRisk(device) < 0.0 && first_ring(device) == first_ring(outlook.devices.front());
+  const auto first = first_ring(outlook.devices.front());
+  const bool are_all =
+      std::all_of(outlook.devices.begin(), outlook.devices.end(), [&](const DeviceOutlook& other) {
+        return !(WorstRisk(other) < 0.0) || first_ring(other) == first;
+      });
+  return !are_all && WorstRisk(device) < 0.0 && first_ring(device) == first;
 }
 
 namespace {
@@ -384,7 +389,12 @@ DangerParts PartsOf(const FarmSpec& spec, const DeviceOutlook& device, bool is_b
   parts.push_back(NamedPart(spec, device.arrivals.front(), is_brief));
   const RingArrival& worst = device.arrivals.back();
   const std::string last = NameOf(worst.wind_kt);
-  if (!last.empty() && last != after) parts.push_back(NamedPart(spec, worst, is_brief));
+  if (!last.empty() && last != after) {
+    parts.push_back(NamedPart(spec, worst, is_brief));
+  } else if (!last.empty() && worst.risk < device.arrivals.front().risk) {
+    parts.push_back({std::to_string(worst.wind_kt) + " kt in " + AheadText(spec, worst.steps),
+                     worst.risk});  // the name of its wind does not distinguish it
+  }
   return parts;
 }
 
@@ -414,7 +424,7 @@ std::pair<std::string, DangerParts> NameAndDanger(
     const DangerParts risks = RiskParts(spec, device, between);
     if (fits(label, Joined(risks))) return {label, risks};
   }
-  return {label, {RiskParts(spec, device, " in ").front()}};
+  return {label, {RiskParts(spec, device, " in ").back()}};
 }
 
 std::string CentreText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,

@@ -60,7 +60,9 @@ std::vector<std::string> Headlines(const aquafarm_msgs::FarmSpec& spec,
 std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook);
 
 /// Returns whether a ring covers or reaches a device at the same time as the most urgent device,
-/// with the same risk. Times are the same if AheadText returns the same text for them.
+/// with the same risk. Times are the same if AheadText returns the same text for them. Returns
+/// false if this applies to all devices in danger, because none of them is then ahead of the
+/// others.
 bool IsHitFirst(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook,
                 const DeviceOutlook& device);
 
@@ -91,7 +93,7 @@ std::string FirstAndWorstText(const aquafarm_msgs::FarmSpec& spec, const DeviceO
 
 /// Returns a row about a device: its label, with its kind if there is space, and its danger. Tries
 /// forms of the danger from the longest to the shortest until `fits` accepts both texts. If `fits`
-/// accepts none, returns the label and the first risk.
+/// accepts none, returns the label and the worst risk.
 /// @param kind  DeviceName of the device
 std::pair<std::string, DangerParts> NameAndDanger(
     const aquafarm_msgs::FarmSpec& spec, const std::string& kind, const DeviceOutlook& device,

@@ -93,13 +93,15 @@ std::string RanchModel::RewardLine() const {
 std::string RanchModel::TrainingLine() const {
   if (training_ == nullptr) return "";
   const TrainingStatus& now = *training_;
-  std::string text = now.algorithm + ", " + PhaseName(now.phase) + "   " + Count(now.episode) +
+  const bool waits_for_ranch = now.phase == TrainingStatus::WAITING && paused();
+  std::string text = now.algorithm + ", " + PhaseName(now.phase) +
+                     (waits_for_ranch ? " (ranch paused)" : "") + "   " + Count(now.episode) +
                      (now.episodes > 0 ? " / " + Count(now.episodes) : "") +
                      " episodes   mean return " + Number(now.mean_return, 1) + "   success " +
                      Percent(now.success_rate);
-  if (now.steps_per_second > 0.0F)
+  if (now.steps_per_second > 0.0F && !waits_for_ranch)
     text += "   " + Unbroken(Rate(now.steps_per_second) + " steps/s");
-  if (const auto left = Duration(now.time_left_s); !left.empty())
+  if (const auto left = Duration(now.time_left_s); !left.empty() && !waits_for_ranch)
     text += "   " + Unbroken("left " + left);
   return text;
 }

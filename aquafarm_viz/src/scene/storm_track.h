@@ -86,8 +86,9 @@ struct Course {
   Kind kind{Kind::kExtrapolated};
   Track ahead;  ///< from the present step on; at least two points
   Track past;   ///< up to the present step; may be empty
-  /// Last step of the course that is known: that of the last point of a published forecast, after
-  /// which `ahead` may continue; for other kinds, that of the last point of `ahead`.
+  /// Last step of the course that is known. Of a published forecast, this is the step of its last
+  /// point, or the end of the disaster if that is earlier; `ahead` may continue after it. For other
+  /// kinds, this is the step of the last point of `ahead`.
   double known_until{};
   std::vector<double> errors;  ///< mean forecast error at each point of `ahead` [cells], or empty
   std::vector<std::int32_t> ring_winds_kt{};  ///< min wind within each ring [kn]; empty: not given

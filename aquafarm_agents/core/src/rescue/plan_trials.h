@@ -20,7 +20,8 @@ enum class TrialPolicy : std::uint8_t {
   kPlan,         ///< the plan of the first bulletin
   kCentral,      ///< as kPlan, with the central forecast as the only member
   kPlanAgain,    ///< a new plan at each bulletin; needs one ship
-  kPlanner,      ///< the policy `planner` (PlannerSkipper); needs the ranch's devices and one ship
+  kPlanner,      ///< the policy `planner` (PlannerSkipper); needs a ranch with one ship, and its
+                 ///< devices
   kValue,        ///< FetchRule::kValue
   kNearest,      ///< FetchRule::kNearest
   kClairvoyant,  ///< as kPlan, with the true storm as the only member

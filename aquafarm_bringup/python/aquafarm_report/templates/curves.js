@@ -79,6 +79,12 @@ function fromScale(y, unit) {
   return unit && y < 0 ? unit * (1 - Math.exp(-y / unit)) : y;
 }
 
+// Writes a value without decimals, except a success rate just below 100 %, which must not become
+// "100". Returns of this size are rounded down to one decimal, too.
+function inWhole(value) {
+  return value > 99 && value < 100 ? inWords(Math.floor(10 * value) / 10, 1) : inWords(value, 0);
+}
+
 function inWords(value, digits) {
   return value.toFixed(digits).replace("-", "\u2212").replace(/\B(?=(\d{3})+(?!\d))/g,
     digits ? "" : ",");
@@ -214,7 +220,7 @@ function mark(canvas, area, dygraph, marks, onScale) {
     canvas.fill();
     if (STEP > 20) {  // below the interval, because references are above; else above "greedy"
       const below = at(low ?? mean) + 17;
-      canvas.fillText(inWords(mean, 0), x,
+      canvas.fillText(inWhole(mean), x,
         below < area.y + area.h - 54 ? below : at(high ?? mean) - 8);
     }
     if (low === null) return;

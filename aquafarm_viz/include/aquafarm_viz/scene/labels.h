@@ -43,6 +43,9 @@ std::string StatusName(std::uint8_t status);
 /// Returns the label of a device: F and its id, such as "F2" (F_j in Fig. 5 of the paper).
 std::string DeviceLabel(std::int32_t id);
 
+/// Returns the name of the port in a cell, such as "port B"; empty if there is none.
+std::string PortText(const aquafarm_msgs::FarmSpec& spec, int x, int y);
+
 /// Returns true if drawings label the device in its cell: it is deployed, and the cell is inside
 /// the grid.
 bool IsLabelled(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::DeviceState& device);

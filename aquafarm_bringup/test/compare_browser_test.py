@@ -148,6 +148,8 @@ class CompareBrowserTest(unittest.TestCase):
         tiles = [one.text.splitlines()[0] for one in
                  self.browser.find_elements(By.CSS_SELECTOR, ".wide-tiles .tile.own")]
         self.assertEqual(tiles, self.browser.execute_script("return CURVES.labels.slice(1);"))
+        names = [tile.partition(":")[0] for tile in tiles]
+        self.assertEqual(f"Comparison of {' and '.join(names)}", self.browser.title)
 
     def test_names_next_to_each_other_have_the_styles_of_their_lines(self):
         self.show()
@@ -221,8 +223,10 @@ class CompareBrowserTest(unittest.TestCase):
     def test_it_compares_settings_measures_and_devices(self):
         self.show()
         words = self.browser.find_element(By.TAG_NAME, "body").text
-        for word in ("Settings that differ", "algorithm q_learning sarsa", "devices home",
-                     "the median return of the first run", "F0 "):
+        algorithms = [one.partition(": ")[2] for one in
+                      self.browser.execute_script("return CURVES.labels.slice(1);")]
+        for word in ("Settings that differ", f"algorithm {' '.join(algorithms)}", "devices home",
+                     "the median return of the best run", "F0 "):
             self.assertIn(word, words)
 
     def test_only_runs_can_be_compared(self):

@@ -41,11 +41,10 @@ class ReportPlayersTest(unittest.TestCase):
         self.assertIn("3 episodes, 2 distinct", shown((4, 4), (3, 2)))
 
     def test_a_run_that_plays_worse_or_better_than_it_trained_has_a_sentence(self):
-        columns = {"return": np.full(120, 150.0), "success": np.ones(120)}
-
         def note(*returns):
             rows = [{"return": value, "success": "0" if value < 0.0 else "1"} for value in returns]
-            return curves.gap_note("a", columns, references.Player("a", rows, len(rows)))
+            return curves.gap_note(references.Player("a", rows, len(rows),
+                                                     training=np.full(120, 150.0)))
 
         self.assertEqual(
             "a: the mean return is 150.0 at the end of the training and −160 [−454, 134] in "
@@ -88,9 +87,9 @@ class ReportPlayersTest(unittest.TestCase):
         self.assertIsNone(charts({"return": columns["return"] - 1000.0})[0]["bend"], "below 0")
 
     def test_one_sentence_says_how_good_a_run_is(self):
-        def player(label, *returns, is_run=False):
+        def player(label, *returns, is_run=False, training=()):
             rows = [{"episode": str(i), "return": str(one)} for i, one in enumerate(returns)]
-            return references.Player(label, rows, len(rows), is_run=is_run)
+            return references.Player(label, rows, len(rows), is_run=is_run, training=training)
 
         others = [player("planner", 98, 98, 98, 98), player("clairvoyant", 100, 100, 100, 100)]
         two = [player("a", 88, 92, 88, 92, is_run=True), player("b", 80, 80, 80, 80, is_run=True)]
@@ -110,6 +109,18 @@ class ReportPlayersTest(unittest.TestCase):
         two[1] = player("b", 92, 84, 92, 84, is_run=True)
         self.assertIn("not distinct from b", references.verdict(two))
         self.assertEqual("", references.verdict(others))
+
+        def after(*last):
+            training = np.array([500.0, *(-900.0,) * 10, *last])  # the mean of the last 50 counts
+            return verdict([player("a", 88, 92, 88, 92, is_run=True, training=training), *others])
+
+        said = "below the planner. a is worse in greedy play (90.0) than at the end of its training "
+        self.assertIn(said + "(95.0).", after(*[94.0, 96.0] * 25))
+        for last in ([92.0, 91.0] * 25, [80.0, 110.0] * 25):  # overlaps, although the mean is above
+            self.assertNotIn("greedy", after(*last))
+        self.assertIn("greedy play (90.0) than at the end of its training (95.0). One training",
+                      verdict([player("a", 88, 92, 88, 92, is_run=True,
+                                      training=np.full(50, 95.0)), two[0], *others]))
 
 
 if __name__ == "__main__":

@@ -30,7 +30,8 @@ class Run:
         self.columns = read_metrics(folder / "metrics.csv")
         work.mkdir()
         self.summary, _ = videos.evaluate(folder, work, episodes)
-        self.player = references.read_player(folder.name, work / "evaluation", is_run=True)
+        self.player = references.read_player(folder.name, work / "evaluation", is_run=True,
+                                             training=self.columns.get("return", ()))
 
     @property
     def scenario(self):
@@ -88,12 +89,13 @@ def differences(runs):
 
 def choose_episodes(runs):
     """Returns [(reason, episode)]: the episode with the median return of the first run, and the
-    episode with the largest difference between the runs' returns if it is another one."""
+    episode with the largest difference between the runs' returns if it is another one. The runs are
+    in order of return."""
     returns = [{int(row["episode"]): float(row["return"]) for row in run.player.rows}
                for run in runs]
     common = sorted(set.intersection(*(set(one) for one in returns)))
     ranked = sorted(common, key=lambda episode: returns[0][episode])
-    chosen = [("the median return of the first run", ranked[len(ranked) // 2])]
+    chosen = [("the median return of the best run", ranked[len(ranked) // 2])]
     apart = max(common, key=lambda episode: (max(one[episode] for one in returns) -
                                              min(one[episode] for one in returns), -episode))
     if apart != chosen[0][1]:
@@ -117,11 +119,14 @@ def show_episode(runs, reason, episode):
 
 
 def report(folders, work, episodes, read_metrics):
-    """Returns the page that compares run folders. read_metrics: the function
-    report.read_metrics"""
+    """Returns the page that compares run folders, the highest return first.
+
+    read_metrics: the function report.read_metrics
+    """
     runs = [Run(folder, work / str(i), episodes, read_metrics)
             for i, folder in enumerate(folders)]
     label_runs(runs)
+    runs.sort(key=lambda run: references.rank(run.player))
     sections = []
     by_scenario = collections.defaultdict(list)
     for run in runs:
@@ -134,12 +139,10 @@ def report(folders, work, episodes, read_metrics):
         title = f"Return on the scenario {group[0].scenario}"
         sections.append(blocks.section(title, references.show_tiles(players[:1] + own +
                                                                     players[1:])))
-    ranked = sorted(runs, key=lambda run: references.rank(run.player))
-    sections.append(curves.show([run.player.label for run in ranked],
-                                [run.columns for run in ranked],
-                                [curves.gap_note(run.player.label, run.columns, run.player)
-                                 for run in ranked if run.columns],
-                                [*[run.player for run in ranked],
+    sections.append(curves.show([run.player.label for run in runs],
+                                [run.columns for run in runs],
+                                [curves.gap_note(run.player) for run in runs],
+                                [*[run.player for run in runs],
                                  *(players if len(by_scenario) == 1 else ())]))
     sections.append(blocks.section("Greedy play, 95 % intervals",
                                    measure_table([run.player for run in runs])))

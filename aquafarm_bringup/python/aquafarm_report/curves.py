@@ -50,22 +50,22 @@ def rows_of(columns, name, factor):
     return rows
 
 
-def gap_note(label, columns, player):
+def gap_note(player):
     """Returns a sentence if the last mean return of the training is outside the 95 % interval of
     greedy play. Returns an empty text if it is not, or if the mean or the interval is unknown."""
     mean, low, high = references.mean_interval(references.column(player, "return"), player.distinct)
-    means = smooth(columns["return"])[1]
-    if not len(means) or math.isnan(means[-1]) or math.isnan(high) or low <= means[-1] <= high:
+    last, _, _ = references.training_end(player)
+    if math.isnan(last) or math.isnan(high) or low <= last <= high:
         return ""
-    trained, greedy = f"{means[-1]:,.1f}".replace("-", "−"), references.text((mean, low, high))
-    if means[-1] < low:
-        return (f"{label}: the mean return is {greedy} in greedy play and {trained} at the end of "
-                "the training, which contains random moves.")
+    trained, greedy = f"{last:,.1f}".replace("-", "−"), references.text((mean, low, high))
+    if last < low:
+        return (f"{player.label}: the mean return is {greedy} in greedy play and {trained} at the "
+                "end of the training, which contains random moves.")
     failed = sum(not float(row["success"]) for row in player.rows)
     what = (f"{failed} of {len(player.rows)} episodes end with devices at sea" if failed else
             "its return is lower")
-    return (f"{label}: the mean return is {trained} at the end of the training and {greedy} in "
-            f"greedy play, which has no random moves: {what}; train longer.")
+    return (f"{player.label}: the mean return is {trained} at the end of the training and {greedy} "
+            f"in greedy play, which has no random moves: {what}; train longer.")
 
 
 def _library(name):

@@ -6,6 +6,7 @@ import json
 import math
 
 import numpy as np
+from aquafarm_benchmark.measures import WINDOW
 
 from aquafarm_report import blocks, intervals, videos
 
@@ -23,14 +24,16 @@ class Player:
     distinct: int = 0  # number of distinct starts of the episodes
     fault: str = ""  # reason why there are no rows
     is_run: bool = False
+    training: np.ndarray = ()  # returns of the training episodes of a run
 
 
-def read_player(label, prefix, is_run=False):
+def read_player(label, prefix, is_run=False, training=()):
     """Reads a Player from the files <prefix>.csv and <prefix>.json of aquafarm_evaluate."""
     with open(prefix.with_suffix(".csv"), newline="") as file:
         rows = sorted(csv.DictReader(file), key=lambda row: int(row["episode"]))
     summary = json.loads(prefix.with_suffix(".json").read_text(encoding="utf-8"))
-    return Player(label, rows, summary.get("distinct_episodes") or 0, is_run=is_run)
+    return Player(label, rows, summary.get("distinct_episodes") or 0, is_run=is_run,
+                  training=training)
 
 
 def play_references(scenario, folder, episodes):
@@ -84,6 +87,24 @@ def column(player, name):
 
 def return_text(player):
     return text(mean_interval(column(player, "return"), player.distinct))
+
+
+def training_end(player):
+    """Returns (mean, low, high): the mean return of the last WINDOW episodes of the training and its
+    95 % interval. NaN if there are none."""
+    last = [value for value in player.training[-WINDOW:] if not math.isnan(value)]
+    return mean_interval(last, len(last)) if last else (math.nan,) * 3
+
+
+def _worse_greedy(player):
+    """Returns a sentence if the mean return in greedy play is below that of the last training
+    episodes and their 95 % intervals do not overlap; empty if not. Training contains random moves,
+    so greedy play is usually better: the opposite is a surprise once it is not due to chance."""
+    trained, greedy = training_end(player), mean_interval(column(player, "return"), player.distinct)
+    if not greedy[2] < trained[1]:
+        return ""
+    return (f"{player.label} is worse in greedy play ({text(greedy).partition(' ')[0]}) than at the "
+            f"end of its training ({text(trained).partition(' ')[0]}).")
 
 
 def _success(player):
@@ -140,9 +161,9 @@ def _points(interval):
 
 
 def verdict(players):
-    """Returns one or two sentences on the run with the highest return: its share of clairvoyant's
-    return, and its differences from the run with the second highest return and from the planner.
-    Empty if nothing is known."""
+    """Returns sentences on the run with the highest return: its share of clairvoyant's return, and
+    its differences from the run with the second highest return and from the planner. Then names the
+    runs whose greedy play is worse than their training. Empty if nothing is known."""
     runs = sorted((one for one in players if one.is_run and one.rows),
                   key=lambda one: -np.mean(column(one, "return")))
     if not runs:
@@ -167,11 +188,12 @@ def verdict(players):
         facts.append(f"{_points((mean, *bounds))} {side} {name}")
     if not facts:
         return ""
+    worse = [said for said in map(_worse_greedy, runs) if said]
     if len(runs) == 1:
-        return f"{best.label}{'' if has_share else ':'} {', '.join(facts)}."
-    return (f"{best.label} has the highest return of the {len(runs)} runs: "
-            f"{'it ' if has_share else ''}{', '.join(facts)}. One training each does not rank their "
-            "algorithms.")
+        return " ".join([f"{best.label}{'' if has_share else ':'} {', '.join(facts)}.", *worse])
+    return " ".join([f"{best.label} has the highest return of the {len(runs)} runs: "
+                     f"{'it ' if has_share else ''}{', '.join(facts)}.", *worse,
+                     "One training each does not rank their algorithms."])
 
 
 def optimum_of(players):

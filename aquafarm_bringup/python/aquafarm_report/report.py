@@ -86,9 +86,9 @@ def report_run(run, folder, episodes):
              f"{settings['seed']}, version {blocks.escape(settings['version'])}.</p>")
     players = references.play_references(run / "scenario.yaml", folder, episodes)
     players.insert(1, references.read_player(settings["algorithm"], folder / "evaluation",
-                                             is_run=True))
-    notes = [curves.gap_note(players[1].label, columns, players[1])] if columns else []
-    training = curves.show([settings["algorithm"]], [columns], notes, players)
+                                             is_run=True, training=columns.get("return", ())))
+    training = curves.show([settings["algorithm"]], [columns], [curves.gap_note(players[1])],
+                           players)
     return blocks.page(
         f"{settings['algorithm']} on the scenario {settings['scenario']}",
         blocks.section("Return of the policy and of the references", references.show_tiles(players), facts), training,

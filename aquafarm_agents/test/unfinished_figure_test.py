@@ -104,7 +104,7 @@ class UnfinishedFigureTest(unittest.TestCase):
                                   for i in (0, 4)], "maps in a row")
         self.assertEqual(1, len(figure.axes))
         self.assertEqual("1 failure in 20 ranches: time runs out in 1", figure._suptitle.get_text())
-        self.assertEqual("2 failures in 2,000 ranches: time runs out in 2",
+        self.assertEqual("2 failures in 2,000 ranches: time runs out in 2 (1 of the 2 shown)",
                          worst._suptitle.get_text(), "all failures are counted")
         self.assertEqual(["ranch 7"],
                          [axes.get_title("left").partition(":")[0] for axes in worst.axes])
@@ -155,6 +155,13 @@ class UnfinishedFigureTest(unittest.TestCase):
         unfinished_figure.plot_unfinished(self.axes, "ranch 7", route, 1.45)
         np.testing.assert_array_equal([[4, 7], [1, 2]],
                                       self.lines()["last stop to nearest port (no route)"])
+
+        home = {"chart": chart, "steps": steps[:1] * 2}  # the device was not fetched
+        for routes, goal in (([home], "device left"), ([route], "port"),
+                             ([home, route], "device left (or port, if no device is left)")):
+            self.assertEqual(
+                f"Time runs out: the nearest {goal} needs more moves than steps are left",
+                unfinished_figure._heading("time", [("ranch", one) for one in routes]))
 
     def test_a_visit_of_a_cell_is_an_arrival(self):
         waiting = [[4, 4]] * 12  # a pickup and waiting take steps in one cell

@@ -13,10 +13,11 @@ from aquafarm_benchmark.route_figure import (LEGS, RING, covers_any, draw_chart,
                                                symbols_of)
 from aquafarm_benchmark.style import plt, save
 
-# Causes of a failure, with the words of the headline and the heading of the group.
+# Causes of a failure, with the words of the headline and the heading of the group. "{goal}" stands
+# for the nearest device or port.
 _CAUSES = {
-    "time": ("time runs out", "Time runs out: the nearest device left (or port, if no device is "
-             "left) needs more moves than steps are left"),
+    "time": ("time runs out", "Time runs out: the nearest {goal} needs more moves than steps are "
+             "left"),
     "ring": ("the ship waits before a ring", "The ship waits before a ring: enough steps are left, "
              "but a ring covers a device that was not fetched"),
     "other": ("another cause", "Another cause: enough steps are left, and no ring covers a device "
@@ -52,8 +53,8 @@ def _goals(route):
 
 def draw_unfinished(path, routes, ranches, shown):
     """Draws the last legs of episodes that ended with devices at sea, and the rings of disasters in
-    the last step and before. The headline counts the causes of all failures. The maps are grouped
-    by cause.
+    the last step and before. The headline counts the causes of all failures and the maps. The maps
+    are grouped by cause.
 
     routes: {name of the ranch: route file} of all failures
     ranches: number of ranches that were played
@@ -67,13 +68,15 @@ def draw_unfinished(path, routes, ranches, shown):
     height = _HEADLINE + _KEY + sum(_row_height(heading) for heading, _ in rows)
     figure = plt.figure(figsize=(_WIDTH, height))
     figure.suptitle(f"{len(found):,} failure{'' if len(found) == 1 else 's'} in {ranches:,} ranches: "
-                    f"{describe_failures(group_by_cause(found))}", fontsize=13.5, weight="bold",
-                    x=0.01, y=1.0 - 0.1 / height, ha="left", va="top")
+                    f"{describe_failures(group_by_cause(found))}" +
+                    (f" ({len(worst)} of the {len(found):,} shown)" if len(worst) < len(found)
+                     else ""), fontsize=13.5, weight="bold", x=0.01, y=1.0 - 0.1 / height,
+                    ha="left", va="top")
     charts, top = [], height - _HEADLINE
     for cause, group in rows:
         if cause:
-            figure.text(0.01, (top - 0.05) / height, _CAUSES[cause][1], fontsize=12, weight="bold",
-                        va="top")
+            figure.text(0.01, (top - 0.05) / height, _heading(cause, groups[cause]), fontsize=12,
+                        weight="bold", va="top")
         top -= _row_height(cause)
         column = _WIDTH / len(group)
         for i, (name, route) in enumerate(group):
@@ -86,6 +89,14 @@ def draw_unfinished(path, routes, ranches, shown):
               "The map shows the failure with the lowest return. " if len(worst) == 1 else
               f"The maps show the {len(worst)} failures with the lowest returns. ")
     save(figure, path)
+
+
+def _heading(cause, group):
+    """Returns the heading of a group of maps. group: [(name, route)]"""
+    has_left = {bool(devices_left(route)) for _, route in group}
+    return _CAUSES[cause][1].format(goal={
+        (True,): "device left", (False,): "port",
+        (False, True): "device left (or port, if no device is left)"}[tuple(sorted(has_left))])
 
 
 def _row_height(heading):

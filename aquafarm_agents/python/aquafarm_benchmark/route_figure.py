@@ -52,11 +52,10 @@ def draw_route(path, label, route_file, best_file=None):
     is_same = best and all(best[key] == route[key]
                            for key in ("scenario_hash", "farm_seed", "episode"))
     loaded = next((at for at, step in enumerate(route["steps"]) if step["aboard"]), 0)
-    panels = [("best_moves_at_start", f"Best move at step 0, nothing aboard\narrows: every "
-               f"{_EVERY}nd column and row; yellow: pickup"),
-              ("best_moves_after_pickup", f"Best move at step {loaded}, a device aboard\n"
-               "yellow: drop-off")]
-    panels = [(name, f"({letter}) {title}") for letter, (name, title) in
+    panels = [("best_moves_at_start", "Best move at step 0, nothing aboard"),
+              ("best_moves_after_pickup", f"Best move at step {loaded}, a device aboard")]
+    panels = [(name, f"({letter}) {title}\narrows: every {_EVERY}nd column and row, none near "
+               "devices") for letter, (name, title) in
               zip("ab", [panel for panel in panels if route[panel[0]]])]
     rows = 2 if panels else 1
     figure, all_axes = plt.subplots(rows, 2, figsize=(10.5, 5.4 * rows), squeeze=False,

@@ -2,51 +2,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compares the data in the figures of §4 with numbers computed from each episode."""
 import itertools
+import pathlib
 import re
 import sys
-import unittest
-import unittest.mock
-import warnings
 
 import numpy as np
 import rosunit
 from matplotlib.text import Text
 
-from aquafarm_benchmark import error_figure, evaluation_figure, figures, headlines, style
-from aquafarm_benchmark.curves import End
-from aquafarm_benchmark.protocol import CONTESTANTS, PROFILES
-
-WINDOW = 50
-OPTIMUM = {"clairvoyant": 90.0}
-
-
-def by_name(name):
-    return next(one for one in CONTESTANTS if one.name == name)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from aquafarm_benchmark import evaluation_figure, figures, headlines, style  # noqa: E402
+from aquafarm_benchmark.curves import End  # noqa: E402
+from aquafarm_benchmark.protocol import CONTESTANTS, PROFILES  # noqa: E402
+from figure_case import OPTIMUM, WINDOW, FigureCase, by_name, make_run  # noqa: E402
 
 
-def make_run(seed, episodes):
-    """Returns a run in the format of results.read_run with random returns, steps and losses."""
-    rng = np.random.Generator(np.random.PCG64(seed))
-    return {"curve": {"return": rng.normal(10.0 * seed, 5.0, episodes),
-                      "steps": rng.integers(1, 100, episodes).astype(float),
-                      "success": np.ones(episodes),
-                      "loss": np.abs(rng.normal(2.0, 1.0, episodes))}}
-
-
-class FiguresTest(unittest.TestCase):
-
-    def setUp(self):
-        self.contestants = [by_name("sarsa"), by_name("lstm_dqn")]
-        # The lengths of a learner's runs may differ by one or two episodes.
-        self.runs = {"sarsa": [make_run(1, 120), make_run(2, 121)],
-                     "lstm_dqn": [make_run(3, 120), make_run(4, 120)]}
-        _, self.axes = figures.plt.subplots()
-        self.addCleanup(figures.plt.close, "all")
-
-    def lines(self, axes=None):
-        """Returns {label: (x, y)} of the curves with a label."""
-        return {line.get_label(): (np.asarray(line.get_xdata()), np.asarray(line.get_ydata()))
-                for line in (axes or self.axes).lines if not line.get_label().startswith("_")}
+class FiguresTest(FigureCase):
 
     def test_fig_12a_shows_rewards_by_time_steps(self):
         figures.plot_rewards_by_steps(self.axes, self.contestants, self.runs, OPTIMUM)
@@ -68,32 +39,6 @@ class FiguresTest(unittest.TestCase):
         for episode in (1, 2, 60, 120):
             expected = (sum(first[:episode]) + sum(second[:episode])) / (2.0 * episode)
             self.assertAlmostEqual(expected, y[episode - 1])
-
-    def test_fig_12c_shows_the_mean_square_error(self):
-        for run in self.runs["sarsa"]:
-            run["curve"]["loss"][:10] = np.nan  # before the first update
-        self.runs["lstm_dqn"][0]["curve"]["loss"][:] = np.nan
-        error_figure.plot_square_error(self.axes, self.contestants, self.runs)
-        x, y = self.lines()["SARSA"]
-        np.testing.assert_array_equal(np.arange(WINDOW, 121), x)
-        for place in (0, 33, 70):
-            means = [np.nanmean(run["curve"]["loss"][place:place + WINDOW])
-                     for run in self.runs["sarsa"]]
-            self.assertAlmostEqual(np.sqrt(means[0] * means[1]), y[place])
-        loss = self.runs["lstm_dqn"][1]["curve"]["loss"]  # of the run that has updates
-        np.testing.assert_allclose(
-            [np.mean(loss[place:place + WINDOW]) for place in range(121 - WINDOW)],
-            self.lines()["LSTM-DQN"][1])
-
-    def test_fig_12c_shows_the_median_and_shades_from_the_lowest_run_to_the_highest(self):
-        self.runs["sarsa"] = [make_run(seed, 120) for seed in range(1, 6)]
-        for factor, run in zip((1.0, 2.0, 3.0, 4.0, 500.0), self.runs["sarsa"]):
-            run["curve"]["loss"] = np.full(120, factor)
-        error_figure.plot_square_error(self.axes, [by_name("sarsa")], self.runs)
-        _, y = self.lines()["SARSA"]
-        np.testing.assert_allclose(3.0, y, err_msg="the median, whatever one run does")
-        edge = self.axes.collections[0].get_paths()[0].vertices[:, 1]
-        np.testing.assert_allclose([1.0, 500.0], [edge.min(), edge.max()])
 
     def test_names_stand_at_the_ends_of_the_lines_and_apart_from_each_other(self):
         self.runs["lstm_dqn"] = self.runs["sarsa"]  # both lines end at the same place
@@ -142,25 +87,15 @@ class FiguresTest(unittest.TestCase):
         for lower, upper in zip(spread, spread[1:]):
             self.assertGreaterEqual(upper - lower, 0.0599)
 
-    def drawn(self, draw, *arguments):
-        """Returns the figure that a draw_… function saves."""
-        kept = []
-        with unittest.mock.patch.object(sys.modules[draw.__module__], "save",
-                                        lambda figure, _: kept.append(figure)):
-            draw("nowhere", *arguments)
-        return kept[0]
-
-    def names_of(self, axes):
-        return {text.get_text() for text in axes.texts}
-
     def test_returns_are_linear_above_zero_and_logarithmic_below(self):
         for run in self.runs["sarsa"]:
             run["curve"]["return"] -= 1000.0
         for draw, count in ((figures.draw_repeated, 1), (figures.draw_average_rewards, 1),
                             (figures.draw_rewards, 1)):
             figure = self.drawn(draw, self.contestants, self.runs, OPTIMUM)
-            self.assertEqual(count, len(figure.axes))
-            for axes in figure.axes:
+            strips = int(draw is figures.draw_rewards)  # its lower chart has no returns
+            self.assertEqual(count + strips, len(figure.axes))
+            for axes in figure.axes[:count]:
                 low, high = axes.get_ylim()
                 self.assertLess(low, -990.0)
                 self.assertGreater(high, 90.0)
@@ -237,20 +172,27 @@ class FiguresTest(unittest.TestCase):
         self.runs["random"] = self.runs["dqn"] = [make_run(1, 120), make_run(2, 120)]
         contestants = [*self.contestants, by_name("dqn"), by_name("random")]
         figure = self.drawn(figures.draw_mean_score, contestants, self.runs, {"clairvoyant": 5.1})
-        shown, hidden = figure.axes[:4], figure.axes[4:]
-        self.assertFalse(any(axes.axison for axes in hidden))
+        *shown, first_hidden, second_hidden, end = figure.axes
+        self.assertFalse(first_hidden.axison or second_hidden.axison)
         self.assertEqual(1, len({axes.get_ylim() for axes in shown}), "one scale")
-        self.assertEqual([{"SARSA"}, {"LSTM-DQN"}, {"DQN"}, {"LSTM-DQN", "SARSA", "DQN", "RANDOM"}],
+        self.assertEqual([{"SARSA", "RANDOM"}, {"LSTM-DQN", "RANDOM"}, {"DQN", "RANDOM"}],
                          [set(self.lines(axes)) for axes in shown])
-        self.assertEqual([1, 1, 1, 0], [len(axes.collections) for axes in shown], "shades")
-        names = {name.replace(headlines.NBSP, " ") for name in self.names_of(shown[3])}
-        self.assertEqual({"SARSA", "LSTM-DQN", "DQN", "RANDOM", "clairvoyant"},
+        self.assertEqual({"LSTM-DQN", "SARSA", "DQN"}, set(self.lines(end)))
+        self.assertEqual([2, 2, 2, 0], [len(axes.collections) for axes in [*shown, end]], "shades")
+        self.assertEqual((90.0, 120.0), end.get_xlim(), "the last 25 %")
+        low = min(y[x >= 90].min() for x, y in self.lines(end).values())
+        high = max(5.1, *(y[x >= 90].max() for x, y in self.lines(end).values()))
+        margin = 0.06 * (high - low)
+        np.testing.assert_allclose((low - margin, high + margin), end.get_ylim())
+        names = {name.replace(headlines.NBSP, " ") for name in self.names_of(end)}
+        self.assertEqual({"SARSA", "LSTM-DQN", "DQN", "clairvoyant"},
                          {name.split()[0] for name in names})
         self.assertTrue(all(re.match(r"\S+ \d\.\d\d$", name) for name in names), names)
-        self.assertEqual([{"clairvoyant 5.10"}, set(), set()],
-                         [self.names_of(axes) for axes in shown[:3]], "a name in the first chart")
+        random = self.lines(shown[0])["RANDOM"][1][-1]
+        self.assertEqual([{"clairvoyant 5.10", f"RANDOM{headlines.NBSP}{random:.2f}"}, set(), set()],
+                         [self.names_of(axes) for axes in shown], "names in the first chart")
         titles = [axes.get_title("left") for axes in shown]
-        self.assertEqual("all medians", titles.pop())
+        self.assertEqual("medians of all, last 25 % enlarged", end.get_title("left"))
         for name, title in zip(("SARSA", "LSTM-DQN", "DQN"), titles):
             self.assertRegex(title, rf"^{name}: \d\.\d\d \(\d\.\d\d to \d\.\d\d\)$")
         self.assertEqual("points per step", shown[0].get_ylabel())
@@ -258,6 +200,12 @@ class FiguresTest(unittest.TestCase):
         self.runs["sarsa_printed"] = self.runs["sarsa"]
         alone = self.drawn(figures.draw_mean_score, [printed], self.runs, {})
         self.assertTrue(alone.axes[0].get_title("left").startswith("SARSA, printed:\n"), "long")
+        self.assertEqual("medians of all", alone.axes[1].get_title("left"), "one learns")
+        for run in self.runs["sarsa"]:
+            run["curve"]["success"] = np.zeros(120)
+        some = self.drawn(figures.draw_mean_score, contestants, self.runs, {}).axes[-1]
+        self.assertEqual("medians of those that learn, last 25 % enlarged", some.get_title("left"))
+        self.assertEqual({"LSTM-DQN", "DQN"}, set(self.lines(some)))
         self.assertIn("Dashed: clairvoyant.", figure._supxlabel.get_text())
 
     def test_fig_12a_marks_where_a_learner_reaches_90_percent_and_ends_with_the_last_learner(self):
@@ -290,20 +238,47 @@ class FiguresTest(unittest.TestCase):
                                       {"clairvoyant": 100.0})
         self.assertEqual(20 * 150, self.lines()["SARSA"][0][-1])
         self.assertEqual(["SARSA 2k"], [text.get_text() for text in self.axes.texts])
-        bar, = (line for line in self.axes.lines if line.get_label() == "_range")
-        self.assertEqual([980, 3920], list(bar.get_xdata()))
         self.assertAlmostEqual(0.8 * 500, self.axes.get_xlim()[0], msg="left of the first value")
         dots = [line.get_xdata() for line in self.axes.lines if line.get_marker() == "o"]
-        self.assertEqual([[3920, 980, 1960], [1960]], [list(x) for x in dots])
+        self.assertEqual([[1960]], [list(x) for x in dots], "the median")
         self.assertAlmostEqual(40 * 150, self.axes.get_xlim()[1], msg="the slowest run")
         figure = self.drawn(figures.draw_rewards, [by_name("sarsa")], {"sarsa": runs},
                             {"clairvoyant": 100.0})
+        chart, strip = figure.axes
+        self.assertEqual(chart.get_xlim(), strip.get_xlim())
+        self.assertEqual("Time steps until 90 % is reached: runs (dots), median (tick), range (bar)",
+                         strip.get_title("left"))
+        self.assertEqual(["SARSA"], [name.get_text() for name in strip.get_yticklabels()])
+        self.assertEqual(("", "time steps so far (logarithmic)"),
+                         (chart.get_xlabel(), strip.get_xlabel()))
         self.assertIn("thick: the run whose time to 90 % is nearest to the median. Means",
                       " ".join(figure._supxlabel.get_text().split()))
         figure = self.drawn(figures.draw_rewards, [by_name("sarsa")], {"sarsa": runs},
                             {"clairvoyant": 900.0})
         self.assertIn("nearest to the median (of SARSA: the first run without 90 %).",
                       " ".join(figure._supxlabel.get_text().split()))
+
+    def test_below_fig_12a_each_learner_has_the_range_of_its_times(self):
+        def run(steps, top=100.0):
+            return {"curve": {"return": np.array([-100.0] * 50 + [top] * 100),
+                              "steps": np.full(150, steps)}}
+
+        learners = [by_name(name) for name in ("q_learning", "sarsa", "dqn", "lstm_dqn")]
+        runs = {"q_learning": [run(10, 0.0)] * 3, "sarsa": [run(40), run(10), run(20)],
+                "dqn": [run(1), run(2), run(3)], "lstm_dqn": [run(5), run(9, 0.0), run(9, 0.0)]}
+        figures.plot_times(self.axes, learners, runs, 90.0)
+        marks = {}
+        for line in self.axes.lines:
+            marks.setdefault(line.get_label(), []).append(
+                (int(line.get_ydata()[0]), *map(int, line.get_xdata())))
+        self.assertEqual({"_range": [(0, 98, 294), (1, 980, 3920), (2, 490, 490)],
+                          "_runs": [(0, 98, 196, 294), (1, 3920, 980, 1960), (2, 490)],
+                          "_median": [(0, 196), (1, 1960)]}, marks)
+        self.assertEqual(["DQN", "SARSA", "LSTM-DQN", "Q-learning"],
+                         [name.get_text() for name in self.axes.get_yticklabels()])
+        self.assertEqual({"in 1 of 3 runs": 2, "not reached": 3},
+                         {text.get_text(): text.xy[1] for text in self.axes.texts})
+        self.assertTrue(self.axes.yaxis_inverted(), "the fastest is at the top")
 
     def test_names_above_fig_12a_do_not_overlap(self):
         dqn = next(one for one in CONTESTANTS if one.name == "dqn")
@@ -358,84 +333,6 @@ class FiguresTest(unittest.TestCase):
             run["curve"]["success"][:] = 0.0
         self.assertEqual(1, len(self.drawn(figures.draw_repeated, self.contestants, self.runs,
                                            OPTIMUM).axes), "one learns the task")
-
-    def test_the_headline_of_fig_12c_names_the_errors_that_rise(self):
-        for name, last in (("sarsa", 30.0), ("lstm_dqn", 5.0)):
-            for run in self.runs[name]:
-                run["curve"]["loss"] = np.array([10.0] * 60 + [last] * 60)
-        figure = self.drawn(error_figure.draw_square_error, self.contestants, self.runs)
-        self.assertEqual("Only the error of SARSA (×3.0) ends higher than it begins",
-                         " ".join(figure._suptitle.get_text().split()))
-        self.assertEqual(["SARSA: 10 → 30", "LSTM-DQN: 10 → 5"],
-                         [axes.get_title("left") for axes in figure.axes])
-        early = "50 % succeed by episode 50"
-        self.assertEqual([{"10", "30", early}, {"10", "5", early}],
-                         [self.names_of(axes) for axes in figure.axes])
-
-    def test_fig_12c_has_a_chart_of_each_learner_and_no_comparison_of_errors(self):
-        contestants = [by_name(name) for name in ("q_learning", "sarsa", "dqn", "lstm_dqn", "ppo")]
-        self.runs = {one.name: [make_run(1, 120)] for one in contestants}
-        figure = self.drawn(error_figure.draw_square_error, contestants, self.runs)
-        shown, (hidden,) = figure.axes[:5], figure.axes[5:]
-        self.assertFalse(hidden.axison)
-        self.assertEqual([{one.label} for one in contestants],
-                         [set(self.lines(axes)) for axes in shown])
-        self.assertEqual(["", "", "episode", "episode", "episode"],
-                         [axes.get_xlabel() for axes in shown], "the lowest of each column")
-        self.assertEqual({0, 3}, {i for i, axes in enumerate(shown) if axes.get_ylabel()})
-        self.assertIn("errors of different learners cannot be compared",
-                      " ".join(figure._supxlabel.get_text().split()))
-
-    def test_fig_12c_marks_the_lowest_error_if_the_policy_fails_then(self):
-        def marks(successes):
-            first, second = ({"curve": {"loss": np.array([40.0] * 60 + [last] * 60),
-                                        "success": successes}} for last in (30.0, 8.0))
-            first["curve"]["success"] = np.ones(120)
-            _, axes = style.plt.subplots()
-            error_figure._mark_low(axes, [first, second], "red")
-            return [tuple(line.get_xydata()[0]) for line in axes.lines], self.names_of(axes)
-
-        found, words = marks(np.array([0.0] * 115 + [1.0] * 5))
-        self.assertEqual([(110, 8.0)], found, "the last 50 episodes have an error of 8")
-        self.assertEqual({"8 (0 % succeed)"}, words)
-        self.assertEqual(([], set()), marks(np.ones(120)), "the policy succeeds")
-
-    def test_numbers_of_fig_12c_are_above_the_shade_and_each_chart_states_the_success(self):
-        for run in self.runs["sarsa"]:
-            run["curve"]["success"] = np.array([0.0] * 60 + [1.0] * 60)
-            run["curve"]["success"] = run["curve"]["success"][:len(run["curve"]["loss"])]
-            run["curve"]["loss"] = run["curve"]["loss"][:120]
-        for run in self.runs["lstm_dqn"]:
-            run["curve"]["success"] = np.zeros(120)
-        figure = self.drawn(error_figure.draw_square_error, self.contestants, self.runs)
-        axes = figure.axes[0]
-        edge = axes.collections[0].get_paths()[0].vertices
-        numbers = [text for text in axes.texts if text.get_text() != "50 % succeed"]
-        for text in numbers:
-            self.assertGreaterEqual(text.xy[1], edge[edge[:, 0] == text.xy[0], 1].max())
-        self.assertEqual([85.0], [text.xy[0] for text in axes.texts if text not in numbers])
-        self.assertIn("50 % succeed: not reached", self.names_of(figure.axes[1]))
-        self.assertFalse(any(dot.get_clip_on() for dot in axes.lines if dot.get_marker() == "o"))
-
-    def test_the_headline_of_fig_12c_has_the_peak_of_an_error_that_ends_lower(self):
-        courses = {"A": (10.0, 100.0, 5.0), "B": (10.0, 12.0, 6.0), "C": (10.0, 10.1, 10.1)}
-        self.assertEqual("The errors of A and B end lower than they begin; that of A first rises "
-                         "to 100", error_figure.describe_courses(courses))
-        courses["D"] = (10.0, 40.0, 20.0)
-        self.assertEqual("Only the error of D (×2.0) ends higher than it begins; that of A ends "
-                         "lower after a peak of 100", error_figure.describe_courses(courses))
-        self.assertEqual("Error of the value estimates in training",
-                         error_figure.describe_courses({"C": courses["C"]}))
-
-    def test_fig_12c_of_a_benchmark_without_learners_has_an_empty_chart(self):
-        for run in self.runs["sarsa"]:
-            run["curve"]["loss"][:] = np.nan
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            figure = self.drawn(error_figure.draw_square_error, [by_name("sarsa")], self.runs)
-        axes, = figure.axes
-        self.assertEqual(("", 0), (axes.get_title("left"), len(axes.lines)))
-        self.assertEqual("Error of the value estimates in training", figure._suptitle.get_text())
 
     def test_a_row_with_printed_settings_has_the_colour_of_its_learner_dashed(self):
         printed = next(one for one in PROFILES["paper"].contestants if one.name == "sarsa_printed")

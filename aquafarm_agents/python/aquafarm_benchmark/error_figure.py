@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws Fig. 12c, the error of the value estimates, as PNG from the data of results.py."""
+import textwrap
+
 import numpy as np
 from matplotlib import ticker
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from aquafarm_benchmark import measures
@@ -16,6 +20,7 @@ _HEADROOM = 1.5  # factor of the upper limit, for the numbers at the highest val
 _FOOTROOM = 1.5  # divisor of the lower limit, for the name of the grey mark
 _LETTER = 0.045  # width of a letter of a number [widths of a chart]
 _EDGE = 0.02  # a mark of success that is nearer to the left edge is not drawn [widths of a chart]
+_KEY_LETTERS = 32  # max length of a line of the key
 _SUCCESS = 0.5  # the success rate that the charts mark
 
 
@@ -39,15 +44,37 @@ def draw_square_error(path, contestants, runs):
     charts[0].set_ylim(low / _FOOTROOM, _HEADROOM * high)  # the charts share their scale
     for axes, marked in found.items():
         _name_success(axes, *marked)
-    explain(figure, as_printed(describe_courses(courses), learners),
-            f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic. Dots: "
-            "first, last and, if it is far from both, highest value; ×: last value relative to the "
-            f"first. Grey: {100 * _SUCCESS:.0f} % of the last {measures.WINDOW} episodes succeed "
-            "for the first time, from the earliest to the latest run. Triangle: lowest error of a "
-            f"run, if less than {100 * _SUCCESS:.0f} % succeed then. "
-            f"{describe_shading(contestants, runs)} Each learner has its own targets: errors of "
-            "different learners cannot be compared, and a low error does not mean a good policy.")
+    headline = describe_courses(courses)
+    explain(figure, as_printed(headline, learners), " ".join(filter(None, [
+        f"Fig. 12c: mean square error over {measures.WINDOW} episodes, logarithmic.",
+        "×: last value relative to the first." if "×" in headline else "",
+        _explain_marks(figure.axes[len(charts):], charts), describe_shading(contestants, runs),
+        "Each learner has its own targets: errors of different learners cannot be compared, and a "
+        "low error does not mean a good policy."])))
     save(figure, path)
+
+
+def _explain_marks(empty, charts):
+    """Writes the key of the marks on the first of the empty axes. Returns the key as a note if there
+    are no empty axes."""
+    share = f"{100 * _SUCCESS:.0f} %"
+    style = {"color": "0.45", "linestyle": "none"}
+    lows = any(line.get_label() == "_low" for axes in charts for line in axes.lines)
+    spans = any(axes.patches for axes in charts)
+    marks = [(Line2D([], [], marker="o", **style), "dot",
+              "first, last and, if it is far from both, highest value")]
+    marks += [(Line2D([], [], marker="v", markersize=8, markeredgecolor="black", **style),
+               "triangle", f"lowest error of a run, if less than {share} succeed then")] * lows
+    marks += [(Patch(facecolor="0.88", edgecolor="0.6"), "grey area",
+               f"{share} of the last {measures.WINDOW} episodes succeed for the first time, from "
+               "the earliest to the latest run")] * spans
+    if not empty:
+        return " ".join(f"{name.capitalize()}: {words}." for _, name, words in marks)
+    empty[0].legend([mark for mark, _, _ in marks],
+                    [textwrap.fill(words, _KEY_LETTERS) for _, _, words in marks],
+                    loc="upper left", frameon=False, fontsize=10, labelspacing=1.0,
+                    borderaxespad=0.0)
+    return ""
 
 
 def describe_courses(courses):

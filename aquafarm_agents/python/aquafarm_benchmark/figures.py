@@ -46,7 +46,7 @@ def _scale_returns(axes):
     return "\n(logarithmic below 0)"
 
 
-def _draw_returns(path, contestants, find, note, ylabel, plots, xlabel="episode"):
+def _draw_returns(path, contestants, find, note, ylabel, plots, xlabel="episode", strip=None):
     """Draws charts of returns, one below the other, on the scale of _scale_returns. Names the lines
     whose ends the functions in `plots` return.
 
@@ -55,9 +55,11 @@ def _draw_returns(path, contestants, find, note, ylabel, plots, xlabel="episode"
     plots: for each chart, from top to bottom: (function, title, has_values). The function plots on
         axes and returns the ends of the lines without a name, for name_ends; has_values: names are
         followed by the last values
+    strip: (function, title, number of rows) of a chart below the others, with the x axis of the
+        first chart; the function plots on axes
     """
-    heights = (4.4, 2.9)[:len(plots)]
-    figure, rows = plt.subplots(len(plots), 1, figsize=(8.7, 0.6 + sum(heights)), squeeze=False,
+    heights = [4.4, 2.9][:len(plots)] + ([0.6 + 0.22 * strip[2]] if strip else [])
+    figure, rows = plt.subplots(len(heights), 1, figsize=(8.7, 0.6 + sum(heights)), squeeze=False,
                                 height_ratios=heights, layout="constrained")
     charts = [(axes, plot(axes), title, has_values)
               for (plot, title, has_values), axes in zip(plots, rows[:, 0])]
@@ -68,6 +70,14 @@ def _draw_returns(path, contestants, find, note, ylabel, plots, xlabel="episode"
         label_axes(axes, title, ylabel + _scale_returns(axes), xlabel)
         axes.yaxis.set_major_formatter(lambda value, _: number(value))
         name_ends(axes, headlines.with_values(contestants, ends) if has_values else ends)
+    if strip:
+        plot_strip, title, _ = strip
+        below, first = rows[-1, 0], charts[0][0]
+        plot_strip(below)
+        below.set_xlim(first.get_xlim())
+        label_axes(below, "", "", xlabel)
+        below.set_title(title, fontsize=10.5)
+        first.set_xlabel("")
     save(figure, path)
 
 
@@ -111,21 +121,13 @@ def _mark_reached(axes, references):
 
 
 def _name_reached(axes, ends, target, steps_of):
-    """Marks the numbers of steps at which learners reach the return `target`: a large dot for the
-    median, small dots for the runs and a line for their range. Writes the medians and the names of
-    the learners above the axes, in several rows if they are close. Returns the ends of all other
-    lines.
+    """Marks the median numbers of steps at which learners reach the return `target`. Writes them
+    and the names of the learners above the axes, in several rows if they are close. Returns the
+    ends of all other lines.
 
     steps_of: {name of a line: numbers of steps of the runs}
     """
     last = axes.get_xlim()[1]
-    for end in ends:
-        shown = [steps for steps in steps_of[end.name] if steps <= last]
-        if shown:
-            axes.plot(shown, [target] * len(shown), "o", color=end.colour, markersize=4, zorder=5,
-                      label="_reached")
-            axes.plot([min(shown), max(shown)], [target] * 2, color=end.colour, linewidth=2.5,
-                      zorder=4, label="_range")
     others = [end for end in ends if np.median(steps_of[end.name]) > last]
     reached = [(np.median(steps_of[end.name]), end.colour, end.name) for end in ends
                if end not in others]
@@ -160,10 +162,7 @@ def plot_rewards_by_steps(axes, contestants, runs, references):
     main = {one.name: _nearest_to_median(steps_of[one.label]) for one in contestants}
     ends = [_plot_one_run(axes, one, runs[one.name][main[one.name]]["curve"])
             for one in contestants]
-    axes.set_xscale("log")
-    axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.xaxis.set_major_formatter(lambda value, _: headlines.steps_text(value))
-    axes.xaxis.set_minor_formatter(ticker.NullFormatter())
+    _scale_steps(axes)
     thin = [_plot_one_run(axes, one, run["curve"], label="_run", linewidth=0.8, alpha=0.5)
             for one in headlines.learners_of(contestants)
             for i, run in enumerate(runs[one.name]) if i != main[one.name]]
@@ -179,6 +178,43 @@ def plot_rewards_by_steps(axes, contestants, runs, references):
     ends = [_with_failure(end, steps_of[end.name]) if end.name in learners and target < math.inf
             else end for end in _name_reached(axes, ends, target, steps_of)]
     return ends + reference + _plot_references(axes, references, axes.get_xlim()[1])
+
+
+def _scale_steps(axes):
+    """Sets a logarithmic x axis of time steps."""
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(lambda value, _: headlines.steps_text(value))
+    axes.xaxis.set_minor_formatter(ticker.NullFormatter())
+
+
+def plot_times(axes, learners, runs, target):
+    """Plots the numbers of time steps at which the runs of each learner reach the return `target`:
+    a row for each learner, the fastest at the top, with a dot for each run, a tick for the median
+    and a bar for the range. States how many runs reach it if not all do."""
+    rows = sorted(((headlines.steps_until(runs[one.name], target), one) for one in learners),
+                  key=lambda row: (np.median(row[0]), min(row[0]), row[1].label))
+    for y, (steps, one) in enumerate(rows):
+        known = [value for value in steps if value < math.inf]
+        if known:
+            axes.plot([min(known), max(known)], [y, y], color=one.colour, linewidth=2.5,
+                      label="_range")
+            axes.plot(known, [y] * len(known), "o", color=one.colour, markersize=5, label="_runs")
+        if np.median(steps) < math.inf:
+            axes.plot(np.median(steps), y, "|", color=one.colour, markersize=15,
+                      markeredgewidth=2.5, label="_median")
+        if len(known) < len(steps):
+            words = headlines.in_some(steps) if known else "not reached"
+            at = (max(known), y) if known else (1.0, y)
+            axes.annotate(words, at, xytext=(8 if known else -4, 0), textcoords="offset points",
+                          xycoords="data" if known else axes.get_yaxis_transform(), va="center",
+                          ha="left" if known else "right", color=legible(one.colour))
+    axes.set_yticks(range(len(rows)), [one.label for _, one in rows])
+    for name, (_, one) in zip(axes.get_yticklabels(), rows):
+        name.set_color(legible(one.colour))
+    axes.tick_params(axis="y", length=0)
+    _scale_steps(axes)
+    axes.set_ylim(len(rows) - 0.4, -0.6)
 
 
 def _with_failure(end, steps):
@@ -206,17 +242,19 @@ def _cut(axes, end, last):
 def draw_rewards(path, contestants, runs, references):
     """Draws Fig. 12a."""
     count, learners = most_common_count(contestants, runs), headlines.learners_of(contestants)
-    has_target = headlines.target_of(references) < math.inf
+    target = headlines.target_of(references)
+    has_target = target < math.inf
     share = f"{100 * headlines.REACHED:.0f} %"
-    late = [one.label for one in learners if np.median(headlines.steps_until(
-        runs[one.name], headlines.target_of(references))) == np.inf]
+    late = [one.label for one in learners
+            if np.median(headlines.steps_until(runs[one.name], target)) == np.inf]
     shown = ("one run of each learner" if count == 1 else f"{count} runs of each learner; thick: "
              + (f"the run whose time to {share} is nearest to the median" +
                 (f" (of {joined(late)}: the first run without {share})" if late else "")
                 if has_target else "the first"))
-    dots = (f"Dots: {share} is reached for the first time"
-            + (" (large: median, whose value is above; bar: range of the runs). " if count > 1
-               else ". "))
+    dots = (f"Dots on the dotted line: {share} is reached for the first time"
+            f"{' (median of the runs)' if count > 1 else ''}. ")
+    title = f"Time steps until {share} is reached" + (
+        ": runs (dots), median (tick), range (bar)" if count > 1 else "")
     _draw_returns(
         path, contestants, lambda ends: headlines.learning_times(contestants, runs, references) or
         headlines.highest(contestants, runs, ends, "return"),
@@ -225,7 +263,9 @@ def draw_rewards(path, contestants, runs, references):
         f"learner{'' if len(learners) == len(contestants) else '; RANDOM takes more steps'}.",
         f"{measures.WINDOW}-episode mean return",
         [(lambda axes: plot_rewards_by_steps(axes, contestants, runs, references), "", False)],
-        "time steps so far (logarithmic)")
+        "time steps so far (logarithmic)",
+        (lambda axes: plot_times(axes, learners, runs, target), title, len(learners))
+        if has_target and learners else None)
 
 
 def _nearest_to_median(values):
@@ -268,39 +308,67 @@ def plot_average_rewards(axes, contestants, runs, references):
 
 def draw_mean_score(path, contestants, runs, references):
     """Draws Fig. 13: the mean return per step by episode: a chart for each learner with the range
-    of its runs, in the order of the contestants, and a last chart with the medians of all.
+    of its runs and RANDOM, in the order of the contestants, and a last chart with the medians of
+    all. The last chart enlarges the end of the training if two or more learners learn the task.
 
     references: {name: return per step}, drawn for comparison
     """
     learners = headlines.learners_of(contestants)
+    random = [one for one in contestants if one not in learners]
     figure, charts = chart_grid(len(learners) + 1, "points per step")
-    every = []
+    every, others = [], []
     for axes, one in zip(charts, learners):
-        every += [end for end in plot_mean_score(axes, [one], runs, references)
-                  if end.name == one.label]
+        own, *others = plot_mean_score(axes, [one, *random], runs, references)
+        every.append(own)
     titles = [(end.name, headlines.with_range(end, 2)) for end in every]
     is_long = any(len(": ".join(title)) > _TITLE for title in titles)
     for axes, one, title in zip(charts, learners, titles):
         axes.set_title((":\n" if is_long else ": ").join(title), fontsize=11,
                        color=legible(one.colour))
     is_repeated = most_common_count(contestants, runs) > 1
-    axes = charts[-1]
-    axes.set_title("all medians" if is_repeated else "all", fontsize=11)
-    ends = plot_mean_score(axes, contestants, runs, references, is_shaded=False)
+    failed = headlines.failed_learners(contestants, runs)
+    learnt = [one for one in learners if one.label not in failed]
+    is_enlarged = len(learnt) > 1
+    axes, shown = charts[-1], learnt if is_enlarged else contestants
+    if is_enlarged:  # this chart has its own scale
+        axes.remove()
+        axes = figure.add_subplot(axes.get_subplotspec())
+        label_axes(axes, "", "")
+    ends = plot_mean_score(axes, shown, runs, references, is_shaded=False)
+    if is_enlarged:
+        _enlarge_end(axes)
+    part = f", last {100 * _END:.0f} % enlarged" if is_enlarged else ""
+    axes.set_title(f"{'medians' if is_repeated else 'lines'} of "
+                   f"{'all' if shown is contestants or not failed else 'those that learn'}{part}",
+                   fontsize=11)
     headline = headlines.highest(contestants, runs, every, "return per step", digits=2)
     explain(figure, headline, " ".join(filter(None, [
         f"Fig. 13: return per step, means of {measures.WINDOW} episodes.",
         describe_shading(contestants, runs),
-        f"Titles: the last {measures.WINDOW} episodes"
-        f"{' (range of the runs)' if is_repeated else ''}.",
+        f"Titles: last {measures.WINDOW} episodes"
+        f"{' (range of runs)' if is_repeated else ''}.",
         f"Dashed: {joined(list(references))}." if references else "",
         headlines.describe_failed(headline), describe_random(contestants)])))
     name_ends(axes, headlines.with_values(
         contestants, [end._replace(low=math.nan) for end in ends], digits=2))
-    for end in ends[len(contestants):]:  # references
-        charts[0].annotate(end.name, (charts[0].get_xlim()[0], end.y), xytext=(4, 3),
-                           textcoords="offset points", fontsize=9.5)
+    for end in headlines.with_values(contestants, [one._replace(low=math.nan) for one in others],
+                                     digits=2):  # RANDOM and references
+        charts[0].annotate(end.name, (charts[0].get_xlim()[1], end.y), xytext=(-2, 3), ha="right",
+                           textcoords="offset points", fontsize=9.5, color=legible(end.colour))
     save(figure, path)
+
+
+def _enlarge_end(axes):
+    """Sets the limits of axes to the last part of the lines."""
+    last = max(line.get_xdata()[-1] for line in axes.lines if line.get_label()[0] != "_")
+    start = (1.0 - _END) * last
+    shown = np.concatenate([line.get_ydata()[line.get_xdata() >= start] for line in axes.lines
+                            if line.get_label()[0] != "_"] +
+                           [line.get_ydata() for line in axes.lines
+                            if line.get_label() == "_reference"])
+    margin = 0.06 * (shown.max() - shown.min())
+    axes.set_xlim(start, last)
+    axes.set_ylim(shown.min() - margin, shown.max() + margin)
 
 
 def plot_mean_score(axes, contestants, runs, references, is_shaded=True):

@@ -181,6 +181,7 @@ class BrowserTest(unittest.TestCase):
         self.assertIn("device1", towing["aboard"])
         home = self.move_slider(300 * np.ceil(deliver / 300))
         self.assertIn("device1", home["home"])
+        self.assertIn("hurricane (64 kt) < 1 %", before["state"], "no false all-clear")
         self.assertNotEqual(before["ships"][0], towing["ships"][0])
         self.assertNotEqual(before["cursor"], home["cursor"])
         self.assertEqual((0, False), (before["areas"], before["explained"]))

@@ -12,7 +12,7 @@ from matplotlib.path import Path
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import plan_sample  # noqa: E402
-from aquafarm_plan import chart, coast, document, figures, labels, words  # noqa: E402
+from aquafarm_plan import chart, coast, document, figures, labels, page, words  # noqa: E402
 
 
 class PlanFiguresTest(unittest.TestCase):
@@ -66,12 +66,46 @@ class PlanFiguresTest(unittest.TestCase):
         clock = document.Clock(plan["clock"])
         rows = figures.timeline(plan)["rows"]
         end = rows[0]["bars"][-1]["x"] + rows[0]["bars"][-1]["w"]
-        for right, expected in ((end + 2000.0, "{}; dark: to a device, light: to a port"),
-                                (end + 200.0, "{}"), (end, "")):
+        at = clock.time(plan["plan"]["routes"][0]["orders"][-1]["time"])
+        for right, mark, expected in (
+                (end + 2000.0, None, f"in port {at}; dark: to a device, light: to a port"),
+                (end + 200.0, None, f"in port {at}"), (end + 60.0, None, at), (end, None, ""),
+                (end + 200.0, end + 60.0, at), (end + 200.0, end - 9.0, f"in port {at}")):
+            rows[0]["deadline"] = {"x": mark} if mark else None
             figures._name_ends(plan, rows, clock, right)
-            at = f"in port {clock.time(plan['plan']['routes'][0]['orders'][-1]['time'])}"
-            self.assertEqual(expected.format(at), rows[0]["end"])
+            self.assertEqual(expected, rows[0]["end"])
             self.assertFalse(any("dark" in row["end"] for row in rows[1:]), "said once")
+
+    def test_a_row_of_orders_has_the_mark_of_the_deadline_that_the_page_states(self):
+        plan = plan_sample.sample(members=100)
+        for ship, hours in ((0, 8.0), (1, 30.0)):  # the first is before the end of the orders
+            first = next(one["device"] for one in plan["plan"]["routes"][ship]["orders"]
+                         if one["action"] == "fetch")
+            deadline, = (one for one in plan["devices"][first]["deadlines"]
+                         if one["probability"] == 0.8)
+            deadline["leave"] = plan_sample.stamp(hours)
+        plan["deadlines"]["no_departure_after"] = plan_sample.stamp(36)
+        clock, line = document.Clock(plan["clock"]), figures.timeline(plan)
+        self.assertGreaterEqual(line["end_s"], 39 * 3600)
+        for row, hours in zip(line["rows"], (8.0, 30.0)):
+            x = line["left"] + (line["right"] - line["left"]) * hours * 3600 / line["end_s"]
+            self.assertAlmostEqual(x, row["deadline"]["x"])
+            self.assertEqual(clock.time(plan_sample.stamp(hours)), row["deadline"]["time"])
+            self.assertIn(f"{row['deadline']['time']} (F", words.answers(plan)[1][2])
+        self.assertEqual([False, True], [row["deadline"]["is_named"] for row in line["rows"]],
+                         "no text on the bars")
+        self.assertIn("leave by (chance 80 %)", page.render(plan))
+        deadline["open"] = True
+        self.assertEqual([True, False], [bool(row["deadline"])
+                                         for row in figures.timeline(plan)["rows"]])
+        plan["deadlines"]["no_departure_after"] = None
+        self.assertFalse(any(row["deadline"] for row in figures.timeline(plan)["rows"]))
+        self.assertNotIn("leave by", page.render(plan))
+        plan = plan_sample.storm_unknown_aboard()
+        plan["deadlines"]["no_departure_after"] = plan_sample.stamp(36)
+        plan["plan"]["routes"][0]["orders"][1].update(action="fetch", device=0)
+        plan["devices"][0]["deadlines"] = [{"probability": 0.8, "leave": plan_sample.stamp(3)}]
+        self.assertEqual({}, words.first_deadlines(plan), "the winds are unknown")
 
     def test_ships_have_numbers_and_ports_letters(self):
         plan = plan_sample.sample(members=100)
@@ -85,6 +119,20 @@ class PlanFiguresTest(unittest.TestCase):
         plan["ships"][0]["name"], plan["ships"][1]["name"] = "ship 1", "Haixing"
         self.assertEqual("ship 1", words.numbered_name(plan, 0))
         self.assertEqual("2: Haixing", words.numbered_name(plan, 1))
+
+    def test_the_name_of_a_port_between_two_islands_touches_neither(self):
+        plan = plan_sample.sample(members=100)
+        plan["plan"]["routes"], plan["devices"], plan["ports"] = [], [], plan["ports"][:1]
+        plan["ports"][0]["cell"] = [12, 12]
+        land = [[x, y] for x in (9, 10, 14, 15) for y in range(11, 14)]  # the gap: two cells
+        land += [[11, y] for y in range(11, 14)]
+        plan["ranch"].update(land=land, rocks=[])
+        drawing = chart.chart(plan)
+        label, = (one for one in drawing["labels"] if one.name == "port")
+        scale = drawing["frame"].scale
+        for x, y in (drawing["frame"].px(*cell) for cell in land):
+            self.assertFalse(label.x - scale / 2 < x < label.x + label.width + scale / 2 and
+                             label.y - label.height - scale / 2 < y < label.y + scale / 2, (x, y))
 
     def test_a_leader_that_crosses_a_label_costs_more(self):
         label = labels.Label(["now"], (100.0, 100.0), 6.0, 12.0)

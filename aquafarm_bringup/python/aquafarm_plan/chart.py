@@ -200,7 +200,8 @@ def samples(line, gap=7.0):
 
 
 def _labels(plan, frame, devices, ports, routes, storm):
-    points = [(*frame.px(x, y), 4.0) for x, y in plan["ranch"]["land"]]
+    points = [(*frame.px(x + dx, y + dy), 3.0) for x, y in plan["ranch"]["land"]
+              for dx in (-0.45, 0.0, 0.45) for dy in (-0.45, 0.0, 0.45)]
     points += [(*frame.px(x, y), 8.0) for x, y in plan["ranch"]["rocks"]]
     for one in devices + ports:
         points += [(one["xy"][0] + dx, one["xy"][1] + dy, 60.0) for dx in (-8, 0, 8)

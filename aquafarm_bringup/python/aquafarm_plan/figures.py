@@ -8,7 +8,7 @@ from . import coast
 from .chart import nice, samples, svg_path
 from .document import Clock, amount, parse_time
 from .labels import Label, place, shorten
-from .words import compass, is_unknown, letter, numbered_name, order_text
+from .words import compass, first_deadlines, is_unknown, letter, numbered_name, order_text
 
 REGION = 400.0  # side of the drawing of the region [px]
 REGION_LABELS = 4  # max number of labelled positions of the storm
@@ -161,7 +161,7 @@ def _cone(errors, px, px_per_km):
 
 def horizon_s(plan):
     """Returns the end of the timeline [s after the start]: three hours after the latest of the
-    orders, the rings' median arrival times at the devices, the last advised departure and a closest
+    orders, the rings' median arrival times at the devices, the last departures and a closest
     approach within NEAREST_H, but at most the end of the plan. Returns the end of the plan if there
     are no such events."""
     clock = Clock(plan["clock"])
@@ -169,6 +169,7 @@ def horizon_s(plan):
     events = [clock.seconds(o["time"]) for r in plan["plan"]["routes"] for o in r["orders"]]
     events += [clock.seconds(a["q50"]) for d in plan["devices"] for a in d["arrival"] if a["q50"]]
     events += [clock.seconds(t) for t in (plan["deadlines"]["no_departure_after"], ) if t]
+    events += [clock.seconds(leave) for leave, _ in first_deadlines(plan).values()]
     nearest = plan["storm"]["closest_approach"]
     if nearest and 0.0 <= clock.seconds(nearest["time"]) <= NEAREST_H * 3600:
         events.append(clock.seconds(nearest["time"]))
@@ -210,7 +211,9 @@ def timeline(plan):
     ]
     height = TOP + HAZARD_HEIGHT + 14 + max(len(rows), 1) * ROW + AXIS
     last = plan["deadlines"]["no_departure_after"]
-    _name_ends(plan, rows, clock, x_of(clock.seconds(last)) if last else width - 26)
+    limit = x_of(clock.seconds(last)) if last else width - 26
+    _mark_deadlines(plan, rows, clock, x_of, limit)
+    _name_ends(plan, rows, clock, limit)
     return {
         "width": width, "height": height, "left": left, "right": width - 26, "top": TOP,
         "base": HAZARD_HEIGHT + TOP, "axis": height - AXIS, "curves": curves, "rows": rows,
@@ -232,17 +235,38 @@ def _nearest(plan, clock, end, x_of):
                     f"{clock.time(nearest['time'])}"}
 
 
+def _end_of(row):
+    """Returns the end of the last bar of a row [px]; the left end of the axis without a bar."""
+    return row["bars"][-1]["x"] + row["bars"][-1]["w"] if row["bars"] else LINE[1]
+
+
+def _mark_deadlines(plan, rows, clock, x_of, right):
+    """Sets the key `deadline` of each row to the mark of the ship's time in first_deadlines: its
+    position, its time, and whether the time has space between the bars and `right` [px]. None
+    without such a time."""
+    deadlines = first_deadlines(plan)
+    for row in rows:
+        leave, device = deadlines.get(row["ship"], (None, None))
+        row["deadline"] = None
+        if leave:
+            x, time = x_of(clock.seconds(leave)), clock.time(leave)
+            row["deadline"] = {
+                "x": x, "time": time, "is_named": _end_of(row) < x < right - 8.0 * len(time) - 8.0,
+                "title": f"leave by {time} for a chance of 80 % to bring "
+                         f"{plan['devices'][device]['name']} home"}
+
+
 def _name_ends(plan, rows, clock, right):
     """Sets the key `end` of each row: a text after the last bar that states when the ship is back
     in port. In the first row, the text also explains the bars, if there is space. The text is empty
-    if it would extend beyond `right` [px], or if the row has no bars."""
+    if it would extend beyond `right` [px] or the mark of a deadline, or if the row has no bars."""
     for i, (row, route) in enumerate(zip(rows, plan["plan"]["routes"])):
-        at = f"in port {clock.time(route['orders'][-1]['time'])}" if row["bars"] else ""
-        key = "dark: to a device, light: to a port"
-        row["end"] = next(
-            (text for text in ([f"{at}; {key}"] if i == 0 and at else []) + [at]
-             if row["bars"] and row["bars"][-1]["x"] + row["bars"][-1]["w"] + 6.6 * len(text) < right),
-            "")
+        time = clock.time(route["orders"][-1]["time"]) if row["bars"] else ""
+        texts = [f"in port {time}; dark: to a device, light: to a port"] if i == 0 else []
+        end, mark = _end_of(row), row["deadline"]
+        limit = min(right, mark["x"] - 8.0) if mark and mark["x"] > end else right
+        row["end"] = next((text for text in [*texts, f"in port {time}", time]
+                           if time and end + 6.6 * len(text) < limit), "")
 
 
 def _row(plan, route, clock, x_of, y):

@@ -244,15 +244,24 @@ def _horizon(plan, clock):
     return f"Nothing is known after {clock.day_time(until)}."
 
 
-def _latest(plan, clock):
-    """Returns a sentence with the 80 % deadline of the device that each ship fetches first; empty
-    if no deadline is known."""
-    parts = []
-    for route in plan["plan"]["routes"]:
+def first_deadlines(plan):
+    """Returns {ship: (departure, device)}: the latest departure at which the first device of the
+    ship has a chance of 80 %. Omits ships without such a departure and unknown ones. Empty if no
+    departure is advised."""
+    advised = plan["deadlines"]["no_departure_after"] or plan["deadlines"].get("not_known_beyond")
+    found = {}
+    for route in plan["plan"]["routes"] if advised and not is_unknown(plan) else []:
         first = next((one["device"] for one in route["orders"] if one["action"] == "fetch"), None)
         for one in plan["devices"][first]["deadlines"] if first is not None else []:
             if one["probability"] == 0.8 and one["leave"] and not one.get("open"):
-                parts.append(f"{clock.time(one['leave'])} ({plan['devices'][first]['name']})")
+                found[route["ship"]] = (one["leave"], first)
+    return found
+
+
+def _latest(plan, clock):
+    """Returns a sentence with the times of first_deadlines; empty if there are none."""
+    parts = [f"{clock.time(leave)} ({plan['devices'][device]['name']})"
+             for leave, device in first_deadlines(plan).values()]
     return f"For a chance of at least 80 %, leave by {some(parts, ', ')}. " if parts else ""
 
 

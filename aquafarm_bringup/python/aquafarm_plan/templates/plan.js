@@ -17,6 +17,10 @@
   const nearest = (list, seconds, key) => list.reduce(
     (best, one) => Math.abs(key(one) - seconds) < Math.abs(key(best) - seconds) ? one : best);
 
+  // The members are a sample: no chance is 0 or 100 %.
+  const percent = share => share < 0.005 ? "< 1 %" : share >= 0.995 ? "> 99 %" :
+    `${Math.round(100 * share)} %`;
+
   function placeShip(route, seconds) {
     const path = route.path;
     let i = path.findIndex(point => point[2] > seconds);
@@ -79,7 +83,7 @@
     if (data.timeline.length) {
       const chances = nearest(data.timeline, seconds, one => one[0])[1];
       state = "Over the ranch: " + data.rings.map((name, i) =>
-        `${name} ${Math.round(100 * chances[i])} %`).reverse().join(", ") + ".";
+        `${name} ${percent(chances[i])}`).reverse().join(", ") + ".";
     }
     document.getElementById("state").textContent = state;
     slider.setAttribute("aria-valuetext", document.getElementById("clock").textContent);

@@ -103,8 +103,9 @@ def _worse_greedy(player):
     trained, greedy = training_end(player), mean_interval(column(player, "return"), player.distinct)
     if not greedy[2] < trained[1]:
         return ""
-    return (f"{player.label} is worse in greedy play ({text(greedy).partition(' ')[0]}) than at the "
-            f"end of its training ({text(trained).partition(' ')[0]}).")
+    before, now = text((trained[0], math.nan, math.nan)), text(greedy).partition(" ")[0]
+    return (f"{player.label} is worse in greedy play ({now}) than at the end of its training "
+            f"({before}).")
 
 
 def _success(player):

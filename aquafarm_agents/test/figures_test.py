@@ -206,7 +206,6 @@ class FiguresTest(FigureCase):
         some = self.drawn(figures.draw_mean_score, contestants, self.runs, {}).axes[-1]
         self.assertEqual("medians of those that learn, last 25 % enlarged", some.get_title("left"))
         self.assertEqual({"LSTM-DQN", "DQN"}, set(self.lines(some)))
-        self.assertIn("Dashed: clairvoyant.", figure._supxlabel.get_text())
 
     def test_fig_12a_marks_where_a_learner_reaches_90_percent_and_ends_with_the_last_learner(self):
         rising = np.array([-100.0] * 50 + [100.0] * 100)

@@ -347,7 +347,6 @@ def draw_mean_score(path, contestants, runs, references):
         describe_shading(contestants, runs),
         f"Titles: last {measures.WINDOW} episodes"
         f"{' (range of runs)' if is_repeated else ''}.",
-        f"Dashed: {joined(list(references))}." if references else "",
         headlines.describe_failed(headline), describe_random(contestants)])))
     name_ends(axes, headlines.with_values(
         contestants, [end._replace(low=math.nan) for end in ends], digits=2))

@@ -50,6 +50,19 @@ class RouteFigureTest(unittest.TestCase):
         self.assertEqual({"1": (1, 0), "2": (0, 0)},
                          {text.get_text(): text.xy for text in self.axes.texts})
 
+    def test_a_ring_covers_cells_as_in_the_farm(self):
+        def covering(cell, **rings):
+            return route_figure.covering_rings({"x": 12.0, "y": 12.0, **rings}, [cell])
+
+        self.assertEqual([1], covering([18, 12], radii=[2.0, 6.0]), "at the distance of the radius")
+        self.assertEqual([], covering([19, 12], radii=[2.0, 6.0]))
+        self.assertEqual([], covering([12, 12], radii=[0.0]), "there is no such ring")
+        self.assertEqual([], covering([12, 12], radii=[]))
+        for cell, quadrant in (([12, 15], 0), ([15, 12], 1), ([12, 9], 2), ([9, 12], 3)):
+            radii = [5.0 if one == quadrant else 0.0 for one in range(4)]
+            self.assertEqual([0], covering(cell, quadrants=[radii]), cell)
+        self.assertEqual([], route_figure.covering_rings({"x": 0.0, "y": 0.0, "radii": [1.0]}, []))
+
     def test_rings_are_labelled_away_from_the_stops_also_if_there_are_none(self):
         self.axes.set_xlim(-1.0, 10.0)
         self.axes.set_ylim(-1.0, 10.0)
@@ -93,6 +106,11 @@ class RouteFigureTest(unittest.TestCase):
             self.assertEqual(2, sum(isinstance(one, Polygon) for one in self.axes.patches))
             file.write_text(f"disasters:\n{one}{one}")
             self.assertEqual([], route_figure.risks_of(file), "which disaster has which is unknown")
+            for other in ("grade_factors: [1, 1, 1, 1]", "track: []"):
+                file.write_text(f"disasters:\n{one}    {other}\n")
+                self.assertEqual([], route_figure.risks_of(file), other)
+            file.write_text("")
+            self.assertEqual([], route_figure.risks_of(file), "an empty file")
         _, self.axes = style.plt.subplots()
         route_figure._disasters(self.axes, steps, sea, [-20.0])
         self.assertEqual(["rings at step 0"], self.axes.get_legend_handles_labels()[1],

@@ -61,6 +61,10 @@ class UnfinishedFigureTest(unittest.TestCase):
         long = {**route, "steps": [*steps[:2], *[steps[2]] * 3, steps[3]]}
         self.assertEqual((2, 3, True), unfinished_figure.shortage(long))
         dry = {**long, "steps": [{**step, "disasters": []} for step in long["steps"]]}
+        exact = {**route, "steps": [*steps[:2], *[steps[2]] * 2, steps[3]]}
+        self.assertEqual((2, 2, True), unfinished_figure.shortage(exact))
+        groups = unfinished_figure.group_by_cause({"e": exact})
+        self.assertEqual(["time"], list(groups), "no step is left for the pickup")
         groups = unfinished_figure.group_by_cause({"a": dry, "b": long, "c": route, "d": long})
         self.assertEqual({"time": ["c"], "ring": ["b", "d"], "other": ["a"]},
                          {cause: [name for name, _ in group] for cause, group in groups.items()})
@@ -160,7 +164,8 @@ class UnfinishedFigureTest(unittest.TestCase):
         for routes, goal in (([home], "device left"), ([route], "port"),
                              ([home, route], "device left (or port, if no device is left)")):
             self.assertEqual(
-                f"Time runs out: the nearest {goal} needs more moves than steps are left",
+                f"Time runs out: the moves to the nearest {goal} and a pickup or drop-off need more "
+                "steps than are left",
                 unfinished_figure._heading("time", [("ranch", one) for one in routes]))
 
     def test_a_visit_of_a_cell_is_an_arrival(self):

@@ -7,7 +7,6 @@ import numpy as np
 import yaml
 from matplotlib.collections import PatchCollection
 from matplotlib.patches import Polygon, Rectangle
-from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 
 from aquafarm_benchmark.style import legible, number, plt, save
@@ -35,6 +34,8 @@ _LAND = "#c9b98a"
 EDGE = "#5b6b78"
 # Marker and name of the actions at a stop.
 STOPS = {"pickup": ("D", "pickup"), "drop_off": ("o", "drop-off")}
+# Keys of a disaster that give it other risks than its key `risks`.
+_OTHER_RISKS = {"grade_risks", "grade_factors", "track", "storms"}
 _IN_RING = "in a ring: step 0 → at the stop"  # title of a column of the table of stops
 _WIDTHS = (0.1, 0.17, 0.09, 0.11, 0.53)  # of the columns of this table
 _STOP_STYLE = {"s": 400, "color": "#f0e442", "edgecolor": "black", "linewidth": 1.0, "zorder": 2.5}
@@ -228,8 +229,8 @@ def plot_route(axes, steps, names, ports):
     for at, step in enumerate(steps):
         if step.get("action") in STOPS:
             then = steps[min(at + 1, len(steps) - 2)]  # in the last state disasters may have ended
-            inside = ["yes" if any(covers_any(ring, [step["cell"]]) for disaster in one["disasters"]
-                                   for ring in rings_of(disaster)) else "no"
+            inside = ["yes" if any(covering_rings(disaster, [step["cell"]])
+                                   for disaster in one["disasters"]) else "no"
                       for one in (steps[0], then)]
             stops.append((len(stops) + 1, STOPS[step["action"]][1],
                           names.get(tuple(step["cell"]), ""), at + 1, " → ".join(inside)))
@@ -273,19 +274,34 @@ def rings_of(disaster):
                                disaster["y"] + radii * np.cos(bearings)])
 
 
-def covers_any(ring, cells):
-    """Returns whether a ring [360, 2] contains one of the cells [x, y]."""
-    return len(cells) > 0 and bool(Path(ring).contains_points(cells).any())
+def covering_rings(disaster, cells):
+    """Returns the indices of the rings of a disaster that cover at least one of the cells [x, y].
+    The rules are those of the farm (QuadrantOf and RiskOf in aquafarm/farm/disaster.h)."""
+    if not len(cells):
+        return []
+    away = np.asarray(cells, dtype=float) - (disaster["x"], disaster["y"])
+    east, north = away.T
+    quadrant = np.select([(east >= 0.0) & (north > 0.0), east > 0.0, north < 0.0, east < 0.0],
+                         [0, 1, 2, 3], 0)
+    radii = np.asarray(disaster.get("quadrants") or [[one] * 4 for one in disaster["radii"]])
+    if not len(radii):
+        return []
+    reach = radii[:, quadrant]
+    inside = (np.hypot(*away.T) <= reach) & (reach > 0.0)
+    return [int(one) for one in np.flatnonzero(inside.any(axis=1))]
 
 
 def risks_of(scenario_file):
     """Returns the risks of the rings, from the innermost to the outermost, if the scenario has one
-    disaster with listed risks. Returns an empty list if not, or if there is no file."""
+    disaster whose risks are always those of its key `risks`. Returns an empty list if not, or if
+    there is no file."""
     if not scenario_file.is_file():
         return []
-    scenario = yaml.safe_load(scenario_file.read_text(encoding="utf-8"))
-    found = [one["risks"] for one in scenario.get("disasters") or () if "risks" in one]
-    return [float(one) for one in found[0]] if len(found) == 1 else []
+    scenario = yaml.safe_load(scenario_file.read_text(encoding="utf-8")) or {}
+    disasters = scenario.get("disasters") or []
+    if len(disasters) != 1 or disasters[0].keys() & _OTHER_RISKS:
+        return []
+    return [float(one) for one in disasters[0].get("risks", ())]
 
 
 def ring_steps(steps):

@@ -9,19 +9,19 @@ from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.legend_handler import HandlerTuple
 from matplotlib.patches import Polygon, Rectangle
 
-from aquafarm_benchmark.route_figure import (LEGS, RING, covers_any, draw_chart, legs, rings_of,
+from aquafarm_benchmark.route_figure import (LEGS, RING, covering_rings, draw_chart, legs, rings_of,
                                                symbols_of)
 from aquafarm_benchmark.style import plt, save
 
 # Causes of a failure, with the words of the headline and the heading of the group. "{goal}" stands
 # for the nearest device or port.
 _CAUSES = {
-    "time": ("time runs out", "Time runs out: the nearest {goal} needs more moves than steps are "
-             "left"),
-    "ring": ("the ship waits before a ring", "The ship waits before a ring: enough steps are left, "
-             "but a ring covers a device that was not fetched"),
-    "other": ("another cause", "Another cause: enough steps are left, and no ring covers a device "
-              "that was not fetched")}
+    "time": ("time runs out", "Time runs out: the moves to the nearest {goal} and a pickup or "
+             "drop-off need more steps than are left"),
+    "ring": ("the ship waits before a ring", "The ship waits before a ring: the steps left could "
+             "be enough, but a ring covers a device that was not fetched"),
+    "other": ("another cause", "Another cause: the steps left could be enough, and no ring covers a "
+              "device that was not fetched")}
 _COLUMNS = 3  # max number of maps in a row
 _WIDTH, _HEIGHT = 12.0, 3.0  # width of the figure, height of a map [inch]
 # Heights of the headline, a heading, the titles of a map, its labels, and the legend [inch].
@@ -129,7 +129,7 @@ def group_by_cause(routes):
     groups = {cause: [] for cause in _CAUSES}
     for name, route in routes.items():
         needed, had, is_covered = shortage(route)
-        groups["time" if needed > had else "ring" if is_covered else "other"].append((name, route))
+        groups["time" if needed >= had else "ring" if is_covered else "other"].append((name, route))
     return {cause: group for cause, group in groups.items() if group}
 
 
@@ -146,10 +146,9 @@ def shortage(route):
     step, a ring covers a device that was not fetched."""
     left, (*before, (_, last_leg)) = devices_left(route), legs(route["steps"])
     needed, _ = _nearest(last_leg[0], _goals(route))
-    rings = [ring for one in route["steps"][-2]["disasters"] for ring in rings_of(one)]
     # The action of step t is complete in step t + 1, as in plot_route.
     had = len(last_leg) - (2 if before else 1)
-    return needed, had, any(covers_any(ring, left) for ring in rings)
+    return needed, had, any(covering_rings(one, left) for one in route["steps"][-2]["disasters"])
 
 
 def _nearest(cell, others):
@@ -223,7 +222,7 @@ def _plot_last_rings(axes, steps, left, sea):
     at_end = steps[-2]["disasters"]  # in the last state they may have ended
     for i, disaster in enumerate(at_end):
         rings = list(rings_of(disaster))
-        covering = [k for k, ring in enumerate(rings) if covers_any(ring, left)]
+        covering = covering_rings(disaster, left)
         for count, (style, label) in _BEFORE.items() if covering else ():
             then = len(steps) - 2 - count
             before = steps[then]["disasters"] if then >= 0 else []

@@ -79,7 +79,8 @@ class ErrorFigureTest(FigureCase):
         self.assertEqual(3, len(figure.axes[-1].get_legend().get_texts()))
         figure = self.drawn(error_figure.draw_square_error, contestants[:3], self.runs)
         words = " ".join(figure._supxlabel.get_text().split())
-        for part in ("×: last value", "Dot: first, last", "Triangle: lowest error", "Grey area: 50 %"):
+        for part in ("×: last value", "Dot: first, last", "Triangle: lowest error",
+                     "Grey area: 50 %"):
             self.assertIn(part, words)
 
     def test_fig_12c_marks_the_lowest_error_if_the_policy_fails_then(self):

@@ -189,8 +189,8 @@ class FiguresTest(FigureCase):
                          {name.split()[0] for name in names})
         self.assertTrue(all(re.match(r"\S+ \d\.\d\d$", name) for name in names), names)
         random = self.lines(shown[0])["RANDOM"][1][-1]
-        self.assertEqual([{"clairvoyant 5.10", f"RANDOM{headlines.NBSP}{random:.2f}"}, set(), set()],
-                         [self.names_of(axes) for axes in shown], "names in the first chart")
+        self.assertEqual([{"clairvoyant 5.10", f"RANDOM{headlines.NBSP}{random:.2f}"}, set(),
+                          set()], [self.names_of(axes) for axes in shown], "names in the first chart")
         titles = [axes.get_title("left") for axes in shown]
         self.assertEqual("medians of all, last 25 % enlarged", end.get_title("left"))
         for name, title in zip(("SARSA", "LSTM-DQN", "DQN"), titles):
@@ -245,8 +245,8 @@ class FiguresTest(FigureCase):
                             {"clairvoyant": 100.0})
         chart, strip = figure.axes
         self.assertEqual(chart.get_xlim(), strip.get_xlim())
-        self.assertEqual("Time steps until 90 % is reached: runs (dots), median (tick), range (bar)",
-                         strip.get_title("left"))
+        self.assertEqual("Time steps until 90 % is reached: runs (dots), median (tick), range "
+                         "(bar)", strip.get_title("left"))
         self.assertEqual(["SARSA"], [name.get_text() for name in strip.get_yticklabels()])
         self.assertEqual(("", "time steps so far (logarithmic)"),
                          (chart.get_xlabel(), strip.get_xlabel()))

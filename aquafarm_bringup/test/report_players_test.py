@@ -114,8 +114,8 @@ class ReportPlayersTest(unittest.TestCase):
             training = np.array([500.0, *(-900.0,) * 10, *last])  # the mean of the last 50 counts
             return verdict([player("a", 88, 92, 88, 92, is_run=True, training=training), *others])
 
-        said = "below the planner. a is worse in greedy play (90.0) than at the end of its training "
-        self.assertIn(said + "(95.0).", after(*[94.0, 96.0] * 25))
+        said = "the planner. a is worse in greedy play (90.0) than at the end of its training (95.0)."
+        self.assertIn(said, after(*[94.0, 96.0] * 25))
         for last in ([92.0, 91.0] * 25, [80.0, 110.0] * 25):  # overlaps, although the mean is above
             self.assertNotIn("greedy", after(*last))
         self.assertIn("greedy play (90.0) than at the end of its training (95.0). One training",

@@ -55,8 +55,8 @@ def draw_square_error(path, contestants, runs):
 
 
 def _explain_marks(empty, charts):
-    """Writes the key of the marks on the first of the empty axes. Returns the key as a note if there
-    are no empty axes."""
+    """Writes the key of the marks on the first of the empty axes. Returns the key as a note if
+    there are no empty axes."""
     share = f"{100 * _SUCCESS:.0f} %"
     style = {"color": "0.45", "linestyle": "none"}
     lows = any(line.get_label() == "_low" for axes in charts for line in axes.lines)

@@ -90,8 +90,8 @@ def return_text(player):
 
 
 def training_end(player):
-    """Returns (mean, low, high): the mean return of the last WINDOW episodes of the training and its
-    95 % interval. NaN if there are none."""
+    """Returns (mean, low, high): the mean return of the last WINDOW episodes of the training and
+    its 95 % interval. NaN if there are none."""
     last = [value for value in player.training[-WINDOW:] if not math.isnan(value)]
     return mean_interval(last, len(last)) if last else (math.nan,) * 3
 

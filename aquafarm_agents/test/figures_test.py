@@ -317,6 +317,9 @@ class FiguresTest(FigureCase):
         self.assertTrue(120.0 < segment[0, 0] < end.get_xlim()[1], "right of the lines")
         sarsa, = (text for text in end.texts if text.get_text() == "SARSA")
         np.testing.assert_allclose((segment[0, 0], 77.5), sarsa.xy, err_msg="from bar to name")
+        _, end = self.drawn(figures.draw_repeated, self.contestants, self.runs,
+                            {**OPTIMUM, "planner": 20.0}).axes
+        self.assertNotIn("planner 20", self.names_of(end), "it is below the chart")
 
     def test_fig_14_enlarges_nothing_if_less_than_two_learners_have_high_returns(self):
         for name in ("sarsa", "lstm_dqn"):

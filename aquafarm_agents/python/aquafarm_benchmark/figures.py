@@ -394,7 +394,7 @@ def plot_mean_score(axes, contestants, runs, references, is_shaded=True):
 def draw_repeated(path, contestants, runs, references):
     """Draws Fig. 14: the 50-episode mean return over all runs. A second chart enlarges the end of
     the training for the learners that learn the task. It is left out if there are fewer than two,
-    or if a return in it is below 0."""
+    or if a return in it is not above 0."""
     failed = headlines.failed_learners(contestants, runs)
     learnt = [one for one in headlines.learners_of(contestants) if one.label not in failed]
     plots = [(lambda axes: plot_repeated(axes, contestants, runs, references), "", True)]
@@ -437,8 +437,8 @@ def plot_repeated(axes, contestants, runs, references, is_enlarged=False):
 
 def plot_enlarged(axes, contestants, runs, references):
     """Plots the medians of the last part of Fig. 14. Bars to the right of the lines show the ranges
-    of the runs at the end, because shades would cover each other. Returns the ends of the lines; a
-    line with a bar ends there."""
+    of the runs at the end, because shades would cover each other. Returns the ends of the lines in
+    the chart; a line with a bar ends there."""
     ends = plot_repeated(axes, contestants, runs, references, is_enlarged=True)
     last = max(end.x for end in ends)
     start, strip = (1.0 - _END) * last, _STRIP * _END * last
@@ -459,7 +459,7 @@ def plot_enlarged(axes, contestants, runs, references):
     margin = 0.06 * (high - low)
     axes.set_xlim(start, right)
     axes.set_ylim(low - margin, high + margin)
-    return ends
+    return [end for end in ends if end.y >= low - margin]  # a reference may be below
 
 
 def _plot_shaded(axes, episodes, values, one, is_shaded=True):

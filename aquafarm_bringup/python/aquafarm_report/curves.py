@@ -132,7 +132,7 @@ def show(labels, columns, notes=(), players=()):
             enlarged = [{**chart, "id": "curve_return_end", "rows": rows[-len(rows) // PART:],
                          "bend": None, "title": f"Return per episode, the last {1 / PART:.0%} "
                          "of the training".replace("%", " %")}]
-    charts[2:2] = enlarged  # below the return and the success
+    charts[2:2] = enlarged  # after the first two charts
     if not charts:
         return ""
     settings = {"labels": ["episode", *labels], "charts": charts, "window": window,

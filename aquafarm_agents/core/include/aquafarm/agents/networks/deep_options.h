@@ -25,9 +25,8 @@ std::string_view ToString(LossKind value);
 /// Hyperparameters of DQN, VDN and LSTM-DQN. The preset sets the defaults. *tuned* has values tuned
 /// on the shipped scenarios. *paper* has the values of the paper: Eq. 15, Algorithm 2, and γ of
 /// §2.3. It disables the extensions and max_grad_norm, and keeps the tuned values of all other
-/// options. For τ of
-/// LSTM-DQN, of which the paper contains only the range, *paper* has the value of Haarnoja et al.
-/// 2018. The members are initialized with the tuned defaults of DQN.
+/// options. For τ of LSTM-DQN, of which the paper contains only the range, *paper* has the value of
+/// Haarnoja et al. 2018. The members are initialized with the tuned defaults of DQN.
 struct DeepOptions {
   NetworkKind network{NetworkKind::kMlp};
   /// Units of a hidden layer, and of the LSTM of LSTM-DQN. With skip_connection, the last hidden

@@ -9,7 +9,7 @@ import unittest
 import numpy as np
 import rostest
 
-from aquafarm_report import blocks, curves, references
+from aquafarm_report import blocks, curves, intervals, references
 
 
 class ReportPlayersTest(unittest.TestCase):
@@ -28,6 +28,7 @@ class ReportPlayersTest(unittest.TestCase):
     def test_a_rate_below_one_is_never_100_percent(self):
         self.assertEqual(["100 %", "99.7 %", "99.99 %", "98 %", "0.4 %", "0 %"],
                          [blocks.percent(one) for one in (1.0, .997, .9999, .98, .004, 0.0)])
+        self.assertEqual("100 % [99.6 %, 100 %]", intervals.share_text(1.0, 1000))
 
     def test_the_number_of_episodes_is_stated_once_if_it_is_the_same(self):
         def shown(*counts):

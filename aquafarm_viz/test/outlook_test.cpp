@@ -162,8 +162,13 @@ TEST(Outlook, PutsTheSoonerNextArrivalFirstAndCountsManyDevicesInOneRing) {
   EXPECT_EQ(two.devices[0].risk_now, two.devices[1].risk_now);
   EXPECT_EQ(two.devices[0].id, 3) << "its next ring comes sooner";
   scene.state.devices.push_back(test::MakeDevice(1, 1, three.x, three.y + 1, 1.0F));
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()).substr(0, 36),
-            "typhoon: risk -5 over 3 devices now,");
+  const auto begin = [&] {
+    const std::string text = OutlookText(scene.spec, scene.state, scene.outlook());
+    return text.substr(0, text.find(" now"));
+  };
+  EXPECT_EQ(begin(), "typhoon: risk -5 over F0, F1 and F3");
+  scene.state.devices.push_back(test::MakeDevice(4, 1, three.x - 1, three.y + 1, 1.0F));
+  EXPECT_EQ(begin(), "typhoon: risk -5 over 4 devices");
 }
 
 TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {

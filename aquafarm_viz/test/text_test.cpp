@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
 
@@ -65,6 +66,14 @@ TEST(Count, HasCommasBetweenThousands) {
 TEST(SeedText, NamesTheSeedsOfEvaluationEpisodesAsCommandsDo) {
   EXPECT_EQ(SeedText(7), "7");
   EXPECT_EQ(SeedText(9223372036854776808U), "evaluation 1000");
+}
+
+TEST(Text, FormatsAFractionBelowOneAsLessThan100Percent) {
+  EXPECT_EQ(Percent(1.0), "100 %");
+  EXPECT_EQ(Percent(0.997), "99 %");
+  EXPECT_EQ(Percent(0.956), "96 %");
+  EXPECT_EQ(Percent(0.0), "0 %");
+  EXPECT_EQ(Percent(std::nan("")), "-");
 }
 
 }  // namespace

@@ -63,19 +63,24 @@ def draw_route(path, label, route_file, best_file=None):
                                     layout="constrained")
     figure.get_layout_engine().set(h_pad=0.12)
     all_axes = list(all_axes.flat)
-    for axes, (key, words) in zip(all_axes, panels):
-        draw_chart(axes, route["chart"])
-        plot_moves(axes, route[key], route["chart"])
+    chart = route["chart"]
+    at_sea = [one for one in chart["devices"] if one["cell"] != route["steps"][loaded]["cell"]]
+    charts = [{**chart, "devices": at_sea} if key == "best_moves_after_pickup" else chart
+              for key, _ in panels] + [chart]
+    for axes, shown, (key, words) in zip(all_axes, charts, panels):
+        draw_chart(axes, shown)
+        plot_moves(axes, route[key], shown)
         axes.set_title(words, fontsize=11.5)
     axes = all_axes[len(panels)]
     for empty in all_axes[len(panels) + 1:]:
         empty.axis("off")
-    sea = draw_chart(axes, route["chart"])
-    names = place_names(route["chart"])
-    ports = {tuple(cell) for cell in route["chart"]["ports"]}
+    sea = draw_chart(axes, chart)
+    names = place_names(chart)
+    ports = {tuple(cell) for cell in chart["ports"]}
     stops = plot_route(axes, route["steps"], names, ports)
-    for shown in all_axes[:len(panels) + 1]:
-        for cell, name in names.items():
+    for shown, of_one in zip(all_axes, charts):
+        there = {*ports, *(tuple(one["cell"]) for one in of_one["devices"])}
+        for cell, name in ((cell, name) for cell, name in names.items() if cell in there):
             shown.annotate(name, cell, xytext=(0, -0.5) if cell in ports else (11, -9),
                            textcoords="offset points", fontsize=8.5 if cell in ports else 10,
                            ha="center", va="center", weight="bold", zorder=8,

@@ -177,6 +177,12 @@ std::string Number(double value, int decimals) {
   return zero && text[0] == '-' ? text.data() + 1 : text.data();
 }
 
+std::string Percent(double fraction) {
+  if (!std::isfinite(fraction)) return "-";
+  const double percent = std::round(100.0 * fraction);
+  return Number(fraction < 1.0 ? std::min(percent, 99.0) : percent, 0) + " %";
+}
+
 std::string SeedText(std::uint64_t seed) {
   constexpr std::uint64_t kEvaluationBit = std::uint64_t{1} << 63U;
   if ((seed & kEvaluationBit) == 0) return std::to_string(seed);

@@ -35,8 +35,7 @@ std::string StatusText(const FarmSpec& spec, const DeviceState& device) {
 
 // Returns the health and the value of a device: "health 88 %", "value 80".
 std::pair<std::string, std::string> HealthAndValue(const DeviceState& device) {
-  const std::string health = Number(100.0 * double(device.health), 0) + " %";
-  return {device.health_known ? "health " + health : "",
+  return {device.health_known ? "health " + Percent(double(device.health)) : "",
           "value " + Number(double(device.value), 0)};
 }
 

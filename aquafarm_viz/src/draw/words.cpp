@@ -133,9 +133,7 @@ void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layo
   pair("episodes",
        Count(training.episode) + (training.episodes > 0 ? " / " + Count(training.episodes) : ""));
   pair("mean return", Number(training.mean_return, 1));
-  pair("success", std::isfinite(training.success_rate)
-                      ? Number(100.0 * double(training.success_rate), 0) + " %"
-                      : "-");
+  pair("success", Percent(double(training.success_rate)));
   if (training.steps_per_second > 0.0F) pair("steps/s", Rate(training.steps_per_second));
   if (const auto left = Duration(training.time_left_s); !left.empty()) pair("left", left);
 }

@@ -157,7 +157,7 @@ void CurveWidget::paintEvent(QPaintEvent*) {
   const double right = DrawName(painter, {room.left(), 4.0 + row / 2.0}, kReturn,
                                 Text("mean return " + Number(now.mean_return, 1)));
   const double end = DrawName(painter, {right + 16.0, 4.0 + row / 2.0}, kSuccess,
-                              Text("success " + Number(100.0 * now.success, 0) + " %"));
+                              Text("success " + Percent(now.success)));
   painter.setPen(kWords);
   painter.drawText(QRectF(end, 4.0, width() - 8.0 - end, row), Qt::AlignRight,
                    scale.is_bent() ? "by episode, logarithmic below 0" : "by episode");

@@ -35,23 +35,23 @@ std::string RingText(double risk, std::int32_t wind_kt) {
   return wind_kt > 0 ? aquafarm::WindName(wind_kt) : "risk " + Number(risk, 0);
 }
 
-// Returns the labels of the devices for which `applies` is true, in order of id: "F0" or "F0 and
-// F1". For more than two devices, returns their number: "3 devices". `applies` must be true for at
-// least one device.
+// Returns the labels of the devices for which `applies` is true, in order of id: "F0", "F0 and F1"
+// or "F0, F1 and F2". For more devices, returns their number: "4 devices". `applies` must be true
+// for at least one device.
 std::string Names(const Outlook& outlook,
                   const std::function<bool(const DeviceOutlook& device)>& applies) {
-  constexpr std::size_t kMaxNames = 2;
+  constexpr std::size_t kMaxNames = 3;
   std::vector<std::int32_t> ids;
   for (const DeviceOutlook& one : outlook.devices) {
     if (applies(one)) ids.push_back(one.id);
   }
   std::sort(ids.begin(), ids.end());
-  std::vector<std::string> names;
-  names.reserve(ids.size());
-  for (const std::int32_t id : ids) names.push_back(DeviceLabel(id));
-  return names.size() > kMaxNames    ? std::to_string(names.size()) + " devices"
-         : names.size() == kMaxNames ? names[0] + " and " + names[1]
-                                     : names[0];
+  if (ids.size() > kMaxNames) return std::to_string(ids.size()) + " devices";
+  std::string names;
+  for (const std::int32_t id : ids) {
+    names += (id == ids.front() ? "" : id == ids.back() ? " and " : ", ") + DeviceLabel(id);
+  }
+  return names;
 }
 
 // Returns the arrival that comes first in the order `is_before`, of the arrivals at all devices;

@@ -33,10 +33,6 @@ std::string Unbroken(const std::string& text) {
   return result;
 }
 
-std::string Percent(double share) {
-  return std::isfinite(share) ? Number(100.0 * share, 0) + " %" : "-";
-}
-
 }  // namespace
 
 RanchModel::RanchModel() : courses_(std::make_shared<CourseReader>()) {}

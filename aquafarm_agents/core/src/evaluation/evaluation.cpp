@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/evaluation/evaluation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -261,13 +262,15 @@ std::string Describe(const Evaluation& evaluation) {
     std::snprintf(interval, sizeof(interval), " [95 %%: %.1f, %.1f]",
                   evaluation.mean_return - margin, evaluation.mean_return + margin);
   }
+  // 100.0 % means that all episodes succeed.
+  const double percent =
+      evaluation.success_rate >= 1.0 ? 100.0 : std::min(100.0 * evaluation.success_rate, 99.94);
   char text[250];
   std::snprintf(text, sizeof(text),
                 "success %.1f %%, return %.1f%s per episode, %.2f per step, %.1f steps "
                 "(%zu episodes, %zu distinct)",
-                100.0 * evaluation.success_rate, evaluation.mean_return, interval,
-                evaluation.return_per_step, evaluation.mean_steps, evaluation.episodes.size(),
-                evaluation.distinct);
+                percent, evaluation.mean_return, interval, evaluation.return_per_step,
+                evaluation.mean_steps, evaluation.episodes.size(), evaluation.distinct);
   return text;
 }
 

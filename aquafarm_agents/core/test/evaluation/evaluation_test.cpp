@@ -131,6 +131,10 @@ TEST(Evaluate, DescribesTheIntervalOfTheMeanReturnFromDistinctStarts) {
   EXPECT_CONTAINS(Describe(evaluation), "return 100.0 [95 %: 84.0, 116.0] per episode");
   evaluation.distinct = 1;
   EXPECT_CONTAINS(Describe(evaluation), "return 100.0 per episode");
+  evaluation.success_rate = 0.9997;
+  EXPECT_CONTAINS(Describe(evaluation), "success 99.9 %");
+  evaluation.success_rate = 1.0;
+  EXPECT_CONTAINS(Describe(evaluation), "success 100.0 %");
 }
 
 TEST(Evaluate, DoesNotDependOnTheNumberOfFarms) {

@@ -82,7 +82,7 @@ Rgb GradeColor(std::uint8_t grade);
 Rgb ValueColor(double share);
 
 /// Colours of the frames in rviz around cells whose greedy action is a pickup or a drop-off.
-inline constexpr Rgb kPickupColor{0xff, 0xff, 0xff};
+inline constexpr Rgb kPickupColor{0xff, 0xa6, 0xd9};
 inline constexpr Rgb kDropOffColor{0xff, 0x8c, 0x42};
 
 /// Returns the bearing of a move [degrees], clockwise from north; -1 if the action is not a move.

@@ -59,6 +59,10 @@ std::string FindFontFile(bool bold);
 /// least 1e12; "-" if it is not finite.
 std::string Number(double value, int decimals);
 
+/// Formats a fraction as "98 %"; "-" if it is not finite. A fraction below 1 is at most "99 %", so
+/// that a single failure is visible.
+std::string Percent(double fraction);
+
 /// Formats a count with commas between thousands.
 std::string Count(std::uint64_t value);
 

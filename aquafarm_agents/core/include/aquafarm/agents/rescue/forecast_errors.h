@@ -20,14 +20,15 @@
 /// error along the track changes the time of arrival.
 ///
 /// **Radii.** All radii of a storm are multiplied by one log-normal factor. Without reported radii,
-/// the spread of the factor is that of recorded radii about EstimateRadius (tracks/wind_radii.h).
+/// the factor has the same spread as the ratio of recorded radii to the result of EstimateRadius
+/// (tracks/wind_radii.h).
 /// This spread depends on the storm's wind at each time. For the radii of 30 and 34 kt winds, it
 /// is 0.45 if the storm's wind is below 48 kt, 0.41 from 48 kt and 0.35 from 64 kt. After a report
 /// with radii, the spread grows from the error of the report to this value. The logarithm of
 /// radius / EstimateRadius, in units of this spread, decays with exp(-time / 165 h). The 165 h are
-/// fitted to the JMA's best tracks of 2015 to 2021. The correlation of the 30 kt radii of one
-/// storm is 0.87 after 24 h (2,864 pairs), 0.76 after 48 h, 0.64 after 72 h, 0.55 after 96 h and
-/// 0.48 after 120 h (798 pairs).
+/// fitted to the JMA's best tracks of 2015 to 2021. The autocorrelation of this logarithm
+/// for the 30 kt radii of one storm is 0.87 after 24 h (2,864 pairs), 0.76 after 48 h, 0.64 after
+/// 72 h, 0.55 after 96 h and 0.48 after 120 h (798 pairs).
 
 #include <vector>
 
@@ -64,7 +65,7 @@ struct ForecastSpread {
 ForecastSpread SpreadAt(const ForecastErrors& errors, double lead_h);
 
 /// Returns the log-standard deviation of a storm's radii, not multiplied by errors.scale.
-/// @param log_sigma log-standard deviation of recorded radii about EstimateRadius
+/// @param log_sigma standard deviation of the logarithm of (recorded radius / EstimateRadius)
 /// @param since_report_h hours after the last report with radii; infinity without such a report
 double SizeSpreadAt(const ForecastErrors& errors, double log_sigma, double since_report_h);
 

@@ -8,12 +8,12 @@
 /// times as long as a straight move. (In the farm, both take one step.) A pickup and a drop-off
 /// take `handling_s` each.
 ///
-/// **When a ship fails.** A ship stops all work of its plan as soon as it is in a cell that winds
-/// of `abort_ring` have reached since the start of the plan. This is also true in port. From then
-/// on it fetches and delivers nothing, and it does not resume work after the storm. Delivered
-/// devices are safe. A device that is not delivered, even if it is aboard, takes the damage of the
-/// whole storm at its own site. A trip fails in all members if it ends after the time until which
-/// the storm is known.
+/// **When a ship fails.** A ring of a storm is the area of winds above a threshold. A ship stops
+/// all work of its plan as soon as it is in a cell that the ring `abort_ring` has covered at any
+/// time since the start of the plan. This is also true in port. From then on it fetches and
+/// delivers nothing, and it does not resume work after the storm. Delivered devices are safe. A
+/// device that is not delivered, even if it is aboard, takes the damage of the whole storm at its
+/// own site. A trip fails in all members if it ends after the time until which the storm is known.
 ///
 /// **Devices aboard at the start.** A ship that starts with devices aboard gets the order to
 /// deliver them, even if no winds are expected, and even if winds stop it in all members. There are
@@ -92,14 +92,15 @@ struct RescueProblem {
   std::vector<RescuePort> ports;      ///< at least one
   std::vector<RescueShip> ships;
   double handling_s{};  ///< duration of a pickup or drop-off [s]
-  /// Earliest departure of the ship that CompareChanges adds if all ships have devices aboard
-  /// [s after the start of the plan]. If a ship has no devices aboard, the added ship is ready at
-  /// the same time as the first such ship.
+  /// CompareChanges adds a ship to the plan. If all ships have devices aboard, this is the earliest
+  /// departure of the added ship [s after the start of the plan]. If not, the added ship is ready
+  /// at the same time as the first ship without devices aboard.
   double depart_s{};
   std::int32_t abort_ring{};  ///< ring of the ensemble whose winds stop a ship
   double exposure_damage{};   ///< share of value lost per step of the ensemble and unit of |risk|
-  /// In [0, 1]. Above 0: the plan minimizes the mean loss of this share of the members, the worst
-  /// ones, plus the cost. 0: it maximizes the mean value saved over all members minus the cost.
+  /// Fraction of the members that count as the worst ones, [0, 1]. Above 0: the plan minimizes the
+  /// cost plus the mean loss of these members. 0: it maximizes the mean value saved over all
+  /// members minus the cost.
   double risk_averse{};
   std::optional<RescueEnergy> energy{};  ///< nullopt: energy and costs are unknown
 

@@ -268,12 +268,16 @@ def _explain(empty, charts, stops):
         table.set_fontsize(11)
 
 
+def _quadrants(disaster):
+    """Returns the radii of each ring of a disaster in its quadrants, clockwise from north-east."""
+    return disaster.get("quadrants") or [[radius] * 4 for radius in disaster["radii"]]
+
+
 def rings_of(disaster):
     """Yields the outline of each ring of a disaster, [360, 2]. A ring may have a radius for each
     quadrant."""
     bearings = np.radians(np.arange(360.0))
-    quadrants = disaster.get("quadrants") or [[radius] * 4 for radius in disaster["radii"]]
-    for ring in quadrants:
+    for ring in _quadrants(disaster):
         radii = np.repeat(ring, 90)  # quadrants are clockwise from north-east, as bearings
         yield np.column_stack([disaster["x"] + radii * np.sin(bearings),
                                disaster["y"] + radii * np.cos(bearings)])
@@ -282,16 +286,14 @@ def rings_of(disaster):
 def covering_rings(disaster, cells):
     """Returns the indices of the rings of a disaster that cover at least one of the cells [x, y].
     The rules are those of the farm (QuadrantOf and RiskOf in aquafarm/farm/disaster.h)."""
-    if not len(cells):
+    quadrants = _quadrants(disaster)
+    if not len(cells) or not quadrants:
         return []
     away = np.asarray(cells, dtype=float) - (disaster["x"], disaster["y"])
     east, north = away.T
     quadrant = np.select([(east >= 0.0) & (north > 0.0), east > 0.0, north < 0.0, east < 0.0],
                          [0, 1, 2, 3], 0)
-    radii = np.asarray(disaster.get("quadrants") or [[one] * 4 for one in disaster["radii"]])
-    if not len(radii):
-        return []
-    reach = radii[:, quadrant]
+    reach = np.asarray(quadrants)[:, quadrant]
     inside = (np.hypot(*away.T) <= reach) & (reach > 0.0)
     return [int(one) for one in np.flatnonzero(inside.any(axis=1))]
 

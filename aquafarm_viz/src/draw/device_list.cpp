@@ -33,6 +33,15 @@ std::string StatusText(const FarmSpec& spec, const DeviceState& device) {
   return port.empty() ? "safe" : port;
 }
 
+// Returns the outlook of a device that a ring covers or reaches; null if the device is not in
+// danger.
+const DeviceOutlook* DangerTo(const DeviceState& device, const Outlook& outlook) {
+  for (const DeviceOutlook& one : outlook.devices) {
+    if (one.id == device.id && WorstRisk(one) < 0.0) return &one;
+  }
+  return nullptr;
+}
+
 // Returns the health and the value of a device: "health 88 %", "value 80".
 std::pair<std::string, std::string> HealthAndValue(const DeviceState& device) {
   return {device.health_known ? "health " + Percent(double(device.health)) : "",
@@ -84,10 +93,7 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, 
     }
     const Rgb color = done ? layout.style->good : layout.style->faint;
     const std::string name = DeviceLabel(device.id) + " " + DeviceName(device.kind);
-    const DeviceOutlook* danger = nullptr;
-    for (const DeviceOutlook& one : outlook.devices) {
-      if (one.id == device.id && !DangerText(spec, one).empty()) danger = &one;
-    }
+    const DeviceOutlook* danger = DangerTo(device, outlook);
     if (danger != nullptr && has_details) {
       ListDanger(panel, spec, device, *danger, layout);
       continue;
@@ -113,9 +119,8 @@ ColoredTexts DeviceInHalf(const Panel& panel, const FarmSpec& spec, const Device
   const bool done = device.status == DeviceState::DELIVERED;
   const std::string status = StatusText(spec, device);
   const auto at = trail == nullptr ? std::nullopt : trail->ChangedAt(device.id);
-  for (const DeviceOutlook& one : outlook.devices) {
-    if (one.id != device.id || !(WorstRisk(one) < 0.0)) continue;
-    const auto [name, danger] = NameAndDanger(spec, DeviceName(device.kind), one,
+  if (const DeviceOutlook* one = DangerTo(device, outlook)) {
+    const auto [name, danger] = NameAndDanger(spec, DeviceName(device.kind), *one,
                                               [&panel](const auto& left, const auto& right) {
                                                 return panel.FitsInHalf(left + " " + right);
                                               });

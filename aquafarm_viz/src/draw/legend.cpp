@@ -217,10 +217,7 @@ std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Ov
       Sign::kAtRisk);
   const auto in_danger = layers.risk ? CountInDanger(outlook) : 0;
   add(in_danger > 0, Sign::kInDanger);
-  add(in_danger > 0 &&
-          std::any_of(outlook.devices.begin(), outlook.devices.end(),
-                      [&](const DeviceOutlook& one) { return IsHitFirst(spec, outlook, one); }),
-      Sign::kFirstReached);
+  add(in_danger > 0 && HasHitFirst(spec, outlook), Sign::kFirstReached);
   add(std::any_of(state.devices.begin(), state.devices.end(),
                   [](const auto& device) {
                     return device.status == aquafarm_msgs::DeviceState::DELIVERED;

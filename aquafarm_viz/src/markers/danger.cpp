@@ -376,11 +376,8 @@ MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state, cons
     has_rings = has_rings || (disaster.known && disaster.steps_left > 0 &&
                               !OverFarmText(spec, courses[i]).empty());
   }
-  const bool is_any_first =
-      std::any_of(outlook.devices.begin(), outlook.devices.end(),
-                  [&](const DeviceOutlook& one) { return IsHitFirst(spec, outlook, one); });
   AddSignLegend(array, spec,
-                {IsInDanger(outlook), is_any_first, !outside.empty(), has_rings,
+                {IsInDanger(outlook), HasHitFirst(spec, outlook), !outside.empty(), has_rings,
                  trail != nullptr && HasDashes(state, *trail)});
   return array;
 }

@@ -323,6 +323,11 @@ bool IsHitFirst(const FarmSpec& spec, const Outlook& outlook, const DeviceOutloo
   return !are_all && WorstRisk(device) < 0.0 && first_ring(device) == first;
 }
 
+bool HasHitFirst(const FarmSpec& spec, const Outlook& outlook) {
+  return std::any_of(outlook.devices.begin(), outlook.devices.end(),
+                     [&](const DeviceOutlook& one) { return IsHitFirst(spec, outlook, one); });
+}
+
 namespace {
 
 // Returns the name of a wind; in a brief text, "64 kt" instead of "hurricane force".

@@ -66,6 +66,9 @@ std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook&
 bool IsHitFirst(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook,
                 const DeviceOutlook& device);
 
+/// Returns whether IsHitFirst is true for any device.
+bool HasHitFirst(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook);
+
 /// A ring in a text about the danger to a device.
 struct DangerPart {
   std::string text;  ///< "storm in 6.5 h"
